@@ -29,6 +29,6 @@ scene = Scene(
 )
 groomed = {"length": "length", "toward": "lie", "bend": 0.94, "curl": 0.1, "turns": 0.5}
 coat = vizlight.fur(dog, scene, fibres=600_000, segments=6, absorption=0.6, **groomed)
-look = {"size": (1500, 1070), "background": "#1b252e", "line_width": 0.7}
+look = {"size": (1300, 930), "background": "#1b252e", "line_width": 0.7}
 plotter = render.make_plotter(render.Panel(coat, "rgb"), camera=camera, **look)
 plotter.show()

@@ -2,14 +2,10 @@
 Contours of equal luminance on solids
 =====================================
 
-The primitives of Conway and Cottingham, *The Isoluminance Contour Model*: sphere, cylinder, cone,
-frustum and disc, in bands of constant luminance between contours; and a machined part made from
-them by union and difference, which has such bands too.
-
-The contours of the sphere are circles about the direction of the light, the contours of the other
-primitives are rulings; each end has one luminance. The source leaves set operations, as in the
-machined part, as an open problem. The last two panels show cases that the source approximates, a
-highlight and a nearby light; here their contours are found by bisection.
+The primitives of Conway and Cottingham, *The Isoluminance Contour Model*, in bands of constant
+luminance between contours: circles about the direction of the light on the sphere, rulings on the
+others. The source leaves set operations, as in the machined part, as an open problem, and
+approximates a highlight and a nearby light; here their contours are found by bisection.
 """
 
 import numpy as np

@@ -3,12 +3,10 @@ A field on a surface
 ====================
 
 A piece of the gyroid, a minimal surface, and its lines of principal curvature. Left: the surface,
-lit by its normals. Right: evenly spaced lines along the direction in which it bends most toward
-its normal, lit by that direction and shadowed by the surface. Highlights are no longer spots; they
-run across the lines and show how the surface bends, as the strokes of an engraving do.
-
-A principal direction has no sign, so the field has points around which it makes half a turn:
-``line_field=True`` lets lines pass around them.
+lit by its normals. Right: evenly spaced lines along the direction in which it bends most, lit by
+that direction and shadowed by the surface. Highlights run across the lines, as the strokes of an
+engraving do. A principal direction has no sign, so there are points around which it makes half a
+turn: ``line_field=True`` lets lines pass around them.
 """
 
 import numpy as np
@@ -63,7 +61,7 @@ blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
 panels = [render.Panel(before, "rgb"), render.Panel(after, "rgb")]
-options = {"camera": camera, "size": (1600, 800), "line_diameter": 0.042}
+options = {"camera": camera, "size": (1400, 700), "line_diameter": 0.042}
 plotter = render.make_plotter(panels, background="black", **options)
 plotter.show()
 

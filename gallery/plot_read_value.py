@@ -4,12 +4,9 @@ What is the value?
 
 The speed of a gas on an isosurface of its temperature. Left: PyVista's light and highlight on
 ``viridis``: many colours of the picture are on no bar. Right: light that keeps the colour
-(``vizlight.presets.value``) on a map of one lightness and one chroma
-(``vizlight.maps.even``), which light cannot turn into another colour of the bar.
-
-Each pixel is read by the colour of the bar that is nearest to it. On the right 95 of 100 pixels
-are read to 2 % of the range; ``viridis`` in the same light to 29 %, because its own lightness is
-taken for light.
+(``vizlight.presets.value``) on a map of one lightness and one chroma (``vizlight.maps.even``). Each
+pixel is read by the colour of the bar that is nearest to it: on the right 95 of 100 to 2 % of the
+range, ``viridis`` in the same light to 29 %, because its own lightness is taken for light.
 """
 
 import numpy as np
@@ -21,7 +18,7 @@ from vizlight import presets
 surface = vizlight.load_example().contour([600], scalars="Temp")
 surface["speed"] = np.linalg.norm(surface["V"], axis=1)
 scene = presets.value()
-bar = {"color": "black", "n_labels": 3}
+bar = {"color": "black", "n_labels": 3, "position_x": 0.2, "position_y": 0.05, "width": 0.6}
 
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1400, 640), border=False)
 plotter.add_mesh(
@@ -34,7 +31,8 @@ plotter.vizlight.add_mesh(
 )
 plotter.link_views()
 plotter.view_vector((1, 0.5, 0.45), (0, 0, 1))
-plotter.camera.zoom(1.3)
+plotter.camera.zoom(1.45)
+plotter.camera.SetWindowCenter(0, -0.3)
 plotter.enable_anti_aliasing("msaa")
 plotter.show(auto_close=False)
 

@@ -2,13 +2,11 @@
 A satin ball, lit in four ways
 ==============================
 
-A sphere with a tangent field in north-south direction, like a ball wound with satin thread: the
-four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*.
-
-A: integral curves, each lit as a line. B: the sphere, lit by its normals. C: the sphere lit by the
-field alone, including the side that the light cannot reach. D: the sphere lit by the field and
-conditioned by its normals; its dark side is as dark as in B. All panels use the plain cosine
-law of the paper (``exponent=1``). In A a dark sphere hides the threads on the far side.
+The four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*: a sphere with a
+tangent field from north to south, like a ball wound with satin thread. A: curves, each lit as a
+line, around a dark sphere. B: the sphere, lit by its normals. C: lit by the field alone, also where
+light cannot reach. D: lit by the field and conditioned by the normals; its dark side is as dark as
+in B. All use the plain cosine law of the paper (``exponent=1``).
 """
 
 # sphinx_gallery_thumbnail_number = 1

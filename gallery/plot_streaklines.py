@@ -6,7 +6,6 @@ Vortices of alternating sign drift to the right, as behind a pillar in the wind.
 of points all the time: streaklines, carried from step to step by ``vizlight.pathlines`` and lit by
 their own directions at each. Old smoke is blue, and it keeps the shape of vortices that it has met;
 streamlines of one step do not show what has happened before.
-
 ``vizlight.movie.save(frames, "smoke.mp4")`` writes such frames as a movie.
 """
 

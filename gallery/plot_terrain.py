@@ -6,6 +6,7 @@ Hawaii and the sea floor around it, heights 9 times as they are, under a low sun
 light of the sky. ``t``, the cos-theta shadow, is the sunlight that arrives: 0 behind a ridge, the
 cosine where nothing is in the way. The sky's light is the share of it that each point sees, so that
 valleys are dark also out of the sun. One call finds both: ``relief_shadow(..., occlusion="sky")``.
+This light tells heights by their shadows; slopes are read better by ``presets.shape``.
 """
 
 import pyvista as pv
@@ -27,15 +28,11 @@ ground = lit.warp_by_scalar("elevation", factor=9)
 
 islands = (4.1e5, 10e5, 2.2e5, 6.6e5, -4e4, 2e4)
 camera = render.camera_on(islands, (0.3, -1, 1.3), aspect=1.5, zoom=1.5)
-plotter = render.make_plotter(
-    render.Panel(ground, "rgb"), camera=camera, size=(1500, 1000), background="#1f4a7c"
-)
-plotter.add_mesh(pv.Box((4.6e5, 5.6e5, 2e5, 2.06e5, -3.9e4, -3.8e4)), color="white")
-plotter.add_mesh(
-    pv.Arrow(start=(4.4e5, 2e5, -3.8e4), direction=(0, 1, 0), scale=6e4), color="white"
-)
+look = {"size": (1500, 1000), "background": "#1f4a7c"}
+plotter = render.make_plotter(render.Panel(ground, "rgb"), camera=camera, **look)
+north = pv.Arrow(start=(4.4e5, 2e5, -3.8e4), direction=(0, 1, 0), scale=6e4)
+plotter.add_mesh(north + pv.Box((4.6e5, 5.6e5, 2e5, 2.06e5, -3.9e4, -3.8e4)), color="white")
 words = {"shape": None, "show_points": False, "text_color": "white", "font_size": 26}
-plotter.add_point_labels(
-    [(4.8e5, 2.15e5, -3.8e4), (4.34e5, 2.65e5, -3.8e4)], ["100 km", "N"], **words
-)
+places = [(4.8e5, 2.15e5, -3.8e4), (4.34e5, 2.65e5, -3.8e4)]
+plotter.add_point_labels(places, ["100 km", "N"], **words)
 plotter.show()

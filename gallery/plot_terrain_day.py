@@ -34,7 +34,7 @@ plotter = render.make_plotter(
     [render.Panel(day, name, name) for name in names],
     camera=render.camera_on(terrain.bounds, (0, 0, 1), parallel=True, zoom=1.13),
     rows=2,
-    size=(2000, 1080),
+    size=(1500, 810),
     cmap="cividis",
     bar="t",
     background="white",

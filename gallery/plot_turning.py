@@ -22,9 +22,8 @@ turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 29)[1:], (-0.7, 0.0, 0.7))
 base = np.stack([np.cos(turn), np.sin(turn), height / np.sqrt(1 - height**2)], axis=-1)
 fibres = vizlight.manifold(manifolds.hopf_fibres(base.reshape(-1, 3), resolution=192))
 fibres["torus"] = np.repeat([0.0, 1.0, 2.0], fibres.n_points // 3)
-material = Material(ambient=0.18, diffuse=0.85, specular=0.5, shininess=20)
-scene = Scene(lights=Light(direction=(-0.5, -0.5, 1, 0.4)), material=material)
-scene = scene.replace(view=View(direction=(0.3, -1, 0.6, 0)))
+light, eye = Light(direction=(-0.5, -0.5, 1, 0.4)), View(direction=(0.3, -1, 0.6, 0))
+scene = Scene(lights=light, view=eye, material=Material(ambient=0.18, diffuse=0.85, specular=0.5))
 
 plotter = pv.Plotter(off_screen=True, window_size=(400, 380))
 plotter.background_color = "#101a2a"
@@ -32,9 +31,8 @@ plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0
 plotter.enable_anti_aliasing("ssaa")
 plotter.open_gif(Path(mkdtemp()) / "turning.gif", fps=9)
 for angle in np.linspace(0, np.pi, 26, endpoint=False):
-    lit = vizlight.project(
-        fibres, rotation=("xw", angle), distance=1.3, scene=scene, light="before"
-    )
+    turned = {"rotation": ("xw", angle), "distance": 1.3, "light": "before"}
+    lit = vizlight.project(fibres, scene=scene, **turned)
     lit = vizlight.tint(lit, "torus", cmap=["#f08a5d", "#58c4a3", "#8a96f0"])
     plotter.vizlight.add_mesh(lit, line_diameter=0.055, name="fibres", show_scalar_bar=False)
     plotter.write_frame()

@@ -4,8 +4,8 @@ The winds of July
 
 The mean wind of July around the Indian Ocean. Hue is the direction of the wind on the screen: find
 it on the disc. The trade winds of the south cross the equator, turn, and blow past the Horn of
-Africa toward India; where hue changes at once, winds meet. By the disc a reader is wrong by 2.8
-degrees in the median; under the white light of ``Scene()`` by 45, which is chance. Which of two
+Africa toward India; where hue changes at once, winds meet. By the disc a reader is wrong by 2.7
+degrees in the median; under the white light of ``Scene()`` by 47, and 45 is chance. Which of two
 opposite ways the wind blows is not told: lines have no sense.
 """
 
@@ -17,7 +17,7 @@ from vizlight import Material, Scene, presets, render
 
 air = vizlight.load_example("winds_of_july.vtp")
 air = air.compute_normals(cell_normals=False, auto_orient_normals=True)
-coast = vizlight.load_example("earth_relief.vti").contour([0], scalars="elevation")
+coast = vizlight.load_example("earth_relief.vti").contour([0.5], scalars="elevation")
 east, north = np.radians(np.asarray(coast.points, dtype=float)[:, :2].T)
 ball = np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)
 coast.points = 1.003 * np.stack(ball, axis=1)

@@ -3,7 +3,7 @@
 The tests read the pages from the folder into which README's command builds them. Tests that need a
 browser use Debian's ``chromium``. If ``VIZLIGHT_PAGES`` names the folder of the pages, a missing
 page or browser is an error; otherwise the tests are skipped. Of the notebooks two are run, or all
-if ``VIZLIGHT_NOTEBOOKS`` is "all".
+if ``VIZLIGHT_NOTEBOOKS`` is "all". ``VIZLIGHT_AXE`` names the axe.min.js of axe-core, if any.
 """
 
 from __future__ import annotations
@@ -108,6 +108,28 @@ def test_every_script_has_a_page_a_picture_and_no_error():
         (thumbnail,) = (PAGES / "_images").glob(f"sphx_glr_{script.stem}_thumb.*")
         with Image.open(thumbnail) as picture:
             assert np.asarray(picture.convert("L")).std() > 5, script.stem
+
+
+def test_pages_of_examples_are_light():
+    """A page and its pictures; scenes are loaded when their tab is opened."""
+    for page in [PAGES / "examples" / "index.html", *(PAGES / "examples").glob("plot_*.html")]:
+        text = page.read_text(encoding="utf-8")
+        pictures = {page.parent / unquote(u) for u in re.findall(r'<img[^>]* src="([^"]+)"', text)}
+        size = len(text) + sum(picture.stat().st_size for picture in pictures)
+        assert size < 1.5e6, (page.name, size)
+
+
+def test_the_gallery_has_sections_of_described_pictures():
+    text = (PAGES / "examples" / "index.html").read_text(encoding="utf-8")
+    sections = re.split(r"<h2>", text)[1:]
+    assert [section.partition("<")[0][-1] for section in sections] == ["?"] * len(sections)
+    shown = [re.findall(r"sphx_glr_(plot_\w+)_thumb", section) for section in sections]
+    scripts = sorted(script.stem for script in (ROOT / "gallery").glob("plot_*.py"))
+    assert sorted(name for names in shown for name in names) == scripts
+    assert all(shown)
+    pictures = re.findall(r"<img[^>]*>", text)
+    assert all(len(re.search(r'alt="([^"]*)"', picture)[1]) > 20 for picture in pictures)
+    assert all('loading="lazy"' in picture for picture in pictures[1:])
 
 
 def notebooks():
@@ -234,6 +256,20 @@ def test_pages_fit_and_load_nothing_from_elsewhere(chromium, width, scheme):
             # Pictures have their own light in dark pages too.
             filters = "[...document.images].map(image => getComputedStyle(image).filter)"
             assert set(page.evaluate(filters)) <= {"none"}, name
+            page.close()
+
+
+@browser
+@pytest.mark.skipif("VIZLIGHT_AXE" not in os.environ, reason="no axe.min.js of axe-core named")
+def test_axe_finds_nothing(chromium):
+    axe = Path(os.environ["VIZLIGHT_AXE"]).read_text(encoding="utf-8")
+    example = sorted(path.stem for path in (PAGES / "examples").glob("plot_read_*.html"))[0]
+    with chromium.new_context() as context:
+        for name in [*FIRST, LONGEST, f"examples/{example}"]:
+            page, _, _ = visit(context, name)
+            page.evaluate(axe)
+            found = page.evaluate("axe.run().then(made => made.violations.map(one => one.id))")
+            assert not found, name
             page.close()
 
 

@@ -32,13 +32,14 @@ def lighten(text):
 
 
 def lighten_all(app, error):
-    """Rewrite the pages that were built, except the search page."""
+    """Rewrite the pages that were built, and silence the theme."""
     if error is None and app.builder.format == "html":
         for page in app.outdir.rglob("*.html"):
             if page.name != "search.html" and "_static" not in page.parts:
                 page.write_text(lighten(page.read_text("utf-8")), "utf-8")
-        script = app.outdir / "_static" / "scripts" / "pydata-sphinx-theme.js"
-        script.write_text(MESSAGE.sub("void(", script.read_text("utf-8")), "utf-8")
+        for path in ("_static/scripts/pydata-sphinx-theme.js", "search.html"):
+            script = app.outdir / path
+            script.write_text(MESSAGE.sub("void(", script.read_text("utf-8")), "utf-8")
 
 
 def setup(app):

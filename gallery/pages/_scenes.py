@@ -30,7 +30,7 @@ LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 SECTIONS = {
     "Which way does it run?": {
         "plot_winds": "Globe of winds in hues of their direction, with lines, coasts and a disc",
-        "plot_read_direction": "A globe with arrows, and one in hues of the wind's direction",
+        "plot_read_direction": "Six globes: plain, arrows, LIC, lines, white light, and hues",
         "plot_principal_lines": "Gyroid, plain and engraved by lines of its curvature",
         "plot_satin": "Satin ball lit by its threads, with a highlight across them",
     },
@@ -41,7 +41,7 @@ SECTIONS = {
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
-        "plot_sky": "Valleys, folds and a coral darkened by the sky that they do not see",
+        "plot_sky": "Terrain, brain and coral: in gray, and in hues with dark valleys and folds",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },
     "What is the value?": {
@@ -68,7 +68,7 @@ ALTS = {script: alt for scripts in SECTIONS.values() for script, alt in scripts.
 ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
-FIRST = ("plot_principal_lines", "plot_satin", "plot_sky")
+FIRST = ("plot_principal_lines", "plot_satin")
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
 #: thumbnails show the whole.
@@ -79,14 +79,15 @@ PARTS = {
     "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
-    "plot_read_direction": (0.5, 0.08, 1.0, 1.0),
+    "plot_read_direction": (0.67, 0.53, 1.0, 1.0),
     "plot_read_heading": (0.5, 0.05, 1.0, 1.0),
     "plot_read_shape": (0.5, 0.0, 1.0, 0.85),
     "plot_read_slope": (0.5, 0.05, 1.0, 1.0),
     "plot_read_value": (0.5, 0.1, 1.0, 1.0),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
-    "plot_terrain_day": (0.37, 0.05, 0.63, 0.49),
+    "plot_sky": (0.69, 0.5, 1.0, 1.0),
+    "plot_terrain_day": (0.37, 0.1, 0.63, 0.42),
 }
 
 #: Width of the thumbnails of movies in pixels.
@@ -215,7 +216,9 @@ def cut_thumbnails(app):
             part = PARTS.get(script, (0, 0, 1, 1))
             ends = [x * side for x, side in zip(part, whole.size * 2, strict=True)]
             cut = whole.convert("RGB").crop([round(x) for x in ends])
-        ImageOps.pad(cut, size, color=cut.getpixel((1, 1))).save(thumbnail)
+        cut = ImageOps.pad(cut, size, color=cut.getpixel((1, 1)))
+        # A third of the bytes; at the size of a thumbnail 256 colours look the same.
+        cut.quantize(256, dither=Image.Dither.FLOYDSTEINBERG).save(thumbnail, optimize=True)
     for thumbnail in folder.glob("thumb/*.gif"):
         _shrink(thumbnail)
 
@@ -253,9 +256,9 @@ def _shrink(path):
         size = (MOVIE, round(movie.height * MOVIE / movie.width))
         frames = [frame.convert("RGB").resize(size) for frame in ImageSequence.Iterator(movie)]
         times = movie.info.get("duration", 100)
-    # Every second frame, for twice the time.
-    first, *rest = frames[::2]
-    first.save(path, save_all=True, append_images=rest, duration=2 * times, loop=0)
+    # Every third frame, for three times the time.
+    first, *rest = [frame.quantize(64) for frame in frames[::3]]
+    first.save(path, save_all=True, append_images=rest, duration=3 * times, loop=0)
 
 
 def setup(app):

@@ -120,5 +120,6 @@ sphinx_gallery_conf = {
 }
 
 pv.global_theme.notebook = False
-# A warning of vizlight in a script is an error.
+# A warning of vizlight in a script is an error; other warnings stand on its page, without paths.
 warnings.filterwarnings("error", module=r"vizlight(\.|$)")
+warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"

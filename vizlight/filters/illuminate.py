@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
-    from vizlight.reading.normals import Sided
-    from vizlight.reading.sides import Told
+    from vizlight.reading.normals import Sided, Told
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
 

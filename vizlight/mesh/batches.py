@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Indices
-    from vizlight.reading.normals import Sided
+    from vizlight.reading.normals import Sided, Told
     from vizlight.reading.parts import Part
-    from vizlight.reading.sides import Told
     from vizlight.scene import Scene
     from vizlight.shading.options import LightOptions
 

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job
     from vizlight.pieces.workers import Map
+    from vizlight.reading.normals import Told
 
 #: Options of light that depend on a mesh as a whole.
 WHOLE = {
@@ -256,10 +257,10 @@ def _common_options(
     return dict(options)
 
 
-def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[sides.Told | None]]:
+def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | None]]:
     """Return the job, and what the whole decides of the sides of each piece, where it does."""
     asked = LightOptions.of(job.options)
-    told: list[sides.Told | None] = [None] * len(parts)
+    told: list[Told | None] = [None] * len(parts)
     sharp = asked.feature_angle == "auto"
     if not job.ghost or not (asked.facing == "auto" or sharp):
         return job, told  # without neighbours each piece is a whole

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight._types import Array
+    from vizlight.reading.normals import Told
     from vizlight.scene import Scene
 
 T = TypeVar("T")
@@ -177,7 +178,7 @@ def look(piece: Piece, job: Job) -> sides.Look | None:
     return _tried(piece, partial(sides.look, mesh, ghosts, options.normals, job.scene.view))
 
 
-def light(piece: Piece, job: Job, target: Path, told: sides.Told | None = None) -> Done:
+def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Done:
     """Light a piece, of whose sides the whole may have told, and write it to a path.
 
     The path has no suffix.
@@ -218,9 +219,7 @@ def light(piece: Piece, job: Job, target: Path, told: sides.Told | None = None) 
     return done
 
 
-def _lit(
-    mesh: pv.DataSet, piece: Piece, job: Job, told: sides.Told | None
-) -> tuple[Any, float | None]:
+def _lit(mesh: pv.DataSet, piece: Piece, job: Job, told: Told | None) -> tuple[Any, float | None]:
     """Return the own part of a piece, lit, and its share of sharp edges where that is known."""
     if not mesh.n_points:
         return mesh, None

@@ -48,7 +48,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Dataset, Indices
     from vizlight.reading.grids import Grid
-    from vizlight.reading.sides import Told
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -170,6 +169,24 @@ class Sided:
             return limited
         own = np.abs(lean)
         return np.where(field, np.where(averted[number], -own, own), limited)
+
+
+class Told(NamedTuple):
+    """What the whole decides of the pieces of a part, see :mod:`vizlight.reading.sides`.
+
+    Attributes
+    ----------
+    sign : ndarray, shape (count,)
+        1 or -1, by which the normals of the part are multiplied.
+    number : ndarray of int, shape (count,)
+        See :attr:`Sided.open`.
+    averted : ndarray of bool
+        See :attr:`Sided.averted`.
+    """
+
+    sign: Array
+    number: Indices
+    averted: Bools
 
 
 def facing_of(normals: Array, points: NDArray[np.generic], view: View | None) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.reading import polylines
 from vizlight.reading.arrays import is_of_cells, named, points_of, tangents_of
-from vizlight.reading.normals import Sided, Turned, sided_normals
+from vizlight.reading.normals import Sided, Told, Turned, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Dataset, Indices
-    from vizlight.reading.sides import Told
     from vizlight.scene import Scene, View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing, LightOptions

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.edges import BLOCK, place_numbers
-from vizlight.reading.normals import facing_of, given_normals, wound_normals
+from vizlight.reading.normals import Told, facing_of, given_normals, wound_normals
 from vizlight.reading.orientation import crease_share, middles, sides_of
 
 if TYPE_CHECKING:
@@ -56,24 +56,6 @@ class Look(NamedTuple):
     at: Indices
     along: Array
     edges: Indices
-
-
-class Told(NamedTuple):
-    """What the whole decides of the pieces of a part.
-
-    Attributes
-    ----------
-    sign : ndarray, shape (count,)
-        1 or -1, by which the normals of the part are multiplied.
-    number : ndarray of int, shape (count,)
-        See :attr:`vizlight.reading.normals.Sided.open`.
-    averted : ndarray of bool
-        See :attr:`vizlight.reading.normals.Sided.averted`.
-    """
-
-    sign: Array
-    number: Indices
-    averted: Bools
 
 
 def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look | None:

@@ -20,7 +20,7 @@ import pyvista as pv
 from PIL import Image, ImageDraw, ImageFont
 
 import vizlight
-from vizlight import Scene, presets
+from vizlight import Material, Scene, presets
 
 HERE = Path(__file__).resolve().parent
 SIZE = (480, 420)
@@ -103,157 +103,148 @@ def flow(folder):
     return lines
 
 
+def plain(mesh, **colors):
+    """Return a function that draws a mesh by PyVista with its defaults."""
+    return lambda plotter: plotter.add_mesh(mesh, show_scalar_bar=False, **colors)
+
+
+def lit(mesh, scene=None, key=False, **options):
+    """Return a function that draws a mesh by vizlight, with the key of its scene if asked for."""
+
+    def fill(plotter):
+        plotter.vizlight.add_mesh(mesh, scene=scene, **options)
+        if key:
+            exponent = {"exponent": options["exponent"]} if "exponent" in options else {}
+            plotter.vizlight.add_key(scene, **exponent)
+
+    return fill
+
+
+def bare(mesh):
+    """Return the mesh without arrays."""
+    mesh = mesh.copy()
+    mesh.clear_data()
+    return mesh
+
+
 def of_shape(mesh):
-    """Draw a cortex; the question is its shape."""
+    """Ask for the shape of a cortex."""
 
     def best(plotter):
         plotter.add_mesh(mesh, color="bisque", smooth_shading=True, specular=0.15)
         plotter.enable_ssao(radius=15, bias=0.5, kernel_size=128)
 
-    def asked(plotter):
-        plotter.vizlight.add_mesh(mesh, scene=presets.shape())
-        plotter.vizlight.add_key(presets.shape())
-
-    mesh = mesh.copy()
-    mesh.clear_data()
+    mesh, scene = bare(mesh), presets.shape()
+    scene = scene.replace(material=Material(ambient=0.35, diffuse=0.65, specular=0))
+    ways = plain(mesh), best, lit(mesh), lit(vizlight.sky(mesh), scene, True, occlusion="sky")
     return {
-        "ways": (
-            lambda plotter: plotter.add_mesh(mesh), best,
-            lambda plotter: plotter.vizlight.add_mesh(mesh), asked,
-        ),
-        "view": (-1, -0.15, 0.25), "measured": ("shape", mesh, presets.shape(), {}),
+        "ways": ways, "view": (-1, -0.15, 0.25), "zoom": 1.4, "background": "#10141a",
+        "measured": ("shape", mesh, scene, {}),
     }  # fmt: skip
 
 
 def of_value(mesh):
-    """Draw a cortex by its thickness; the question is the value."""
-    name, clim = "thickness, mm", (1, 4)
-    bar = {"scalars": name, "clim": clim}
-
-    def best(plotter):
-        plotter.add_mesh(
-            mesh, cmap="viridis", smooth_shading=True, ambient=0.4, diffuse=0.6, specular=0, **bar
-        )
-
+    """Ask for the thickness of a cortex."""
+    bar, scene = {"scalars": "thickness, mm", "clim": (1, 4)}, presets.value()
+    soft = {"cmap": "viridis", "smooth_shading": True, "ambient": 0.4, "diffuse": 0.6}
     return {
         "ways": (
-            lambda plotter: plotter.add_mesh(mesh, **bar), best,
-            lambda plotter: plotter.vizlight.add_mesh(mesh, **bar),
-            lambda plotter: plotter.vizlight.add_mesh(mesh, scene=presets.value(), **bar),
+            lambda plotter: plotter.add_mesh(mesh, **bar),
+            lambda plotter: plotter.add_mesh(mesh, **soft, **bar),
+            lit(mesh, **bar), lit(mesh, scene, **bar),
         ),
-        "view": (-1, -0.15, 0.25),
-        "measured": ("value", mesh, presets.value(), bar), "cmap": "viridis",
+        "view": (-1, -0.15, 0.25), "measured": ("value", mesh, scene, bar), "cmap": "viridis",
     }  # fmt: skip
 
 
-def of_slope(mesh):
-    """Draw bundles; the question is how steep they run, and which end is near."""
+def of_heading(mesh):
+    """Ask which end of a fibre is near."""
 
     def best(plotter):
         tubes = mesh.tube(radius=0.35, n_sides=10)
         plotter.add_mesh(tubes, scalars="rgb", rgb=True, smooth_shading=True, specular=0.3)
         plotter.enable_ssao(radius=8, bias=0.3)
 
-    def asked(plotter):
-        plotter.vizlight.add_mesh(bare, scene=presets.heading(), line_diameter=0.4)
-        plotter.vizlight.add_key(presets.heading())
-
-    bare = mesh.copy()
-    bare.clear_data()
+    lines, scene = bare(mesh), presets.heading()
+    scene = scene.replace(material=Material(ambient=0.25, diffuse=0.75, specular=0))
+    asked = lit(vizlight.sky(lines), scene, True, occlusion="sky", line_diameter=0.4)
     return {
-        "ways": (
-            lambda plotter: plotter.add_mesh(mesh, scalars="rgb", rgb=True), best,
-            lambda plotter: plotter.vizlight.add_mesh(bare), asked,
-        ),
-        "view": (-1, -0.35, 0.3), "background": "black",
-        "measured": ("slope", bare, presets.heading(), {}),
+        "ways": (plain(mesh, scalars="rgb", rgb=True), best, lit(lines), asked),
+        "view": (-1, -0.35, 0.3), "background": "black", "measured": ("slope", lines, scene, {}),
     }  # fmt: skip
 
 
 def of_ground(mesh):
-    """Draw a terrain; the question is its shape, by a low sun."""
+    """Ask for the shape of a terrain, by a low sun."""
     raised = mesh.warp_by_scalar("height", factor=2)
-    colors = {"cmap": "gist_earth", "clim": (1500, 4600), "show_scalar_bar": False}
+    colors = {"cmap": "gist_earth", "clim": (1500, 4600)}
 
     def best(plotter):
         low = pv.Light(position=(-1, 1, 0.7), light_type="scene light", intensity=1.1)
         low.positional = False
         plotter.remove_all_lights()
         plotter.add_light(low)
-        plotter.add_mesh(raised, smooth_shading=True, ambient=0.25, **colors)
+        plain(raised, smooth_shading=True, ambient=0.25, **colors)(plotter)
 
     def asked(plotter):
-        lit = mesh.vizlight.relief_shadow(
+        made = mesh.vizlight.relief_shadow(
             sun=(315, 35), exaggeration=2, depth=150, elevation="height", lit=True, occlusion="sky"
         )
-        lit = vizlight.tint(lit, "height", cmap="gist_earth", clim=(1500, 4600))
-        lit = lit.warp_by_scalar("height", factor=2)
-        plotter.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
+        made = vizlight.tint(made, "height", **colors).warp_by_scalar("height", factor=2)
+        plotter.add_mesh(made, scalars="rgb", rgb=True, lighting=False)
 
+    default = lit(raised, show_scalar_bar=False, **colors)
+    surface = raised.extract_surface(algorithm="geometry")
     return {
-        "ways": (
-            lambda plotter: plotter.add_mesh(raised, show_scalar_bar=False), best,
-            lambda plotter: plotter.vizlight.add_mesh(raised, **colors), asked,
-        ),
-        "view": (0, -0.35, 1), "zoom": 1.25,
-        "measured": ("shape", raised.extract_surface(algorithm="geometry"), presets.shape(), {}),
+        "ways": (plain(raised), best, default, asked), "view": (0, -0.35, 1), "zoom": 1.25,
+        "measured": ("shape", surface, presets.shape(), {}),
     }  # fmt: skip
 
 
 def of_winds(mesh):
-    """Draw a wind on the globe; the question is which way it blows."""
-    speed = np.linalg.norm(mesh["wind"], axis=1)
-    mesh["speed"] = speed
+    """Ask which way a wind on the globe blows."""
+    mesh["speed"] = np.linalg.norm(mesh["wind"], axis=1)
 
     def best(plotter):
         plotter.add_mesh(mesh, color="gainsboro", smooth_shading=True)
         arrows = mesh.glyph(orient="wind", scale=False, factor=0.16, tolerance=0.055)
         arrows.points *= 1.03
-        plotter.add_mesh(arrows, scalars="speed", cmap="plasma", ambient=0.4, show_scalar_bar=False)
+        plain(arrows, scalars="speed", cmap="plasma", ambient=0.4)(plotter)
+
+    scene, field = presets.direction(), {"tangents": "wind", "exponent": 2}
+    default = lit(mesh, tangents="wind", scalars=None)
 
     def asked(plotter):
-        plotter.vizlight.add_mesh(mesh, scene=presets.direction(), tangents="wind", exponent=2)
-        plotter.vizlight.add_key(presets.direction(), exponent=2)
+        lit(mesh, scene, True, scalars=None, **field)(plotter)
+        lines = vizlight.streamlines(mesh, vectors="wind", spacing=0.06).scale(1.005)
+        ink = Scene(material=Material(ambient=1, diffuse=0, specular=0))
+        lit(lines, ink, color="#202028", line_diameter=0.006)(plotter)
 
     return {
-        "ways": (
-            lambda plotter: plotter.add_mesh(mesh, scalars="speed", show_scalar_bar=False), best,
-            lambda plotter: plotter.vizlight.add_mesh(mesh, tangents="wind", scalars=None), asked,
-        ),
-        "view": (-0.7, -1, 0.6), "zoom": 1.4,
-        "measured": (
-            "direction", mesh, presets.direction(), {"tangents": "wind", "exponent": 2}
-        ),
+        "ways": (plain(mesh, scalars="speed"), best, default, asked),
+        "view": (-0.7, -1, 0.6), "zoom": 1.4, "measured": ("direction", mesh, scene, field),
     }  # fmt: skip
 
 
 def of_flow(mesh):
-    """Draw the air of a kitchen; the question is how steeply it runs toward the eye."""
+    """Ask how steeply the air of a kitchen runs toward the eye."""
 
     def best(plotter):
         tubes = mesh.tube(radius=0.008, n_sides=10)
-        colors = {"cmap": "turbo", "clim": (0, 2), "show_scalar_bar": False}
-        plotter.add_mesh(tubes, scalars="speed", smooth_shading=True, **colors)
+        plain(tubes, scalars="speed", smooth_shading=True, cmap="turbo", clim=(0, 2))(plotter)
         plotter.enable_ssao(radius=0.1, bias=0.01)
 
-    def asked(plotter):
-        plotter.vizlight.add_mesh(bare, scene=presets.slope(), line_diameter=0.012)
-        plotter.vizlight.add_key(presets.slope())
-
-    bare = mesh.copy()
-    bare.clear_data()
+    lines, scene = bare(mesh), presets.slope()
+    asked = lit(lines, scene, key=True, line_diameter=0.012)
     return {
-        "ways": (
-            lambda plotter: plotter.add_mesh(mesh, scalars="speed", show_scalar_bar=False), best,
-            lambda plotter: plotter.vizlight.add_mesh(bare), asked,
-        ),
+        "ways": (plain(mesh, scalars="speed"), best, lit(lines), asked),
         "view": (0.6, -1, 0.5), "background": "black", "zoom": 1.4,
-        "measured": ("slope", bare, presets.slope(), {}),
+        "measured": ("slope", lines, scene, {}),
     }  # fmt: skip
 
 
 SETS = {
-    "cortex": (cortex, of_shape), "thickness": (cortex, of_value), "cingulum": (tracts, of_slope),
+    "cortex": (cortex, of_shape), "thickness": (cortex, of_value), "cingulum": (tracts, of_heading),
     "mountains": (ground, of_ground), "winds": (winds, of_winds), "kitchen": (flow, of_flow),
 }  # fmt: skip
 

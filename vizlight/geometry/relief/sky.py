@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
 
 #: First and largest number of azimuths; columns that are crossed one by one at first and at most.
-FEWEST, MOST, NEAR, FARTHEST_NEAR = 16, 1024, 4, 64
+FEWEST, MOST, NEAR, FARTHEST_NEAR = 16, 1024, 2, 64
 #: Turn of all azimuths in their spacing: off axes and diagonals, where a grid is special.
 TURN = 0.37
 #: Rows and columns of the nodes whose error is measured, and azimuths of their reference.
@@ -38,7 +38,7 @@ SAMPLES, REFERENCE = 12, 256
 STALLED = 0.7
 #: Scan lines that one thread follows, seconds per node and azimuth that compiled code saves.
 LINES, SAVED = 128, 500e-9
-#: Steps of NumPy's horizons: to the end of the near cells by halves, from there by a factor.
+#: Steps of NumPy's horizons: near ones by halves of cells, from there growing by a factor.
 #: They end at a distance of this many diagonals.
 GROWTH, BEYOND = 1.15, 8
 #: Stands for the slope of a horizon without terrain.
@@ -232,7 +232,7 @@ class _Search:
             left, right = across[:, i], across[:, i + 1]
             height = np.where(u == 0, left, np.where(u == 1, right, left + u * (right - left)))
             np.fmax(t, (height - z) / distance, out=t)
-            step = step if distance < NEAR * cell else distance * (growth - 1)
+            step = step if distance < 2 * NEAR * cell else distance * (growth - 1)
             distance += step
         if self.openness:
             return np.pi / 2 - np.arctan(t)
