@@ -41,7 +41,7 @@ SECTIONS = {
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
-        "plot_sky": "Terrain, brain and coral: in gray, and in hues with dark valleys and folds",
+        "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in hues with dark folds",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },
     "What is the value?": {
@@ -86,7 +86,7 @@ PARTS = {
     "plot_read_value": (0.5, 0.08, 1.0, 0.98),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
-    "plot_sky": (0.69, 0.5, 1.0, 1.0),
+    "plot_sky": (0.41, 0.5, 0.59, 1.0),
     "plot_terrain_day": (0.39, 0.12, 0.61, 0.39),
 }
 
