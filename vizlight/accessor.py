@@ -58,7 +58,6 @@ def _plot() -> Callable[..., object]:
     return plot
 
 
-@pv.register_dataset_accessor("vizlight", pv.DataObject)
 class Accessor:
     """Methods that apply the filters of vizlight to one mesh."""
 
@@ -87,3 +86,7 @@ class Accessor:
     sky = _Method(lambda: vizlight.sky)
     streamlines = _Method(lambda: vizlight.streamlines)
     tint = _Method(lambda: vizlight.tint)
+
+
+# As a decorator it would hide the methods from type checkers.
+pv.register_dataset_accessor("vizlight", pv.DataObject)(Accessor)
