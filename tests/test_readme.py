@@ -86,6 +86,8 @@ def mended(names):
 def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkeypatch):
     if "open_gif(" in text_of(path):
         pytest.importorskip("imageio", reason="pip install 'vizlight[movie]'")
+    if "vizlight.sky(" in text_of(path):
+        pytest.importorskip("embreex", reason="pip install 'vizlight[rays]'")
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
     names = DRAWING["run"](path, tmp_path)
     shown = DRAWING["shown"](path)

@@ -99,28 +99,32 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         far[at[last], i, 1] = sign * normals[last, i // 2]
     shown = np.zeros(count)
     shown += np.bincount(at, facing_of(normals, points, view), count)
-    rows = _outermost(normals, at, count)
+    outermost, of = _outermost(normals, at, count)
     return Look(
-        border, far, shown, normals[rows], at[rows],
+        border, far, shown, outermost, of,
         place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64), edges,
     )  # fmt: skip
 
 
-def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
-    """Return the normals of each piece that lean most from their middle, in all directions."""
+def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indices]:
+    """Return the normals of each piece that lean most from their middle, and their pieces.
+
+    Of a piece that is no height field one of its normals and the opposite one are returned.
+    """
     middle = middles(normals, piece, np.ones(count, dtype=np.bool_))
     order = np.argsort(piece, kind="stable")
     size = np.bincount(piece, minlength=count)
     first = np.concatenate([[0], np.cumsum(size)])
-    found = [order[(size <= AROUND)[piece[order]]]]
+    few = order[(size <= AROUND)[piece[order]]]
+    found, of = [normals[few]], [piece[few]]
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
         cosine = normals[rows] @ middle[i]
-        # One that is averted from the middle tells that there is no height field.
-        found.append(rows[[cosine.argmin()]])
         if cosine.min() <= 0:
-            found.append(rows[[cosine.argmax()]])
+            one = normals[rows[:1]]
+            found += [one, -one]
+            of.append(np.full(2, i))
             continue
         _, u, v = np.linalg.svd(middle[i][np.newaxis])[2]
         directions = np.outer(u, np.cos(angles)) + np.outer(v, np.sin(angles))
@@ -131,8 +135,10 @@ def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
             top = leaning[best, np.arange(AROUND)]
             which = np.where(top > most, best + block.start, which)
             most = np.maximum(top, most)
-        found.append(rows[np.unique(which)])
-    return np.concatenate(found)
+        kept = np.unique(which)
+        found.append(normals[rows[kept]])
+        of.append(np.full(len(kept), i))
+    return np.concatenate(found), np.concatenate(of)
 
 
 def decided(looks: Sequence[Look]) -> list[Told]:
