@@ -39,6 +39,8 @@ class Look(NamedTuple):
         without one, and the component of its normal there.
     shown : ndarray, shape (count,)
         Sum of :func:`~vizlight.reading.normals.facing_of`.
+    total : ndarray, shape (count, 3)
+        Sum of the normals of each piece.
     normals, of : ndarray, shape (m, 3), and ndarray of int, shape (m,)
         The outermost normals of each piece, and their pieces.
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
@@ -50,12 +52,18 @@ class Look(NamedTuple):
     open: Bools
     far: Array
     shown: Array
+    total: Array
     normals: Array
     of: Indices
     places: NDArray[np.uint64]
     at: Indices
     along: Array
     edges: Indices
+
+
+def side_of(ghosts: Array) -> NDArray[np.int8]:
+    """Return :attr:`.orientation.Shape.side` of a part, given ``ghosts`` as for :func:`look`."""
+    return np.where(ghosts < 1, 0, -1).astype(np.int8)
 
 
 def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look | None:
@@ -72,9 +80,8 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     view : View or None
         Eye that sees it.
     """
-    side = np.where(ghosts < 1, 0, -1).astype(np.int8)
     given = given_normals(mesh, value, 3)
-    found = wound_normals(mesh, side=side)
+    found = wound_normals(mesh, side=side_of(ghosts))
     if found is None:
         return None
     shape, vectors, _, origin = found
@@ -99,11 +106,13 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         far[at[last], i, 1] = sign * normals[last, i // 2]
     shown = np.zeros(count)
     shown += np.bincount(at, facing_of(normals, points, view), count)
+    total = np.stack([np.bincount(at, axis, count) for axis in normals.T], axis=1)
     rows = _outermost(normals, at, count)
-    return Look(
-        border, far, shown, normals[rows], at[rows],
-        place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64), edges,
-    )  # fmt: skip
+    common = place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64)
+    if given is not None:
+        # A place of all parts, with no opinion of its side: what does not touch is one piece too.
+        common = np.zeros(1, dtype=np.uint64), np.zeros(1, dtype=np.intp), np.zeros((1, 3))
+    return Look(border, far, shown, total, normals[rows], at[rows], *common, edges)
 
 
 def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
@@ -117,10 +126,10 @@ def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
         cosine = normals[rows] @ middle[i]
+        along = np.column_stack([normals[rows], cosine])
+        found.append(rows[np.unique([along.argmin(axis=0), along.argmax(axis=0)])])
         # One that is averted from the middle tells that there is no height field.
-        found.append(rows[[cosine.argmin()]])
         if cosine.min() <= 0:
-            found.append(rows[[cosine.argmax()]])
             continue
         _, u, v = np.linalg.svd(middle[i][np.newaxis])[2]
         directions = np.outer(u, np.cos(angles)) + np.outer(v, np.sin(angles))
@@ -139,8 +148,7 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     """Return for each part what the whole decides of its pieces."""
     count = [len(one.open) for one in looks]
     start = np.cumsum([0, *count])
-    total = int(start[-1])
-    group, sign, torn = _joined(looks, start[:-1], total)
+    group, sign, torn = _joined(looks, start[:-1], int(start[-1]))
     whole = int(group.max(initial=-1)) + 1
     border = np.zeros(whole, dtype=np.bool_)
     border[group[np.concatenate([one.open for one in looks]) | torn]] = True
@@ -156,7 +164,9 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     sign = sign * np.where(~border & (outward < 0), -1, 1)[group]
     of = np.concatenate([one.of + first for one, first in zip(looks, start[:-1], strict=True)])
     normals = np.concatenate([one.normals for one in looks]) * sign[of][:, np.newaxis]
-    number = sides_of(normals, group[of], border)
+    sums = sign[:, np.newaxis] * np.concatenate([one.total for one in looks])
+    total = np.stack([np.bincount(group, axis, whole) for axis in sums.T], axis=1)
+    number = sides_of(normals, group[of], border, total)
     shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
     averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
     averted[number[number > 1]] = shown[number > 1] < 0
