@@ -105,6 +105,15 @@ def sheet(z):
     return pv.StructuredGrid(x, y, z + 0.3 * np.sin(3 * x) * np.cos(2 * y))
 
 
+def test_points_of_borders_count_once_where_a_sheet_is_seen_from_the_edge(tmp_path):
+    whole = sheet(0)
+    whole.save(tmp_path / "sheet.vts")
+    for steep in np.linspace(-0.03, 0.03, 7):
+        scene = Scene(view=View(direction=(1, 0.3, steep)))
+        lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.002, out=tmp_path / "lit.pvts")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
 def hollow():
     """Return cells that fill a ball but for a cavity."""
     grid = pv.ImageData(dimensions=(10, 10, 10), origin=(-4.5, -4.5, -4.5))

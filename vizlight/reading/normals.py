@@ -484,7 +484,8 @@ def wound_normals(
         side = side[origin]
         if dimension(mesh) == 3:
             # Where the part is cut from the others faces arise that join what is apart.
-            surface = finite_faces(surface, side == 0)
+            outer = finite_faces(surface, side == 0)
+            surface = outer if has_faces(outer) else surface
     shape = Shape(surface, Owners(starts, origin), side)
     vectors = _by_vtk(surface, shape, as_wound=as_wound)
     vectors[~used(surface)] = 0

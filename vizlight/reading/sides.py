@@ -104,9 +104,11 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         np.maximum.at(far[:, i, 0], at, along)
         last = np.flatnonzero(along == far[at, i, 0])
         far[at[last], i, 1] = sign * normals[last, i // 2]
-    shown = np.zeros(count)
-    shown += np.bincount(at, facing_of(normals, points, view), count)
-    total = np.stack([np.bincount(at, axis, count) for axis in normals.T], axis=1)
+    # A point that parts have in common counts once, in shares.
+    share = 1 - ghosts[of_mesh[own]].astype(np.float64)
+    shown, total = np.zeros(count), np.zeros((count, 3))
+    np.add.at(shown, at, share * facing_of(normals, points, view))
+    np.add.at(total, at, share[:, np.newaxis] * normals)
     rows = _outermost(normals, at, count)
     common = place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64)
     if given is not None:
@@ -165,7 +167,8 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     of = np.concatenate([one.of + first for one, first in zip(looks, start[:-1], strict=True)])
     normals = np.concatenate([one.normals for one in looks]) * sign[of][:, np.newaxis]
     sums = sign[:, np.newaxis] * np.concatenate([one.total for one in looks])
-    total = np.stack([np.bincount(group, axis, whole) for axis in sums.T], axis=1)
+    total = np.zeros((whole, 3))
+    np.add.at(total, group, sums)
     number = sides_of(normals, group[of], border, total)
     shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
     averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
