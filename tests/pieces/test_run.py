@@ -169,6 +169,20 @@ def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, below):
         assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
 
 
+def test_what_lies_in_one_piece_is_a_height_field_as_in_the_whole(tmp_path):
+    scene = Scene(view=View(direction=(0.9, 0.3, -0.2)))
+    ball = pv.Sphere(theta_resolution=30, phi_resolution=25).rotate_vector((1, 2, 3), 40)
+    for i, place in enumerate((0.075, 0.1)):
+        part = ball.clip((0.3, 0.5, 0.8), origin=(0, 0, place), invert=False).triangulate()
+        whole = pv.merge([surface("ball").translate((4, 0, 0)), part])
+        whole = whole.extract_surface(algorithm="geometry")
+        whole.clear_data()
+        labels = whole.cell_centers().points[:, 0] > 2
+        files = cut(whole, tmp_path / str(i), labels, "vtp")
+        lit = pieces.light(files, scene, out=tmp_path / f"lit{i}.pvtp")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
 def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path):
     for name, mesh in (("ball", surface("ball")), ("line", pv.Line(resolution=9))):
         mesh.clear_data()

@@ -41,6 +41,8 @@ class Look(NamedTuple):
         Sum of :func:`~vizlight.reading.normals.facing_of`.
     total : ndarray, shape (count, 3)
         Sum of the normals of each piece.
+    field : ndarray of bool, shape (count,)
+        Pieces that are height fields, as far as the part knows.
     normals, of : ndarray, shape (m, 3), and ndarray of int, shape (m,)
         The outermost normals of each piece, and their pieces.
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
@@ -53,6 +55,7 @@ class Look(NamedTuple):
     far: Array
     shown: Array
     total: Array
+    field: Bools
     normals: Array
     of: Indices
     places: NDArray[np.uint64]
@@ -109,12 +112,13 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     shown, total = np.zeros(count), np.zeros((count, 3))
     np.add.at(shown, at, share * facing_of(normals, points, view))
     np.add.at(total, at, share[:, np.newaxis] * normals)
+    field = sides_of(normals, at, np.ones(count, dtype=np.bool_)) > 1
     rows = _outermost(normals, at, count)
     common = place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64)
     if given is not None:
         # A place of all parts, with no opinion of its side: what does not touch is one piece too.
         common = np.zeros(1, dtype=np.uint64), np.zeros(1, dtype=np.intp), np.zeros((1, 3))
-    return Look(border, far, shown, total, normals[rows], at[rows], *common, edges)
+    return Look(border, far, shown, total, field, normals[rows], at[rows], *common, edges)
 
 
 def _outermost(normals: Array, piece: Indices, count: int) -> Indices:
@@ -169,7 +173,13 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     sums = sign[:, np.newaxis] * np.concatenate([one.total for one in looks])
     total = np.zeros((whole, 3))
     np.add.at(total, group, sums)
-    number = sides_of(normals, group[of], border, total)
+    # What lies in one part is known there, of others no part may know better.
+    found = sides_of(normals, group[of], border, total) > 1
+    field = (np.bincount(group, minlength=whole) == 1) | found
+    np.logical_and.at(field, group, np.concatenate([one.field for one in looks]))
+    field &= border
+    number: Indices = border.astype(np.intp)
+    number[field] = 2 + np.arange(np.count_nonzero(field))
     shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
     averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
     averted[number[number > 1]] = shown[number > 1] < 0
