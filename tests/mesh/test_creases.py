@@ -95,3 +95,12 @@ def test_a_surface_without_creases_is_surveyed_once(monkeypatch):
     lit = vizlight.illuminate(ball, scene, feature_angle="auto")
     assert len(made) == 1
     np.testing.assert_array_equal(lit["luminance"], vizlight.illuminate(ball, scene)["luminance"])
+
+
+def test_edges_at_the_angle_itself_are_split_alike_however_a_cylinder_is_turned():
+    for turn in range(0, 90, 9):
+        cylinder = pv.Cylinder(resolution=12).triangulate().clean().rotate_vector((1, 2, 3), turn)
+        cylinder = pv.PolyData.from_regular_faces(cylinder.points, cylinder.regular_faces)
+        split = vizlight.illuminate(cylinder, vizlight.Scene(), feature_angle=30)
+        # The rim is split between the side and the caps, the side nowhere.
+        assert split.n_points == 2 * cylinder.n_points

@@ -105,6 +105,22 @@ def sheet(z):
     return pv.StructuredGrid(x, y, z + 0.3 * np.sin(3 * x) * np.cos(2 * y))
 
 
+def test_points_of_borders_count_once_where_a_sheet_is_seen_from_the_edge(tmp_path):
+    whole = sheet(0)
+    whole.save(tmp_path / "sheet.vts")
+    for steep in np.linspace(-0.03, 0.03, 7):
+        scene = Scene(view=View(direction=(1, 0.3, steep)))
+        lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.002, out=tmp_path / "lit.pvts")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
+def hollow():
+    """Return cells that fill a ball but for a cavity."""
+    grid = pv.ImageData(dimensions=(10, 10, 10), origin=(-4.5, -4.5, -4.5))
+    away = np.linalg.norm(grid.cell_centers().points, axis=1)
+    return grid.extract_cells(np.flatnonzero((away > 1.8) & (away < 4.6)))
+
+
 def surface(kind):
     """Return a surface of one part or several, open and closed, wound outward or not."""
     ball = pv.Sphere(theta_resolution=24, phi_resolution=24)
@@ -118,6 +134,7 @@ def surface(kind):
             [ball, ball.translate((3, 0, 0)).flip_faces(), height, height.translate((3, 0, 0))]
         ),
         "solid": lambda: pv.ImageData(dimensions=(7, 6, 5)).cast_to_unstructured_grid(),
+        "hollow": hollow,
     }[kind]()
     made = made if isinstance(made, pv.UnstructuredGrid) else made.extract_surface(
         algorithm="geometry"
@@ -127,13 +144,15 @@ def surface(kind):
 
 
 @pytest.mark.filterwarnings("ignore:.* of the edges are sharper")  # of the box, as a whole too
-@pytest.mark.parametrize("kind", ["ball", "sheet", "bowl", "nearly closed", "several", "solid"])
+@pytest.mark.parametrize(
+    "kind", ["ball", "sheet", "bowl", "nearly closed", "several", "solid", "hollow"]
+)
 @pytest.mark.parametrize("view", [SCENE.view, View(direction=(0.2, 0.1, -1)), None], ids=str)
 def test_a_surface_in_pieces_has_the_sides_of_the_whole(tmp_path, kind, view):
     whole = surface(kind)
     scene = Scene(lights=SCENE.lights, view=view)
     suffix = "vtp" if isinstance(whole, pv.PolyData) else "vtu"
-    label = "sectors" if kind in ("sheet", "several") else "random cells"
+    label = {"sheet": "sectors", "several": "sectors", "hollow": "blocks"}.get(kind, "random cells")
     files = cut(whole, tmp_path, cuts(whole, 5)[label], suffix)
     lit = pieces.light(files, scene, out=tmp_path / f"lit.p{suffix}")
     assert_as_whole(lit, vizlight.illuminate(whole, scene))
@@ -148,6 +167,74 @@ def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, below):
         files = cut(whole, tmp_path / str(i), cuts(whole, 5)["sectors"], "vtp")
         lit = pieces.light(files, scene, normals="N", out=tmp_path / f"lit{i}.pvtp")
         assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
+
+
+def test_what_lies_in_one_piece_is_a_height_field_as_in_the_whole(tmp_path):
+    scene = Scene(view=View(direction=(0.9, 0.3, -0.2)))
+    ball = pv.Sphere(theta_resolution=30, phi_resolution=25).rotate_vector((1, 2, 3), 40)
+    for i, place in enumerate((0.075, 0.1)):
+        part = ball.clip((0.3, 0.5, 0.8), origin=(0, 0, place), invert=False).triangulate()
+        whole = pv.merge([surface("ball").translate((4, 0, 0)), part])
+        whole = whole.extract_surface(algorithm="geometry")
+        whole.clear_data()
+        labels = whole.cell_centers().points[:, 0] > 2
+        files = cut(whole, tmp_path / str(i), labels, "vtp")
+        lit = pieces.light(files, scene, out=tmp_path / f"lit{i}.pvtp")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
+def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path):
+    for name, mesh in (("ball", surface("ball")), ("line", pv.Line(resolution=9))):
+        mesh.clear_data()
+        mesh["V"] = np.tile([1.0, 0, 0], (mesh.n_points, 1))
+        mesh.save(tmp_path / f"{name}.vtp")
+    with pytest.raises(pieces.PieceError, match=r"line\.vtp: sources: expected faces as in .*ball"):
+        pieces.light(str(tmp_path / "*.vtp"), SCENE, out=tmp_path / "lit.pvtp")
+    lit = pieces.light(str(tmp_path / "*.vtp"), SCENE, tangents="V", out=tmp_path / "lit.pvtp")
+    assert len(lit.files) == 2
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_given_normals_of_pieces_that_do_not_touch_have_one_side(tmp_path, sign):
+    scene = Scene(view=View(direction=(0.3, 0.2, 1)))
+    whole = pv.merge([surface("sheet"), surface("ball").translate((6, 0, 0))])
+    normals = whole.compute_normals(cell_normals=False, split_vertices=False)
+    whole["N"] = sign * np.asarray(normals.point_data["Normals"])
+    labels = whole.cell_centers().points[:, 0] > 3
+    files = cut(whole, tmp_path, labels, "vtp")
+    lit = pieces.light(files, scene, normals="N", out=tmp_path / "lit.pvtp")
+    assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
+
+
+@pytest.mark.parametrize("axis", ["z", "y"])
+def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, axis):
+    scene = Scene(view=View(direction=(0.9, 0.3, -0.2)))
+    for i, place in enumerate((-0.04, 0.02, 0.06, 0.1)):
+        ball = pv.Sphere(theta_resolution=30, phi_resolution=25)
+        part = ball.clip(axis, origin=(place,) * 3, invert=False).triangulate()
+        whole = part.extract_surface(algorithm="geometry")
+        whole.clear_data()
+        files = cut(whole, tmp_path / str(i), np.arange(whole.n_cells) % 7 == 0, "vtp")
+        lit = pieces.light(files, scene, out=tmp_path / f"lit{i}.pvtp")
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+
+
+def test_points_at_no_place_are_no_neighbours_of_any(tmp_path):
+    whole = surface("ball")
+    whole.points[[3, 40, 200]] = np.nan
+    files = cut(whole, tmp_path, np.arange(whole.n_cells) % 4, "vtp")
+    with pytest.warns(UserWarning, match="could not be lit"):
+        lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp")
+    with pytest.warns(UserWarning, match="could not be lit"):
+        lit_whole = vizlight.illuminate(whole, SCENE)
+    known = np.isfinite(whole.points).all(axis=1)
+    where = {tuple(p): i for i, p in enumerate(whole.points.tolist()) if known[i]}
+    for path in lit.files:
+        part = pv.read(path)
+        rows = np.flatnonzero(np.isfinite(part.points).all(axis=1))
+        at = [where[tuple(p)] for p in part.points[rows].tolist()]
+        light = part["luminance"][rows]
+        np.testing.assert_allclose(light, lit_whole["luminance"][at], atol=1e-6)
 
 
 @pytest.mark.parametrize("below", [False, True])

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from vizlight._types import Indices
 
 _NUMBERS = "vizlight numbers"
+#: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are
+#: those of 30 degrees, are split together or not at all.
+ROUNDED = 0.01
 
 
 def split(
@@ -75,7 +78,7 @@ def _by_vtk(surface: vtkPolyData, angle: float) -> tuple[Indices, Indices]:
     numbers = as_vtk(np.arange(surface.GetNumberOfPoints()), _NUMBERS)
     surface.GetPointData().AddArray(numbers)
     normals = vtkPolyDataNormals()
-    normals.SetFeatureAngle(angle)
+    normals.SetFeatureAngle(angle + ROUNDED)
     normals.NonManifoldTraversalOff()
     normals.SetInputData(surface)
     normals.Update()

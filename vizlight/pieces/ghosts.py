@@ -93,7 +93,8 @@ class _Places:
 
     def __init__(self, points: Array) -> None:
         self._points = points
-        self._low, self._high = points.min(axis=0), points.max(axis=0)
+        # Places that are not finite are found by none, and hide no others.
+        self._low, self._high = np.fmin.reduce(points, axis=0), np.fmax.reduce(points, axis=0)
         self._keys, self._first = np.unique(place_numbers(points), return_index=True)
 
     def of(self, others: Array) -> Indices:
@@ -137,7 +138,8 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     found = pv.wrap(together.GetOutput())
     places = np.asarray(found.points)
     index = np.arange(found.n_points)
-    index[mesh.n_points :] = _Places(places).of(places[mesh.n_points :])
+    known = _Places(places).of(places[mesh.n_points :])
+    index[mesh.n_points :] = np.where(known < 0, index[mesh.n_points :], known)
     for cells in _cell_arrays(found):
         ids = pv.convert_array(cells.GetConnectivityArray())
         if len(ids):

@@ -115,7 +115,9 @@ def light(
     ghost : int, default: 1
         Number of layers of cells of other pieces that are read around a piece for normals and
         gradients on its border. Files and partitions must have the same points, bit for bit, at
-        common borders. 0 is enough for tangents and for normals that are named.
+        common borders; several points at one place of a border are taken for one. Slivers on a
+        border, as on isosurfaces through nodes of a grid, need 2. 0 is enough for tangents and for
+        normals that are named.
     out : path, default: "lit.pvtp"
         Path of the index: .pvtp for isosurfaces, lines and surfaces, .pvtu for cells of any other
         kind, .pvti, .pvtr and .pvts for grids. The files of the pieces are in a folder beside it

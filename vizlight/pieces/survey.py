@@ -134,7 +134,20 @@ def _surveyed(parts: list[Piece], job: Job, work: Work) -> list[tuple[Piece, Sur
     first_piece, first = pairs[0]
     for piece, one in pairs[1:]:
         check_alike(piece, one.arrays, first_piece, first.arrays)
+        if one.lines != first.lines and _by_faces(job):
+            # A whole of both is lit by its faces, and a piece of lines alone by their tangents.
+            expected = f"{'lines' if first.lines else 'faces'} as in {first_piece.name}"
+            got, remedy = "lines alone" if one.lines else "faces", "light lines by themselves"
+            text = _check.message("sources", expected, got, remedy)
+            raise PieceError(f"piece {piece.name}: {text}")
     return pairs
+
+
+def _by_faces(job: Job) -> bool:
+    """Return whether light depends on faces where a mesh has some."""
+    options = job.options
+    tangents = options.get("tangents") is not None and options.get("conditioned") is not True
+    return job.contour is None and job.filter == "illuminate" and not tangents
 
 
 def _middle(found: Sequence[Survey], job: Job) -> float:

@@ -19,6 +19,7 @@ from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
 from vizlight.reading import hull, sides
 from vizlight.reading.parts import uses_normals
+from vizlight.reading.polylines import has_lines_only
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
@@ -75,12 +76,15 @@ class Survey:
         Type and number of components of each array, by "point NAME" and "cell NAME".
     values : tuple of 2 float
         Range of the contoured array.
+    lines : bool
+        Whether it has lines and no faces.
     """
 
     points: int
     bounds: tuple[float, ...]
     arrays: dict[str, str]
     values: tuple[float, float] = (np.inf, -np.inf)
+    lines: bool = False
 
 
 @dataclass
@@ -124,7 +128,7 @@ def survey(piece: Piece, contour: str | None) -> Survey:
         rows = np.asarray(mesh.point_data[contour], dtype=np.float64)
         rows = rows[np.isfinite(rows)]
         values = (float(rows.min(initial=np.inf)), float(rows.max(initial=-np.inf)))
-    return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values)
+    return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values, has_lines_only(mesh))
 
 
 def outermost(piece: Piece, job: Job, *view: Any) -> Array:
@@ -171,11 +175,15 @@ def look(piece: Piece, job: Job) -> sides.Look | None:
         return None
     if hasattr(mesh, "GetExtent") and 1 not in mesh.dimensions:
         return None  # a grid that fills space is closed, and so is each slab of it
+    return _tried(piece, partial(sides.look, mesh, _others(mesh), options.normals, job.scene.view))
+
+
+def _others(mesh: pv.DataSet) -> Array:
+    """Return the share of the cells around each point that belong to other pieces."""
     around = pv.wrap(mesh.NewInstance())
     around.CopyStructure(mesh)
     around.cell_data[GHOST] = np.asarray(mesh.cell_data[GHOST], dtype=np.float32)
-    ghosts = np.asarray(around.cell_data_to_point_data().point_data[GHOST])
-    return _tried(piece, partial(sides.look, mesh, ghosts, options.normals, job.scene.view))
+    return np.asarray(around.cell_data_to_point_data().point_data[GHOST])
 
 
 def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Done:
@@ -225,6 +233,8 @@ def _lit(mesh: pv.DataSet, piece: Piece, job: Job, told: Told | None) -> tuple[A
         return mesh, None
     lit: Any
     if job.filter == "illuminate":
+        if told is not None and isinstance(mesh, pv.UnstructuredGrid) and hull.dimension(mesh) == 3:
+            told = told._replace(side=sides.side_of(_others(mesh)))
         lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=told)
     else:
         lit = streamlines(mesh, job.scene, **job.options)

@@ -123,21 +123,26 @@ def faces_only(mesh: vtkPolyData) -> vtkPolyData:
     return bare
 
 
-def finite_faces(surface: vtkPolyData) -> vtkPolyData:
+def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
     """Return a surface without its polygons that have a corner which is not finite.
 
     VTK would take such a corner, as of a hole in a terrain, into the normals of its neighbours.
+    With ``own``, a mask of points, only the polygons that have one of them are left.
     """
     known = np.isfinite(places(surface)).all(axis=1)
     polys = surface.GetPolys()
-    if known.all() or not polys.GetNumberOfCells():
+    if (known.all() and own is None) or not polys.GetNumberOfCells():
         return surface
     ids, offsets = connectivity(polys)
-    lost = np.concatenate([[0], np.cumsum(~known[ids])])[offsets]
+
+    def some(points: Bools) -> Bools:
+        return np.diff(np.concatenate([[0], np.cumsum(points[ids])])[offsets]) > 0
+
+    kept = ~some(~known) if own is None else ~some(~known) & some(own)
     found = vtkPolyData()
     found.SetPoints(surface.GetPoints())
     found.SetStrips(surface.GetStrips())
-    found.SetPolys(_cells(polys, np.diff(lost) == 0))
+    found.SetPolys(_cells(polys, kept))
     return found
 
 

@@ -182,11 +182,14 @@ class Told(NamedTuple):
         See :attr:`Sided.open`.
     averted : ndarray of bool
         See :attr:`Sided.averted`.
+    side : ndarray of int8, shape (n_points,), or None
+        See :attr:`Shape.side`; of the points of a mesh of cells that fill space.
     """
 
     sign: Array
     number: Indices
     averted: Bools
+    side: NDArray[np.int8] | None = None
 
 
 def facing_of(normals: Array, points: NDArray[np.generic], view: View | None) -> Array:
@@ -406,7 +409,8 @@ def computed_normals(
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
     if told is None and grids.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
-    found = wound_normals(mesh, as_wound=as_wound, starts=starts)
+    part = None if told is None else told.side
+    found = wound_normals(mesh, as_wound=as_wound, starts=starts, side=part)
     if found is None and starts is None and is_scan(mesh):
         return _of_cloud(mesh, view)
     if found is None:
@@ -478,6 +482,10 @@ def wound_normals(
         return None
     if side is not None and origin is not None:
         side = side[origin]
+        if dimension(mesh) == 3:
+            # Where the part is cut from the others faces arise that join what is apart.
+            outer = finite_faces(surface, side == 0)
+            surface = outer if has_faces(outer) else surface
     shape = Shape(surface, Owners(starts, origin), side)
     vectors = _by_vtk(surface, shape, as_wound=as_wound)
     vectors[~used(surface)] = 0

@@ -328,7 +328,9 @@ class PartShape(Shape):
         self.frame = middle[:, np.newaxis], np.array([scale])
 
 
-def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
+def sides_of(
+    vectors: Array, piece: Indices | None, border: Bools, total: Array | None = None
+) -> Indices:
     """Return which pieces have a border, and which of these are height fields.
 
     Parameters
@@ -339,6 +341,8 @@ def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
         Piece of each point; None for a single one.
     border : ndarray of bool, shape (count,)
         Pieces that may be seen from either side.
+    total : ndarray, shape (count, 3), optional
+        Sum of all normals of each piece, where these are some.
 
     Returns
     -------
@@ -350,7 +354,7 @@ def sides_of(vectors: Array, piece: Indices | None, border: Bools) -> Indices:
     side: Indices = border.astype(np.intp)
     if border.any():
         low, high = np.full((2, 4, len(border)), np.inf)
-        middle = middles(vectors, piece, border)
+        middle = middles(vectors, piece, border, total)
         for block in _pool.blocks(len(vectors), BLOCK):
             own, of = _normals_of(vectors, piece, block, border)
             for i, along in enumerate((np.einsum("ij,ij->i", own, middle[of]), *own.T)):
@@ -371,13 +375,17 @@ def _normals_of(
     return own[has].astype(np.float64), of[has]
 
 
-def middles(vectors: Array, piece: Indices | None, border: Bools) -> Array:
+def middles(
+    vectors: Array, piece: Indices | None, border: Bools, total: Array | None = None
+) -> Array:
     """Return for each piece a direction, within a right angle of all its normals if one is found.
 
-    It begins at their mean; some of the vectors that are furthest from it draw it to them.
+    It begins at their mean, along ``total`` where that is known; some of the vectors that are
+    furthest from it draw it to them.
     """
-    total = np.zeros((len(border), 3))
-    for block in _pool.blocks(len(vectors), BLOCK):
+    known = total is not None
+    total = np.zeros((len(border), 3)) if total is None else total
+    for block in () if known else _pool.blocks(len(vectors), BLOCK):
         own, of = _normals_of(vectors, piece, block, border)
         total += np.stack([np.bincount(of, axis, len(border)) for axis in own.T], axis=1)
     middle = kernels.unit_rows(total)

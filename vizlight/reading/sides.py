@@ -39,6 +39,10 @@ class Look(NamedTuple):
         without one, and the component of its normal there.
     shown : ndarray, shape (count,)
         Sum of :func:`~vizlight.reading.normals.facing_of`.
+    total : ndarray, shape (count, 3)
+        Sum of the normals of each piece.
+    field : ndarray of bool, shape (count,)
+        Pieces that are height fields, as far as the part knows.
     normals, of : ndarray, shape (m, 3), and ndarray of int, shape (m,)
         The outermost normals of each piece, and their pieces.
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
@@ -50,12 +54,19 @@ class Look(NamedTuple):
     open: Bools
     far: Array
     shown: Array
+    total: Array
+    field: Bools
     normals: Array
     of: Indices
     places: NDArray[np.uint64]
     at: Indices
     along: Array
     edges: Indices
+
+
+def side_of(ghosts: Array) -> NDArray[np.int8]:
+    """Return :attr:`.orientation.Shape.side` of a part, given ``ghosts`` as for :func:`look`."""
+    return np.where(ghosts < 1, 0, -1).astype(np.int8)
 
 
 def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look | None:
@@ -72,9 +83,8 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     view : View or None
         Eye that sees it.
     """
-    side = np.where(ghosts < 1, 0, -1).astype(np.int8)
     given = given_normals(mesh, value, 3)
-    found = wound_normals(mesh, side=side)
+    found = wound_normals(mesh, side=side_of(ghosts))
     if found is None:
         return None
     shape, vectors, _, origin = found
@@ -97,13 +107,18 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         np.maximum.at(far[:, i, 0], at, along)
         last = np.flatnonzero(along == far[at, i, 0])
         far[at[last], i, 1] = sign * normals[last, i // 2]
-    shown = np.zeros(count)
-    shown += np.bincount(at, facing_of(normals, points, view), count)
+    # A point that parts have in common counts once, in shares.
+    share = 1 - ghosts[of_mesh[own]].astype(np.float64)
+    shown, total = np.zeros(count), np.zeros((count, 3))
+    np.add.at(shown, at, share * facing_of(normals, points, view))
+    np.add.at(total, at, share[:, np.newaxis] * normals)
+    field = sides_of(normals, at, np.ones(count, dtype=np.bool_)) > 1
     outermost, of = _outermost(normals, at, count)
-    return Look(
-        border, far, shown, outermost, of,
-        place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64), edges,
-    )  # fmt: skip
+    common = place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64)
+    if given is not None:
+        # A place of all parts, with no opinion of its side: what does not touch is one piece too.
+        common = np.zeros(1, dtype=np.uint64), np.zeros(1, dtype=np.intp), np.zeros((1, 3))
+    return Look(border, far, shown, total, field, outermost, of, *common, edges)
 
 
 def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indices]:
@@ -121,6 +136,7 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
         cosine = normals[rows] @ middle[i]
+        along = np.column_stack([normals[rows], cosine])
         if cosine.min() <= 0:
             one = normals[rows[:1]]
             found += [one, -one]
@@ -135,7 +151,7 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
             top = leaning[best, np.arange(AROUND)]
             which = np.where(top > most, best + block.start, which)
             most = np.maximum(top, most)
-        kept = np.unique(which)
+        kept = np.unique([*which, *along.argmin(axis=0), *along.argmax(axis=0)])
         found.append(normals[rows[kept]])
         of.append(np.full(len(kept), i))
     return np.concatenate(found), np.concatenate(of)
@@ -145,8 +161,7 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     """Return for each part what the whole decides of its pieces."""
     count = [len(one.open) for one in looks]
     start = np.cumsum([0, *count])
-    total = int(start[-1])
-    group, sign, torn = _joined(looks, start[:-1], total)
+    group, sign, torn = _joined(looks, start[:-1], int(start[-1]))
     whole = int(group.max(initial=-1)) + 1
     border = np.zeros(whole, dtype=np.bool_)
     border[group[np.concatenate([one.open for one in looks]) | torn]] = True
@@ -162,7 +177,16 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     sign = sign * np.where(~border & (outward < 0), -1, 1)[group]
     of = np.concatenate([one.of + first for one, first in zip(looks, start[:-1], strict=True)])
     normals = np.concatenate([one.normals for one in looks]) * sign[of][:, np.newaxis]
-    number = sides_of(normals, group[of], border)
+    sums = sign[:, np.newaxis] * np.concatenate([one.total for one in looks])
+    total = np.zeros((whole, 3))
+    np.add.at(total, group, sums)
+    # What lies in one part is known there, of others no part may know better.
+    found = sides_of(normals, group[of], border, total) > 1
+    field = (np.bincount(group, minlength=whole) == 1) | found
+    np.logical_and.at(field, group, np.concatenate([one.field for one in looks]))
+    field &= border
+    number: Indices = border.astype(np.intp)
+    number[field] = 2 + np.arange(np.count_nonzero(field))
     shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
     averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
     averted[number[number > 1]] = shown[number > 1] < 0
