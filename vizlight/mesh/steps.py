@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
+from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
 
@@ -140,24 +141,26 @@ def reader_of(path: Path) -> Any:
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
-        return _Decomposed(path)
+        # PyVista's reader looks for the whole first, and reports that it is missing.
+        decomposed = vtkPOpenFOAMReader()
+        decomposed.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
+        return _OfVtk(decomposed, path)
     try:
         reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
     except ValueError:
         return None
+    except TypeError:
+        # PyVista's reader of XDMF takes a file without times, as FEniCS writes a mesh, for an error.
+        return _OfVtk(vtkXdmfReader(), path)
     return reader
 
 
-class _Decomposed:
-    """Reader of an OpenFOAM case whose mesh and times are by processors.
+class _OfVtk:
+    """Reader of VTK that has not PyVista's wrapper."""
 
-    PyVista's reader looks for the whole first, and reports that it is missing.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.reader = vtkPOpenFOAMReader()
+    def __init__(self, reader: Any, path: Path) -> None:
+        self.reader = reader
         self.reader.SetFileName(str(path))
-        self.reader.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
 
     def read(self) -> Any:
         """Return the blocks of the step that was asked for."""
