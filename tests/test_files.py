@@ -65,6 +65,13 @@ def test_the_reason_of_a_damaged_file_is_told(tmp_path):
         files.read(path)
 
 
+@pytest.mark.parametrize("suffix", [".las", ".dae", ".step"])
+def test_files_that_no_reader_takes_tell_what_to_convert_them_to(suffix, tmp_path):
+    (tmp_path / f"a{suffix}").write_text("x")
+    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; convert it to"):
+        files.read(tmp_path / f"a{suffix}")
+
+
 def test_a_full_disk_is_seen_before_writing(tmp_path, monkeypatch):
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=100))
@@ -659,8 +666,8 @@ def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatc
     parts = pv.PartitionedDataSet([volume().threshold([0, 3]), volume().threshold([3, 9])])
     parts.field_data["TimeValue"] = [7.0]
     monkeypatch.setattr(files.foreign_files, "read", lambda path, time: parts)
-    (tmp_path / "a.vtkhdf").touch()
-    mesh = vizlight.read(tmp_path / "a.vtkhdf")
+    (tmp_path / "a.vtpd").touch()
+    mesh = vizlight.read(tmp_path / "a.vtpd")
     assert mesh.n_cells == sum(part.n_cells for part in parts)
     assert list(mesh.field_data["TimeValue"]) == [7]
 
@@ -668,11 +675,11 @@ def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatc
 def test_xdmf_without_times_is_read(tmp_path):
     path = tmp_path / "mesh.xdmf"
     path.write_text(
-        '''<Xdmf Version="3.0"><Domain><Grid Name="Grid">
+        """<Xdmf Version="3.0"><Domain><Grid Name="Grid">
         <Geometry GeometryType="XYZ"><DataItem DataType="Float" Dimensions="4 3" Format="XML">
         0 0 0 1 0 0 0 1 0 0 0 1</DataItem></Geometry>
         <Topology TopologyType="Tetrahedron" NumberOfElements="1">
         <DataItem DataType="Int" Dimensions="1 4" Format="XML">0 1 2 3</DataItem></Topology>
-        </Grid></Domain></Xdmf>'''
+        </Grid></Domain></Xdmf>"""
     )
     assert vizlight.read(path).volume == pytest.approx(1 / 6)

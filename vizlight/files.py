@@ -285,7 +285,15 @@ def _first_line(error: Exception | str) -> str:
 def _by_vtk(path: Path) -> pv.DataObject:
     """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
     reader = steps.reader_of(path)
-    found: pv.DataObject = pv.read(path) if reader is None else reader.read()
+    try:
+        found: pv.DataObject = pv.read(path) if reader is None else reader.read()
+    except OSError as error:
+        if reader is not None:
+            raise
+        raise FileError(
+            f"no reader takes '{path.suffix}' files; convert it to .ply, .obj, .stl, .vtu or .glb, "
+            "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
+        ) from error
     return found
 
 

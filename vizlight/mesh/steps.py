@@ -150,7 +150,7 @@ def reader_of(path: Path) -> Any:
     except ValueError:
         return None
     except TypeError:
-        # PyVista's reader of XDMF takes a file without times, as FEniCS writes a mesh, for an error.
+        # PyVista's reader of XDMF fails without times, as in a mesh that FEniCS writes.
         return _OfVtk(vtkXdmfReader(), path)
     return reader
 
