@@ -166,7 +166,11 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
     flat["height"] = np.arange(20.0)
     flat["number"] = np.arange(20)
     flat["constant"] = np.ones(20)
-    flat.point_data.update({name: flat[name] for name in ("constant", "number", "height")})
+    flat["NodeId"] = np.arange(20.0)
+    order = ("NodeId", "constant", "number", "height")
+    kept = {name: flat[name].copy() for name in order}
+    flat.clear_data()
+    flat.point_data.update(kept)
     flat.save("flat.vti")
     colors = pv.ImageData(dimensions=(4, 5, 1))
     colors["rgb"] = np.full((20, 3), 200, np.uint8)

@@ -184,18 +184,19 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
     from vizlight.mesh.blocks import all_blocks
 
     parts = [block for block in all_blocks(mesh) if block.n_cells]
-    arrays = parts[0].point_data if parts else {}
+    arrays = dict(parts[0].point_data.items()) if parts else {}
     if target.overlay and scalars is None:
         return f"--scalars {shlex.quote(list(arrays)[-1])} shows the values over the surface"
     flat = all(
         block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
     )
-    # Numbers of nodes are integers, and an array of one value has no isosurface and no relief.
+    # Integers may number the nodes, as names with "Id" do; one value has no isosurface.
     whole = {
         name: values.dtype.kind != "f"
         for name, values in arrays.items()
         if values.dtype.kind in "iuf"
         and values.ndim == 1
+        and not name.endswith(("Id", "Ids"))
         and (kept := values[np.isfinite(values)]).size
         and kept.min() < kept.max()
     }

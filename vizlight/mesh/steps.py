@@ -211,10 +211,17 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     path : pathlib.Path
     time : float, int or str, optional
         As for :func:`chosen`.
+
+    Raises
+    ------
+    NoStepError
+        If there is no such step, or a time is given for a file without steps.
     """
     reader = reader_of(path)
     times = times_of(reader)
     if reader is None or not times:
+        if time not in (None, "first", "last"):
+            raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
         return None
     index = chosen(times, time)
     found: pv.DataObject = marked(at(reader, times[index]), times, index)
