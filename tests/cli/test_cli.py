@@ -204,6 +204,17 @@ def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, capfd):
     assert "note" not in run(capfd, "light", "ball.ply", "--scalars", "lh.curv", *shows)[1]
 
 
+@pytest.mark.opengl
+def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, capfd):
+    pictures = []
+    for up, view in (("y", "x"), ("0,1,0", "1,0,0"), ("z", "x")):
+        options = ("--contour", "r", "--up", up, "--view", view, "-o", "a.png")
+        assert run(capfd, "light", volume, *options)[0] == 0
+        pictures.append(pv.read("a.png")["PNGImage"])
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert np.any(pictures[0] != pictures[2])
+
+
 def test_colours_of_a_file_are_no_light(tmp_path, capfd):
     ball = pv.Sphere()
     ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
