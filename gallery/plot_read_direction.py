@@ -5,8 +5,8 @@ Which way does the field run?
 The winds of July in six ways, with the median error in degrees at which a place is read; 45 is
 chance. Arrows, LIC and lines are read by a machine that follows strokes, the lights by their keys.
 Evenly spaced lines read as well as the light of ``presets.direction``, in which every place reads
-on its own, also where no line runs; white light has no key to the direction. Both together make
-:doc:`the winds of July </examples/plot_winds>`.
+on its own, also where no line runs; white light has no key to the direction. Both together are in
+the example *The winds of July*.
 """
 
 import matplotlib.pyplot as plt
@@ -53,13 +53,14 @@ plt.show()
 # tensor), in a window of the width that reads best, from 4 to 64 pixels. Places at the rim of the
 # globe are not asked for. The lights are read by the colours of their keys.
 
-across = np.asarray(wind["wind"]) @ View.from_camera(plotter.camera).axes()[:2].T
+camera = plotter.camera
+across = np.asarray(wind["wind"]) @ View.from_camera(camera).axes()[:2].T
 across /= np.linalg.norm(across, axis=1, keepdims=True)
 wind["way"] = np.insert(0.5 + 0.5 * across, 2, 0.0, axis=1)
 truth = pv.Plotter(off_screen=True, window_size=(640, 640))
 truth.set_background("blue")
 truth.add_mesh(wind, scalars="way", rgb=True, lighting=False)
-truth.camera = plotter.camera
+truth.camera = camera
 right, up, outside = np.moveaxis(truth.screenshot(return_img=True) / 127.5, 2, 0) - 1
 inside = binary_erosion(outside < 0, iterations=25) & (abs(np.hypot(right, up) - 1) < 0.1)
 for title in list(ways)[:4]:
@@ -71,7 +72,7 @@ for title in list(ways)[:4]:
         off = (read - np.arctan2(-up, right) + np.pi / 2) % np.pi - np.pi / 2
         medians.append(np.degrees(np.median(abs(off[inside]))))
     print(f"{title.partition(':')[0]}: {min(medians):.1f} degrees")
+pv.close_all()  # the view of the truth is no picture
 for name, light in (("white light", Scene()), ("light of direction", hue)):
-    read = legibility(wind, light, view=plotter.camera, **field).direction
+    read = legibility(wind, light, view=camera, **field).direction
     print(f"{name}: {read.legend_median:.1f} degrees")
-pv.close_all()  # these views are no pictures

@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 import vizlight
-from vizlight import Material, Scene, presets, render
+from vizlight import Block, Frustum, Material, Scene, presets, render
 
 fault = vizlight.load_example("jacksboro_fault.vti").extract_subset((60, 260, 60, 230, 0, 0))
 fault = fault.warp_by_scalar("elevation", factor=3).scale(0.001)
@@ -26,29 +26,43 @@ ball = 7 * (1.15 - np.linalg.norm(block.points, axis=1))
 block["solid"] = -np.logaddexp(-3 * ball, -3 * (1.5 - 3 * np.abs(wave))) / 3
 coral = block.contour([0.0], scalars="solid").connectivity("largest")
 
+# A machined part: a plate with a boss and holes.
+part = Block(size=(6, 4, 1)) | Frustum((1.4, 0, 1), radii=(1, 0.8), height=2)
+for hole in ((-2.1, -1.1, 0), (-2.1, 1.1, 0), (-0.7, -1.1, 0), (-0.7, 1.1, 0)):
+    part -= Frustum(hole, radii=(0.45, 0.45), height=2)
+
 scene = presets.shape().replace(material=Material(ambient=0.4, diffuse=0.6, specular=0))
 shown = {
     "terrain": (fault.extract_surface(algorithm="dataset_surface"), (0.2, -1, 0.8)),
     "cortex": (cortex, (-1, 0.25, 0.3)),
     "coral": (coral.compute_normals(auto_orient_normals=True), (1, 0.6, 0.5)),
+    "part": (vizlight.to_polydata(part), (-0.4, -1, 1)),
+    "fibres": (vizlight.load_example("fibre_bundle.vtp"), (0.3, -1, 0.2)),
 }
-plotter = pv.Plotter(off_screen=True, shape=(2, 3), window_size=(1650, 1000), border=False)
+plotter = pv.Plotter(off_screen=True, shape=(2, 5), window_size=(2500, 900), border=False)
 plotter.set_background("#14181d", all_renderers=True)
-for column, (name, (surface, toward)) in enumerate(shown.items()):
-    camera = render.camera_on(surface.bounds, toward, aspect=1.1, zoom=1.42)
+for column, (name, (mesh, toward)) in enumerate(shown.items()):
+    zoom = 1.15 if name == "part" else 1.42
+    camera = render.camera_on(mesh.bounds, toward, aspect=1.1, zoom=zoom)
+    fibres = mesh.n_lines > 0
     # Points deep in folds see nothing of the sky: a warning says how many.
-    surface = vizlight.sky(surface, error=0.03)
-    lit = surface.vizlight.illuminate(scene, occlusion="sky")
+    lit = vizlight.sky(mesh, error=0.1 if fibres else 0.03).vizlight.illuminate(
+        presets.heading() if fibres else scene, occlusion="sky"
+    )
     plotter.subplot(0, column)
-    actor = plotter.add_mesh(surface, color="white", smooth_shading=True, show_scalar_bar=False)
+    tubes = mesh.tube(radius=0.15) if fibres else mesh
+    look = {"split_sharp_edges": True} if name == "part" else {}
+    actor = plotter.add_mesh(
+        tubes, color="white", smooth_shading=True, show_scalar_bar=False, **look
+    )
     plain = Scene.from_plotter(plotter, actor=actor)
-    plotter.enable_ssao(radius=0.1 * surface.length, bias=0.003 * surface.length, kernel_size=128)
+    plotter.enable_ssao(radius=0.1 * mesh.length, bias=0.003 * mesh.length, kernel_size=128)
     plotter.camera = camera
     plotter.subplot(1, column)
-    plotter.vizlight.add_mesh(lit)
+    plotter.vizlight.add_mesh(lit, **({"line_diameter": 0.3} if fibres else {}))
     plotter.camera = camera
-    lights = {"plain": (surface, plain), "no sky": (surface, scene), "sky": (lit, scene)}
-    for what, (mesh, light) in lights.items():
-        found = vizlight.legibility(mesh, light, view=camera).shape
+    lights = {"plain": (mesh, plain), "no sky": (mesh, scene), "sky": (lit, scene)}
+    for what, (own, light) in lights.items() if not fibres else ():
+        found = vizlight.legibility(own, light, view=camera).shape
         print(f"{name}, {what}: {found.median:.1f} degrees, {found.bits:.1f} bits")
 plotter.show()

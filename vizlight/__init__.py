@@ -4,15 +4,14 @@ The public names are loaded on first use, so ``import vizlight`` is fast and
 ``import vizlight.model`` needs neither PyVista nor VTK.
 """
 
-from __future__ import annotations
-
-import importlib
-import sys
-from typing import TYPE_CHECKING
+# Editors complete what is not private: the public names alone.
+import importlib as _importlib
+import sys as _sys
+import typing as _typing
 
 from vizlight._version import __version__ as __version__
 
-if TYPE_CHECKING:
+if _typing.TYPE_CHECKING:
     from vizlight import maps as maps
     from vizlight import pieces as pieces
     from vizlight import presets as presets
@@ -140,24 +139,24 @@ _MODULES = {
 __all__ = sorted(_HOMES.keys() - {"unlit_colors"})  # noqa: PLE0605
 
 
-if not TYPE_CHECKING:  # a name that is not there is an error to a type checker
+if not _typing.TYPE_CHECKING:  # a name that is not there is an error to a type checker
 
     def __getattr__(name: str) -> object:
         """Load a public name on first use."""
         _join_qt()
         if name in _HOMES:
-            value = getattr(importlib.import_module(f"vizlight.{_HOMES[name]}"), name)
+            value = getattr(_importlib.import_module(f"vizlight.{_HOMES[name]}"), name)
             globals()[name] = value
             return value
         if name in _MODULES:
-            return importlib.import_module(f"vizlight.{_MODULES[name]}")
+            return _importlib.import_module(f"vizlight.{_MODULES[name]}")
         raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
 
 
 def _join_qt() -> None:
     """Let windows of pyvistaqt find ``plotter.vizlight``: their look-up hides PyVista's."""
-    if "pyvistaqt" in sys.modules:
-        importlib.import_module("vizlight.draw.component")
+    if "pyvistaqt" in _sys.modules:
+        _importlib.import_module("vizlight.draw.component")
 
 
 def __dir__() -> list[str]:

@@ -1,6 +1,8 @@
 """The accessor ``mesh.vizlight``: filters and live light as methods of every PyVista mesh.
 
-It is registered as an entry point of PyVista, so it is available without importing vizlight.
+It is registered as an entry point of PyVista, so it is available without importing vizlight. To an
+editor and a type checker PyVista's accessors are of any type; ``tools: Accessor = mesh.vizlight``
+gives them the names, the options and their documentation.
 """
 
 from __future__ import annotations
@@ -56,7 +58,6 @@ def _plot() -> Callable[..., object]:
     return plot
 
 
-@pv.register_dataset_accessor("vizlight", pv.DataObject)
 class Accessor:
     """Methods that apply the filters of vizlight to one mesh."""
 
@@ -85,3 +86,7 @@ class Accessor:
     sky = _Method(lambda: vizlight.sky)
     streamlines = _Method(lambda: vizlight.streamlines)
     tint = _Method(lambda: vizlight.tint)
+
+
+# As a decorator it would hide the methods from type checkers.
+pv.register_dataset_accessor("vizlight", pv.DataObject)(Accessor)

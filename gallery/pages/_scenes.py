@@ -41,7 +41,7 @@ SECTIONS = {
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
-        "plot_sky": "Terrain, brain and coral: in gray, and in hues with dark valleys and folds",
+        "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in hues with dark folds",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },
     "What is the value?": {
@@ -63,12 +63,12 @@ SECTIONS = {
         "plot_streaklines": "Smoke rolls up in vortices that drift to the right",
     },
 }
-#: Descriptions of the scripts, in the order of the gallery; those not listed come last.
+#: Descriptions of the scripts, in the order of the gallery.
 ALTS = {script: alt for scripts in SECTIONS.values() for script, alt in scripts.items()}
 ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
-FIRST = ("plot_principal_lines", "plot_satin")
+FIRST = ("plot_principal_lines", "plot_read_direction", "plot_satin")
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
 #: thumbnails show the whole.
@@ -76,18 +76,18 @@ PARTS = {
     "plot_bas_relief": (0.01, 0.045, 0.325, 0.46),
     "plot_codimension": (0.0, 0.56, 0.5, 1.0),
     "plot_carotid": (0.1, 0.05, 0.9, 0.9),
-    "plot_complex_curve": (0.1, 0.05, 0.9, 1.0),
+    "plot_complex_curve": (0.1, 0.05, 0.85, 1.0),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
     "plot_read_direction": (0.67, 0.53, 1.0, 1.0),
     "plot_read_heading": (0.5, 0.05, 1.0, 1.0),
     "plot_read_shape": (0.5, 0.0, 1.0, 0.85),
     "plot_read_slope": (0.5, 0.05, 1.0, 1.0),
-    "plot_read_value": (0.5, 0.1, 1.0, 1.0),
+    "plot_read_value": (0.5, 0.08, 1.0, 0.98),
     "plot_satin": (0.0, 0.08, 0.5, 0.75),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.75),
-    "plot_sky": (0.69, 0.5, 1.0, 1.0),
-    "plot_terrain_day": (0.37, 0.1, 0.63, 0.42),
+    "plot_sky": (0.41, 0.5, 0.59, 1.0),
+    "plot_terrain_day": (0.39, 0.12, 0.61, 0.39),
 }
 
 #: Width of the thumbnails of movies in pixels.
@@ -104,8 +104,7 @@ class Order:
         return "<Order>"
 
     def __call__(self, name):
-        stem = Path(name).stem
-        return (ORDER.index(stem) if stem in ORDER else len(ORDER), stem)
+        return ORDER.index(Path(name).stem)
 
 
 class _Export:

@@ -11,7 +11,7 @@ import pytest
 
 import vizlight
 from vizlight import _words
-from vizlight.cli import declared
+from vizlight.cli import declared, options
 from vizlight.geometry.relief.height_field import Border
 from vizlight.shading.options import Model
 
@@ -69,3 +69,12 @@ print(*{name.partition(".")[0] for name in sys.modules}, "rich.markdown" in sys.
     *_, names, loaded = run.stdout.splitlines()
     assert {"light", "relief", "view", "demo"} <= set(names.split())
     assert not {"numpy", "scipy", "pyvista", "vtkmodules", "matplotlib", "True"} & {*loaded.split()}
+
+
+def test_the_help_of_an_option_is_its_own_description():
+    texts = declared.filter_("illuminate").texts
+    own = {name: text for name, text in texts.items() if text and "s for :" not in text}
+    assert len(own) > 8
+    for name, text in own.items():
+        found = options._text(name, texts)
+        assert found == options._flat(text) or name in {*options.READ, *options.READ_LISTS}

@@ -424,6 +424,13 @@ def test_a_grid_that_is_a_surface_is_taken_as_one(kind):
     np.testing.assert_allclose(lines["luminance"], expected["luminance"], atol=1e-4)
 
 
+def test_four_components_on_a_surface_are_refused():
+    surface = ball(12)
+    surface["V"] = np.ones((surface.n_points, 4), np.float32)
+    with pytest.raises(ValueError, match="vectors: expected 3 components, got 'V' with 4"):
+        vizlight.streamlines(vortex(), vectors="V", surface=surface, confined=True, seeds=3)
+
+
 @pytest.mark.parametrize("on_surface", [False, True])
 def test_tensors_give_their_first_eigenvector(on_surface):
     """6 components, 9, and the eigenvector with random signs: the same lines."""

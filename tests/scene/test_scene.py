@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from scipy.ndimage import binary_erosion
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
 from vizlight.scene import scene as scene_module
@@ -173,8 +174,9 @@ def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting, model):
     scene = Scene.from_plotter(theirs, actor=actor, model=model)
     with pytest.raises(ValueError, match="material: expected an actor alone, got both"):
         Scene.from_plotter(theirs, actor=actor, material=Material())
-    with pytest.raises(TypeError, match=r"actor: expected a pyvista.Actor"):
-        Scene.from_plotter(theirs, actor=ball)
+    for other in (ball, vtkActor()):  # which draws nothing
+        with pytest.raises(TypeError, match=r"actor: expected a pyvista.Actor"):
+            Scene.from_plotter(theirs, actor=other)
     seen = View.from_camera(theirs.camera)
     assert scene.view.parallel == (lighting == "headlight")
     assert (scene.view.position, scene.view.direction) == (seen.position, seen.direction)

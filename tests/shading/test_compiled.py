@@ -393,3 +393,16 @@ def test_seven_lights_of_two_kinds(fast, random):
     with _compiled.setting("0"):
         same = engine.shade(points, None, scene, normals=normals, shadow=shadow)
     np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=1e-13)
+
+
+def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):
+    """Near 1 the logarithm is taken of what is missing from 1."""
+    normals = random.normal(size=(500, 3)) * 0.05 + (0, 0, 1)
+    inputs = ShadingInputs(points=np.zeros((500, 3)), normals=normals)
+    view, light = View(direction=(0.1, 0, 1)), Light(direction=(0, 0.1, 1))
+    scene = Scene(lights=light, view=view, material=Material(specular=1, shininess=7.5))
+    made = decide(scene, inputs.layout, ShadingOptions(model="blinn"), np.float64)
+    outputs = [Output(made, 500), Output(made, 500)]
+    differential.by_numpy(made, inputs, outputs[0])
+    differential.by_text(made, inputs, outputs[1])
+    np.testing.assert_allclose(outputs[1].luminance, outputs[0].luminance, rtol=1e-13)

@@ -48,7 +48,6 @@ UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient o
 UNTOUCHED = (0.0, 1.0, 0.0)
 
 
-@pv.register_plotter_component("vizlight")
 class Component:
     """Meshes of one plotter whose light follows the camera.
 
@@ -652,3 +651,7 @@ def add_recorded(
     used = scene if name == RGB else colorless(scene)
     own: Component = plotter.vizlight
     return own._add(plotter, source, used, "auto", scalars, colors | drawing, follow=False)
+
+
+# As a decorator it would hide the methods from type checkers.
+pv.register_plotter_component("vizlight")(Component)

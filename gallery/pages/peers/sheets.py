@@ -20,7 +20,7 @@ import pyvista as pv
 from PIL import Image, ImageDraw, ImageFont
 
 import vizlight
-from vizlight import Scene, presets
+from vizlight import Material, Scene, presets
 
 HERE = Path(__file__).resolve().parent
 SIZE = (480, 420)
@@ -135,8 +135,12 @@ def of_shape(mesh):
         plotter.enable_ssao(radius=15, bias=0.5, kernel_size=128)
 
     mesh, scene = bare(mesh), presets.shape()
-    ways = plain(mesh), best, lit(mesh), lit(mesh, scene, key=True)
-    return {"ways": ways, "view": (-1, -0.15, 0.25), "measured": ("shape", mesh, scene, {})}
+    scene = scene.replace(material=Material(ambient=0.35, diffuse=0.65, specular=0))
+    ways = plain(mesh), best, lit(mesh), lit(vizlight.sky(mesh), scene, True, occlusion="sky")
+    return {
+        "ways": ways, "view": (-1, -0.15, 0.25), "zoom": 1.4, "background": "#10141a",
+        "measured": ("shape", mesh, scene, {}),
+    }  # fmt: skip
 
 
 def of_value(mesh):
@@ -162,7 +166,8 @@ def of_heading(mesh):
         plotter.enable_ssao(radius=8, bias=0.3)
 
     lines, scene = bare(mesh), presets.heading()
-    asked = lit(lines, scene, key=True, line_diameter=0.4)
+    scene = scene.replace(material=Material(ambient=0.25, diffuse=0.75, specular=0))
+    asked = lit(vizlight.sky(lines), scene, True, occlusion="sky", line_diameter=0.4)
     return {
         "ways": (plain(mesh, scalars="rgb", rgb=True), best, lit(lines), asked),
         "view": (-1, -0.35, 0.3), "background": "black", "measured": ("slope", lines, scene, {}),
@@ -208,8 +213,15 @@ def of_winds(mesh):
 
     scene, field = presets.direction(), {"tangents": "wind", "exponent": 2}
     default = lit(mesh, tangents="wind", scalars=None)
+
+    def asked(plotter):
+        lit(mesh, scene, True, scalars=None, **field)(plotter)
+        lines = vizlight.streamlines(mesh, vectors="wind", spacing=0.06).scale(1.005)
+        ink = Scene(material=Material(ambient=1, diffuse=0, specular=0))
+        lit(lines, ink, color="#202028", line_diameter=0.006)(plotter)
+
     return {
-        "ways": (plain(mesh, scalars="speed"), best, default, lit(mesh, scene, key=True, **field)),
+        "ways": (plain(mesh, scalars="speed"), best, default, asked),
         "view": (-0.7, -1, 0.6), "zoom": 1.4, "measured": ("direction", mesh, scene, field),
     }  # fmt: skip
 

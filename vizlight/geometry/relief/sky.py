@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
 
-#: First and largest number of azimuths; columns that are crossed one by one at first and at most.
-FEWEST, MOST, NEAR, FARTHEST_NEAR = 16, 1024, 2, 64
+#: First and largest number of azimuths; columns that are crossed one by one at first and at most,
+#: and error from which half as many do.
+FEWEST, MOST, NEAR, FARTHEST_NEAR, ROUGHLY = 16, 1024, 4, 64, 0.02
 #: Turn of all azimuths in their spacing: off axes and diagonals, where a grid is special.
 TURN = 0.37
 #: Rows and columns of the nodes whose error is measured, and azimuths of their reference.
@@ -145,7 +146,7 @@ class _Search:
 
     def until(self, error: float) -> Sky:
         """Return the sky with an error, or the least that is found."""
-        near = NEAR if self.quick else 0
+        near = (NEAR if error < ROUGHLY else NEAR // 2) if self.quick else 0
         count, last = FEWEST, math.inf
         scan = _Scan(self, near) if self.quick else None
         wanted = self._reference(scan)
@@ -232,7 +233,7 @@ class _Search:
             left, right = across[:, i], across[:, i + 1]
             height = np.where(u == 0, left, np.where(u == 1, right, left + u * (right - left)))
             np.fmax(t, (height - z) / distance, out=t)
-            step = step if distance < 2 * NEAR * cell else distance * (growth - 1)
+            step = step if distance < NEAR * cell else distance * (growth - 1)
             distance += step
         if self.openness:
             return np.pi / 2 - np.arctan(t)
