@@ -192,7 +192,8 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
         assert words in out if words else "note" not in out
 
 
-def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, capfd):
+def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
     nibabel = pytest.importorskip("nibabel")
     ball = pv.Sphere()
     ball.save("ball.ply")
@@ -215,7 +216,8 @@ def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, capfd):
     assert np.any(pictures[0] != pictures[2])
 
 
-def test_colours_of_a_file_are_no_light(tmp_path, capfd):
+def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
     ball = pv.Sphere()
     ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
     ball.save("ball.vtp")
