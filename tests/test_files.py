@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import vizlight
@@ -62,6 +63,13 @@ def test_the_reason_of_a_damaged_file_is_told(tmp_path):
     path.write_text("garbage")
     with pytest.raises(files.FileError, match="no points: Error parsing XML"):
         files.read(path)
+
+
+@pytest.mark.parametrize("suffix", [".las", ".dae", ".step"])
+def test_files_that_no_reader_takes_tell_what_to_convert_them_to(suffix, tmp_path):
+    (tmp_path / f"a{suffix}").write_text("x")
+    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; convert it to"):
+        files.read(tmp_path / f"a{suffix}")
 
 
 def test_a_full_disk_is_seen_before_writing(tmp_path, monkeypatch):
@@ -376,8 +384,6 @@ def test_threads_that_read_leave_the_streams_as_they_were(tmp_path):
 
 
 def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
-    from vtkmodules.vtkCommonCore import vtkOutputWindow
-
     bad = tmp_path / "bad.vtp"
     bad.write_text("no mesh")
     window = vtkOutputWindow.GetInstance()
@@ -625,3 +631,55 @@ def test_cells_without_a_corner_are_refused(tmp_path):
     path.write_text(f"{header}0 0 0\n1 0 0\n0 1 0\n0\n0\n")
     with pytest.raises(files.FileError, match="2 cells without a corner"):
         vizlight.read(path)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "Could not locate key vtkExodusIIReader::GLOBAL_TEMPORAL_VARIABLE.",
+        "Skipping BC_t node: BC_t type 'BCFarfield' not supported yet.",
+    ],
+)
+def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, monkeypatch):
+    def found(path, time):
+        vtkOutputWindow.GetInstance().DisplayWarningText(f"{said}\n")
+        return pv.Sphere()
+
+    monkeypatch.setattr(files.foreign_files, "read", found)
+    (tmp_path / "a.cgns").touch()
+    assert vizlight.read(tmp_path / "a.cgns").n_points == pv.Sphere().n_points
+
+
+def test_arrays_with_keys_of_another_program_are_read(tmp_path):
+    path = tmp_path / "a.vtu"
+    mesh = volume().cast_to_unstructured_grid()
+    mesh.field_data["KE"] = [1.0]
+    mesh.save(path, binary=False)
+    key = '<InformationKey name="UNITS" location="vtkNowhere">1</InformationKey>'
+    head, tail = path.read_text().split("</FieldData>")
+    end = head.rindex("</DataArray>")
+    path.write_text(f"{head[:end]}{key}{head[end:]}</FieldData>{tail}")
+    assert vizlight.read(path).n_points == 512
+
+
+def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatch):
+    parts = pv.PartitionedDataSet([volume().threshold([0, 3]), volume().threshold([3, 9])])
+    parts.field_data["TimeValue"] = [7.0]
+    monkeypatch.setattr(files.foreign_files, "read", lambda path, time: parts)
+    (tmp_path / "a.vtpd").touch()
+    mesh = vizlight.read(tmp_path / "a.vtpd")
+    assert mesh.n_cells == sum(part.n_cells for part in parts)
+    assert list(mesh.field_data["TimeValue"]) == [7]
+
+
+def test_xdmf_without_times_is_read(tmp_path):
+    path = tmp_path / "mesh.xdmf"
+    path.write_text(
+        """<Xdmf Version="3.0"><Domain><Grid Name="Grid">
+        <Geometry GeometryType="XYZ"><DataItem DataType="Float" Dimensions="4 3" Format="XML">
+        0 0 0 1 0 0 0 1 0 0 0 1</DataItem></Geometry>
+        <Topology TopologyType="Tetrahedron" NumberOfElements="1">
+        <DataItem DataType="Int" Dimensions="1 4" Format="XML">0 1 2 3</DataItem></Topology>
+        </Grid></Domain></Xdmf>"""
+    )
+    assert vizlight.read(path).volume == pytest.approx(1 / 6)

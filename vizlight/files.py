@@ -82,8 +82,9 @@ READERS = {
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
-#: What VTK says where no screen is, whose importers of VRML and 3DS make a window that none needs.
-_SCREEN = "bad X server connection"
+#: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
+#: keys of ParaView's are metadata, and conditions at the boundary of CGNS are no cells.
+_HARMLESS = re.compile("bad X server connection|Could not locate key|Skipping BC_t node")
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
 #: Begin of the names of temporary folders, and seconds after which one without a lock is swept.
@@ -183,7 +184,8 @@ def read(
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
-    errors = [error for error in errors if not _DIRECTIVE.search(error) and _SCREEN not in error]
+    harmless = _DIRECTIVE.search, _HARMLESS.search
+    errors = [error for error in errors if not any(search(error) for search in harmless)]
     if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
         reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
@@ -244,7 +246,11 @@ def _found(path: Path, time: object) -> pv.DataObject:
     found: pv.DataObject | None = foreign_files.read(path, time)
     if found is None:
         found = steps.read(path, time)
-    return _by_vtk(path) if found is None else found
+    found = _by_vtk(path) if found is None else found
+    if isinstance(found, pv.PartitionedDataSet):
+        data, found = found.field_data, pv.MultiBlock(list(found))
+        found.field_data.update(data)
+    return found
 
 
 def _path(name: str, value: object) -> Path:
@@ -278,11 +284,16 @@ def _first_line(error: Exception | str) -> str:
 
 def _by_vtk(path: Path) -> pv.DataObject:
     """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
+    reader = steps.reader_of(path)
     try:
-        reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
-    except ValueError:
-        return pv.read(path)
-    found: pv.DataObject = reader.read()
+        found: pv.DataObject = pv.read(path) if reader is None else reader.read()
+    except OSError as error:
+        if reader is not None:
+            raise
+        raise FileError(
+            f"no reader takes '{path.suffix}' files; convert it to .ply, .obj, .stl, .vtu or .glb, "
+            "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
+        ) from error
     return found
 
 

@@ -164,10 +164,23 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
     pv.ImageData(dimensions=(4, 5, 1)).save("bare.vti")
     flat = pv.ImageData(dimensions=(4, 5, 1))
     flat["height"] = np.arange(20.0)
+    flat["number"] = np.arange(20)
+    flat["constant"] = np.ones(20)
+    flat["NodeId"] = np.arange(20.0)
+    order = ("NodeId", "constant", "number", "height")
+    kept = {name: flat[name].copy() for name in order}
+    flat.clear_data()
+    flat.point_data.update(kept)
     flat.save("flat.vti")
+    colors = pv.ImageData(dimensions=(4, 5, 1))
+    colors["rgb"] = np.full((20, 3), 200, np.uint8)
+    colors.save("colors.vti")
     for options, words in (
         ((volume,), "hull of a volume is lit; --contour r"),
-        (("flat.vti",), "mesh is flat; --warp height"),
+        (("flat.vti",), "flat; --scalars height colours it, --warp height raises it"),
+        (("flat.vti", "--scalars", "height"), "mesh is flat; --warp height"),
+        (("colors.vti",), "mesh is flat; --scalars rgb"),
+        (("colors.vti", "--scalars", "rgb"), ""),
         ((volume, "--no-surface"), ""),
         ((volume, "--contour", "r", "--scalars", "r"), "r is the same all over its isosurface"),
         (("flat.vti", "--warp", "height"), "heights are taken 0.1 times"),
@@ -177,6 +190,42 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
         code, out, _ = run(capfd, "light", *options, "-o", "a.vtk")
         assert code == 0
         assert words in out if words else "note" not in out
+
+
+def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    nibabel = pytest.importorskip("nibabel")
+    ball = pv.Sphere()
+    ball.save("ball.ply")
+    nibabel.freesurfer.write_morph_data("lh.curv", ball.points[:, 2])
+    shows = ("--overlay", "lh.curv", "-o", "a.vtp")
+    code, out, _ = run(capfd, "light", "ball.ply", *shows)
+    assert code == 0
+    assert "note     --scalars lh.curv shows the values over the surface" in out
+    assert "note" not in run(capfd, "light", "ball.ply", "--scalars", "lh.curv", *shows)[1]
+
+
+@pytest.mark.opengl
+def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, capfd):
+    pictures = []
+    for up, view in (("y", "x"), ("0,1,0", "1,0,0"), ("z", "x")):
+        options = ("--contour", "r", "--up", up, "--view", view, "-o", "a.png")
+        assert run(capfd, "light", volume, *options)[0] == 0
+        pictures.append(pv.read("a.png")["PNGImage"])
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert np.any(pictures[0] != pictures[2])
+
+
+def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    ball = pv.Sphere()
+    ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
+    ball.save("ball.vtp")
+    assert run(capfd, "light", "ball.vtp", "-o", "a.png")[::2] == (0, "")
+    assert (
+        "white in the picture"
+        in run(capfd, "light", "ball.vtp", "--diffuse", "9", "-o", "a.png")[2]
+    )
 
 
 def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):

@@ -109,6 +109,16 @@ COMMANDS = {
 }
 
 
+@pytest.mark.parametrize("question", ["direction", "slope", "heading"])
+def test_the_only_vectors_are_traced_for_a_question(question, folder, capfd):
+    flow = pv.read("flow.vti")
+    del flow.point_data["W"]
+    flow.save("one.vti")
+    line = f"streamlines one.vti --seeds 9 --for {question} -o lines.vtp"
+    assert run(capfd, *line.split())[::2] == (0, "")
+    assert np.ptp(pv.read("lines.vtp")["luminance"]) > 0.1
+
+
 @pytest.mark.opengl
 @pytest.mark.parametrize("missing", [False, True])
 def test_the_key_of_colours_names_what_they_are(missing, folder, capfd, monkeypatch):

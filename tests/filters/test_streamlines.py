@@ -133,7 +133,7 @@ def test_options_reach_the_light():
     ("make", "options", "error", "words"),
     [
         (vortex, {"vectors": "U"}, ValueError, "vectors: expected the name of an array"),
-        (pv.ImageData, {}, ValueError, "vectors: expected the name of an array"),
+        (pv.ImageData, {}, ValueError, "vectors: expected a mesh with an array of 3 components"),
         (
             vortex,
             {"vectors": "V", "confined": True},

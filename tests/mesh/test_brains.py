@@ -69,7 +69,10 @@ def test_a_surface_has_the_values_over_it(name, tmp_path):
 def test_values_for_another_surface_are_an_error(tmp_path):
     mz3(tmp_path / "a.mz3", surface=False)
     pv.Cube().save(tmp_path / "b.ply")
-    with pytest.raises(files.FileError, match=rf"{len(DEPTH)} values for a surface of \d+ points"):
+    with pytest.raises(
+        files.FileError,
+        match=rf"overlay '.*a.mz3' has {len(DEPTH)} values for a surface of \d+ points",
+    ):
         vizlight.read(tmp_path / "b.ply", overlay=[tmp_path / "a.mz3"])
 
 

@@ -234,6 +234,18 @@ def test_unequal_axes_missing_values_and_the_first_time(tmp_path):
     assert (x, y, z) == (4.0, 30.0, 0.0)
 
 
+def test_corners_of_cells_are_no_variable(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path = tmp_path / "a.nc"
+    axis = ("cell", np.arange(5.0), {"bounds": "lat_bounds"})
+    corners = ("cell", "corner"), np.ones((5, 6))
+    xarray.Dataset(
+        {"heat": ("cell", np.arange(5.0)), "lat": axis, "lat_bounds": corners}
+    ).to_netcdf(path, engine="scipy")
+    with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
+        vizlight.read(path)
+
+
 def test_a_file_of_no_grid(tmp_path):
     with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
         grid_file(tmp_path / "a.nc", [1, 2, 3], series=np.ones(3))

@@ -70,6 +70,15 @@ def test_a_time_that_is_not_there_is_an_error_with_those_that_are(tmp_path):
             vizlight.read(path, time=asked)
 
 
+def test_a_time_of_a_file_without_steps_is_refused(tmp_path):
+    pv.Sphere().save(tmp_path / "a.vtp")
+    assert vizlight.read(tmp_path / "a.vtp", time="last").n_points
+    with pytest.raises(
+        steps.NoStepError, match=r"time: expected a file of several .*, got 'a.vtp'"
+    ):
+        vizlight.read(tmp_path / "a.vtp", time=3)
+
+
 def test_the_last_step_of_a_case_has_its_fields_at_the_points(case):
     mesh = vizlight.read(case)
     assert steps.of(mesh) == [0, 0.5, 2]

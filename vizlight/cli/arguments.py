@@ -165,7 +165,7 @@ class Eye:
     view
         Direction x,y,z to the eye, or a JSON file of a camera position. Default: 1,1,1.
     up
-        Direction that is up in the picture. Default: z, or y seen along z.
+        Direction x,y,z that is up in the picture, or x, y or z. Default: z, or y seen along z.
     parallel
         Parallel projection.
     zoom
@@ -269,11 +269,17 @@ def numbers(text: str, counts: tuple[int, ...] = (3,)) -> tuple[float, ...]:
     return values if len(values) in counts and all(map(math.isfinite, values)) else ()
 
 
+#: Directions by the names of axes.
+_AXES = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
+
+
 def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
     """Return a vector x,y,z, with zeros for what it lacks of n components.
 
-    A direction is not zero; a direction toward a light may be azimuth,altitude in degrees.
+    A direction is not zero, and may be the name of an axis; one toward a light may be
+    azimuth,altitude in degrees.
     """
+    text = _AXES.get(text, text) if direction else text
     by_angles = name == "light"
     values = numbers(text, (3, n, 2) if by_angles else (3, n))
     if not values:

@@ -75,7 +75,8 @@ def streamlines(
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.joined(scenes.data(path, part, time), asked.vectors)
         scenes.check_flow(path, mesh.run(), asked.vectors)
-        scenes.check_answers(common.lights.question, mesh, color, asked.vectors)
+        # The lines that are traced are the tangents that light for a question needs.
+        scenes.check_answers(common.lights.question, mesh, color, "lines")
         if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
             # Lines have the arrays of points alone.
             mesh = Step("averaged", ".cell_data_to_point_data", mesh)

@@ -208,11 +208,16 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
             raise files.FileError(message("output", expected, f"'{path.name}'"))
 
 
-def _picture(job: Job, path: Path, out: Output) -> Step:
-    """Return the step that draws the picture."""
+def _of_light(job: Job) -> str:
+    """Return the name of the array of light that a picture shows; a file may have an own "rgb"."""
     from vizlight.shading.results import part_name
 
-    scalars = job.scalars or (part_name(job.name, "rgb") if job.look.colored else job.name)
+    return part_name(job.name, "rgb") if job.look.colored else job.name
+
+
+def _picture(job: Job, path: Path, out: Output) -> Step:
+    """Return the step that draws the picture."""
+    scalars = job.scalars or _of_light(job)
     # A share that is 1 at most points is white, as paper is.
     plain = "gray" if job.scalars == job.name else None
     options = {
@@ -287,7 +292,7 @@ def _run(job: Job, out: Output) -> int:
         if path.suffix.lower() not in SHOWN:
             files.check_format(step.run(), path)
     if job.pictures:
-        _count_white(lit, job.name)
+        _count_white(lit, _of_light(job))
     if job.explain is not None:
         job.explain(lit)
     if job.read is not None:
@@ -341,15 +346,10 @@ def _light(job: Job, out: Output) -> pv.DataSet:
 def _count_white(lit: pv.DataSet, name: str) -> None:
     """Print how many points are too bright for the picture."""
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.shading.results import part_name
 
     blocks = [block for block in all_blocks(lit) if name in block.point_data]
-    bright = 0
-    for block in blocks:
-        # A picture in colour shows the channels; their light may be above 1 where they are not.
-        rgb = block.point_data.get(part_name(name, "rgb"))
-        shown = block.point_data[name] if rgb is None else rgb.max(axis=1, initial=0.0)
-        bright += int((shown > 1).sum())
+    rows = [block.point_data[name].reshape(block.n_points, -1) for block in blocks]
+    bright = sum(int((values > 1).any(axis=1).sum()) for values in rows)
     if bright:
         total = sum(block.n_points for block in blocks)
         complain(

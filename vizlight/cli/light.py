@@ -141,7 +141,7 @@ def builder(
         made.source = [str(path), *options.words(target, how), *(["--sky"] if sky else [])]
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
-            made.hint = lambda: _hint(data.run(), surface=target.surface)
+            made.hint = lambda: _hint(data.run(), target, color.scalars)
         elif color.scalars is not None and color.scalars == target.contour:
             made.hint = lambda: (
                 f"{color.scalars} is the same all over its isosurface; name another --scalars"
@@ -176,22 +176,43 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
     return Step("", "vizlight.legibility", made.lit, scene, **known, view=made.camera)
 
 
-def _hint(mesh: pv.DataSet | pv.MultiBlock, *, surface: bool) -> str:
-    """Return what may have been meant for a volume, whose hull is lit, or a flat field."""
+def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
+    """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
+    import numpy as np
+
+    from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
 
     parts = [block for block in all_blocks(mesh) if block.n_cells]
-    names = [
-        name for block in parts[:1] for name, values in block.point_data.items() if values.ndim == 1
-    ]
-    if not names:
-        return ""
-    name = shlex.quote(names[0])
+    arrays = dict(parts[0].point_data.items()) if parts else {}
+    if target.overlay and scalars is None:
+        return f"--scalars {shlex.quote(list(arrays)[-1])} shows the values over the surface"
+    flat = all(
+        block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
+    )
+    # Integers may number the nodes, as names with "Id" do; one value has no isosurface.
+    whole = {
+        name: values.dtype.kind != "f"
+        for name, values in arrays.items()
+        if values.dtype.kind in "iuf"
+        and values.ndim == 1
+        and not name.endswith(("Id", "Ids"))
+        and (kept := values[np.isfinite(values)]).size
+        and kept.min() < kept.max()
+    }
+    if not whole:
+        colors = [name for name, values in arrays.items() if are_colors(values)]
+        shown = flat and colors and scalars is None
+        return (
+            f"the mesh is flat; --scalars {shlex.quote(colors[0])} shows colours" if shown else ""
+        )
+    name = shlex.quote(min(whole, key=lambda name: whole[name]))
     if any(block.GetMaxSpatialDimension() == 3 for block in parts):
         hull = f"the hull of a volume is lit; --contour {name} lights an isosurface of it"
-        return hull if surface else ""
-    if all(block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts):
-        return f"the mesh is flat; --warp {name} raises it by its heights"
+        return hull if target.surface else ""
+    if flat:
+        colored = f"--scalars {name} colours it, " if scalars is None else ""
+        return f"the mesh is flat; {colored}--warp {name} raises it"
     return ""
 
 

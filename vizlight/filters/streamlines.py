@@ -485,11 +485,11 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
         for key in data
         if np.shape(data[key])[1:] == (3,)
     ]
-    remedy = ""
-    if point:
-        remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
-    there = ", ".join(point) or "none"
-    expected = f"the name of an array of 3 components ({there})"
+    if not point:
+        expected = "a mesh with an array of 3 components"
+        return ValueError(_check.message("vectors", expected, "a mesh without one"))
+    remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
+    expected = f"the name of an array of 3 components ({', '.join(point)})"
     return ValueError(
         _check.message("vectors", expected, None if got is None else repr(got), remedy)
     )

@@ -109,7 +109,7 @@ def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
     other = {len(rows) for rows in found.values()} - {count}
     if other or not found:
         got = f"{min(other)} values" if other else "no values"
-        raise ValueError(f"{got} for a surface of {count} points")
+        raise ValueError(f"its overlay '{path}' has {got} for a surface of {count} points")
     if len(found) == 1:
         return {own: next(iter(found.values()))}
     return {f"{own}_{key}": rows for key, rows in found.items()}

@@ -292,7 +292,8 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
     """
     import xarray
 
-    with xarray.open_dataset(path, decode_times=False) as file:
+    # With all coordinates, corners of cells are none of the variables.
+    with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
         fields: dict[str, Any] = {}
         clocks = [dim for dim in file.sizes if _is_time(file, dim)]
         clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)

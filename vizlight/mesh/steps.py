@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
+from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
 
@@ -140,24 +141,26 @@ def reader_of(path: Path) -> Any:
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
-        return _Decomposed(path)
+        # PyVista's reader looks for the whole first, and reports that it is missing.
+        decomposed = vtkPOpenFOAMReader()
+        decomposed.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
+        return _OfVtk(decomposed, path)
     try:
         reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
     except ValueError:
         return None
+    except TypeError:
+        # PyVista's reader of XDMF fails without times, as in a mesh that FEniCS writes.
+        return _OfVtk(vtkXdmfReader(), path)
     return reader
 
 
-class _Decomposed:
-    """Reader of an OpenFOAM case whose mesh and times are by processors.
+class _OfVtk:
+    """Reader of VTK that has not PyVista's wrapper."""
 
-    PyVista's reader looks for the whole first, and reports that it is missing.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.reader = vtkPOpenFOAMReader()
+    def __init__(self, reader: Any, path: Path) -> None:
+        self.reader = reader
         self.reader.SetFileName(str(path))
-        self.reader.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
 
     def read(self) -> Any:
         """Return the blocks of the step that was asked for."""
@@ -208,10 +211,17 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     path : pathlib.Path
     time : float, int or str, optional
         As for :func:`chosen`.
+
+    Raises
+    ------
+    NoStepError
+        If there is no such step, or a time is given for a file without steps.
     """
     reader = reader_of(path)
     times = times_of(reader)
     if reader is None or not times:
+        if time not in (None, "first", "last"):
+            raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
         return None
     index = chosen(times, time)
     found: pv.DataObject = marked(at(reader, times[index]), times, index)
