@@ -228,7 +228,10 @@ def _whole(found: Any, suffix: str, overlays: Sequence[Path]) -> Any:
         for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
     # Their standards say that y is up; here z is.
-    return mesh.rotate_x(90) if suffix in Y_UP else mesh
+    mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
+    if suffix in SOUPS and isinstance(mesh, pv.PolyData):
+        welding.keep_normals(mesh)
+    return mesh
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:

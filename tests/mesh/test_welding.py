@@ -45,6 +45,29 @@ def test_colours_of_faces_stay():
     np.testing.assert_array_equal(found["rgb"][found.regular_faces.ravel()], mesh["rgb"])
 
 
+def test_a_seam_of_a_texture_is_not_seen_in_the_light(tmp_path):
+    """Points of a seam differ in their place on the texture, not in their normal."""
+    x, y = np.meshgrid(np.linspace(0, 1, 25), np.linspace(0.02, 0.98, 15))
+    turn, tilt = 2 * np.pi * x, np.pi * y
+    ball = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], -1)
+    ball[:, -1] = ball[:, 0]
+    at = np.arange(x.size).reshape(x.shape)
+    quads = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], -1).reshape(-1, 4) + 1
+    lines = [f"v {a:.6f} {b:.6f} {c:.6f}" for a, b, c in ball.reshape(-1, 3)]
+    lines += [f"vt {u} {v}" for u, v in zip(x.ravel(), y.ravel(), strict=True)]
+    lines += ["f " + " ".join(f"{i}/{i}" for i in quad) for quad in quads.tolist()]
+    (tmp_path / "ball.obj").write_text("\n".join(lines))
+    mesh = vizlight.read(tmp_path / "ball.obj")
+    assert mesh.n_points == x.size  # the texture keeps its seam
+    scene = Scene(view=View(direction=(1, 0, 0)))
+    for angle in (None, "auto"):
+        lit = vizlight.illuminate(mesh, scene, feature_angle=angle)["luminance"]
+        _, same = np.unique(mesh.points, axis=0, return_inverse=True)
+        same = same.reshape(-1)
+        for i in np.flatnonzero(np.bincount(same) > 1):
+            assert np.ptp(lit[same == i]) < 1e-6
+
+
 def test_what_is_no_soup_is_the_same_mesh():
     lines = pv.Line()
     assert welded(BALL) is BALL

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import creases, point_arrays
+from vizlight.mesh import creases, normals, point_arrays
 from vizlight.reading.cells import connectivity
+from vizlight.reading.normals import computed_normals
+from vizlight.reading.topology import Owners, coincident
 
-__all__ = ["welded"]
+__all__ = ["keep_normals", "welded"]
 
 
 def welded(mesh: pv.PolyData) -> pv.PolyData:
@@ -47,3 +49,24 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     out.GetFieldData().ShallowCopy(mesh.GetFieldData())
     point_arrays.carry_active(mesh, out)
     return out
+
+
+def keep_normals(mesh: pv.PolyData) -> None:
+    """Keep the normals of a surface without creases at points that only their arrays tell apart.
+
+    Along the seam of a texture, or where colours differ, light is then as smooth as the surface.
+    """
+    if mesh.n_cells != mesh.GetNumberOfPolys() or mesh.n_points < normals.FEWEST:
+        return
+    if not mesh.point_data or mesh.point_data.active_normals is not None:
+        return
+    first = coincident(np.asarray(mesh.points), Owners())
+    if first is None:
+        return
+    ids, ends = connectivity(mesh.GetPolys())
+    whole = pv.PolyData()
+    whole.SetPoints(mesh.GetPoints())
+    whole.SetPolys(creases.cell_array(first[ids], ends))
+    sided = computed_normals(whole)
+    if not sided.sharp:
+        normals.keep(mesh, sided.part(0, first))
