@@ -175,12 +175,16 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
     colors = pv.ImageData(dimensions=(4, 5, 1))
     colors["rgb"] = np.full((20, 3), 200, np.uint8)
     colors.save("colors.vti")
+    cells = pv.ImageData(dimensions=(4, 5, 1))
+    cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
+    cells.save("cells.vti")
     for options, words in (
         ((volume,), "hull of a volume is lit; --contour r"),
         (("flat.vti",), "flat; --scalars height colours it, --warp height raises it"),
         (("flat.vti", "--scalars", "height"), "mesh is flat; --warp height"),
         (("colors.vti",), "mesh is flat; --scalars rgb"),
         (("colors.vti", "--scalars", "rgb"), ""),
+        (("cells.vti",), "mesh is flat; --scalars temperature"),
         ((volume, "--no-surface"), ""),
         ((volume, "--contour", "r", "--scalars", "r"), "r is the same all over its isosurface"),
         (("flat.vti", "--warp", "height"), "heights are taken 0.1 times"),

@@ -178,8 +178,6 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
     """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
-    import numpy as np
-
     from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
 
@@ -190,18 +188,11 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
     flat = all(
         block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
     )
-    # Integers may number the nodes, as names with "Id" do; one value has no isosurface.
-    whole = {
-        name: values.dtype.kind != "f"
-        for name, values in arrays.items()
-        if values.dtype.kind in "iuf"
-        and values.ndim == 1
-        and not name.endswith(("Id", "Ids"))
-        and (kept := values[np.isfinite(values)]).size
-        and kept.min() < kept.max()
-    }
+    whole = _varying(arrays)
     if not whole:
+        cells = _varying(dict(parts[0].cell_data.items()) if parts else {})
         colors = [name for name, values in arrays.items() if are_colors(values)]
+        colors += sorted(cells, key=lambda name: cells[name])
         shown = flat and colors and scalars is None
         return (
             f"the mesh is flat; --scalars {shlex.quote(colors[0])} shows colours" if shown else ""
@@ -214,6 +205,24 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
         colored = f"--scalars {name} colours it, " if scalars is None else ""
         return f"the mesh is flat; {colored}--warp {name} raises it"
     return ""
+
+
+def _varying(arrays: dict[str, Any]) -> dict[str, bool]:
+    """Return the arrays of one number that varies, and whether it is an integer.
+
+    Integers may number the nodes, as names with "Id" do.
+    """
+    import numpy as np
+
+    return {
+        name: values.dtype.kind != "f"
+        for name, values in arrays.items()
+        if values.dtype.kind in "iuf"
+        and values.ndim == 1
+        and not name.endswith(("Id", "Ids"))
+        and (kept := values[np.isfinite(values)]).size
+        and kept.min() < kept.max()
+    }
 
 
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
