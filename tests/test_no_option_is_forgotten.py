@@ -231,6 +231,37 @@ def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
     assert (one == other) == ignored, f"{place.__name__} and {kind.__name__}.{name}"
 
 
+def live(scene, then=None):
+    """Return the picture of a ball in a live light, set to another scene after the first frame."""
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
+    actor = plotter.vizlight.add_mesh(pv.Sphere(radius=2), scene=scene.replace(view=None))
+    plotter.camera_position = [(1, -2, 9), (0, 0, 0), (0, 1, 0)]
+    picture = plotter.screenshot(return_img=True)
+    if then is not None:
+        plotter.vizlight.set_scene(actor, then.replace(view=None))
+        plotter.render()
+        picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    return picture.astype(int)
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(
+    ("kind", "name"), [(kind, name) for kind in PARTS for name in PARTS[kind] if name != "view"]
+)
+def test_another_scene_of_a_live_light_is_the_light_of_that_scene(kind, name):
+    """A field that a shader holds as a constant makes another shader."""
+    one, other = two_scenes(kind, name)
+    if kind is Material and isinstance(getattr(one.material, name), float):
+        # What a scene does not need is in no shader.
+        one = one.replace(material=dataclasses.replace(one.material, **{name: 0.0}))
+    for first, last in ((one, other), (other, one)):
+        wanted = live(last)
+        assert np.abs(live(first, last) - wanted).max() <= 1
+        if name != "smooth":
+            assert np.abs(live(first) - wanted).max() > 2
+
+
 def test_no_line_is_left_of_a_field_that_is_gone():
     known = {(place.__name__, name) for place, _, name in CASES}
     assert known >= set(WITHOUT)

@@ -132,6 +132,8 @@ class Fragments:
         self._stroke = stroke
         self._key: object = None
         self._plan: Plan | None = None
+        #: Whether the colour is the material's.
+        self._colored = False
         #: Height of the fur whose normal has the length 2.
         self.tallest = 0.0
         #: Height fields that the eye sees from behind.
@@ -178,6 +180,7 @@ class Fragments:
         if live.scalars is None:
             own = None if live.scene is None else (live.scene.material.color or WHITE)
             given = drawing.get("color")
+            self._colored = given is None
             usual = WHITE if drawing.get("texture") is not None else True
             drawing["color"] = (usual if own is None else own) if given is None else given
         return drawing
@@ -189,6 +192,8 @@ class Fragments:
         if live.scene is None:
             return
         material = live.scene.material
+        if self._colored:
+            prop.SetColor(*(material.color or WHITE))
         prop.SetAmbient(min(material.ambient, 1.0))
         prop.SetDiffuse(min(material.diffuse, 1.0))
         prop.SetSpecular(min(material.specular, 1.0))

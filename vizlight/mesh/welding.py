@@ -55,6 +55,11 @@ def keep_normals(mesh: pv.PolyData) -> None:
     """Keep the normals of a surface without creases at points that only their arrays tell apart.
 
     Along the seam of a texture, or where colours differ, light is then as smooth as the surface.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Surface of polygons; where it has no sharp edge, its point normals are set.
     """
     if mesh.n_cells != mesh.GetNumberOfPolys() or mesh.n_points < normals.FEWEST:
         return
