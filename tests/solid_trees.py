@@ -7,7 +7,7 @@ import numpy as np
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
-from vizlight.geometry.solids import repair
+from vizlight.geometry.solids import placement
 from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
@@ -216,7 +216,7 @@ def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0, bounds=F
             found.append(f"bounds {low:.6g} to {high:.6g}, sampled {expected:.6g}")
         if volume + error < low or volume - error > high:
             found.append(f"bounds {low:.6g} to {high:.6g} without {volume:.6g} +- {error:.2g}")
-    flips = int(np.count_nonzero(repair.flipped(mesh)))
+    flips = int(np.count_nonzero(placement.flipped(mesh)))
     if flips:
         found.append(f"{flips} of {len(mesh.triangles)} flipped")
     if levels and len(mesh.triangles):

@@ -297,9 +297,8 @@ class _Tree:
         placed = placement.place(mesh, tolerance)
         if placed.volume_missing > self.allowed(placed):
             # Facets of walls thinner than their distance from the surfaces stay parallel.
-            own = placement.unplaced(mesh)
-            if own.volume_missing <= self.allowed(own):
-                placed = own
+            if mesh.volume_missing <= self.allowed(mesh):
+                placed = mesh
         # The facets are within the sum of what the primitives miss; moving the points adds to it.
         bound += abs(placed.volume - whole.volume())
         return dataclasses.replace(placed, volume_error=bound)
