@@ -295,10 +295,10 @@ class _Tree:
             self.scale,
         )
         placed = placement.place(mesh, tolerance)
-        if placed.volume_missing > self.allowed(placed):
+        fits = mesh.volume_missing <= self.allowed(mesh)
+        if fits and placed.volume_missing > self.allowed(placed):
             # Facets of walls thinner than their distance from the surfaces stay parallel.
-            if mesh.volume_missing <= self.allowed(mesh):
-                placed = mesh
+            placed = mesh
         # The facets are within the sum of what the primitives miss; moving the points adds to it.
         bound += abs(placed.volume - whole.volume())
         return dataclasses.replace(placed, volume_error=bound)
