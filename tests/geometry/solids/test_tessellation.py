@@ -307,7 +307,7 @@ def test_thin_tubes_and_narrow_bores(wall, offset):
 @pytest.mark.parametrize("kind", solid_trees.KINDS)
 @pytest.mark.parametrize("seed", [0, 11])
 def test_random_trees(kind, seed):
-    found, _ = solid_trees.problems(solid_trees.tree(kind, seed, 2026), bounds=True)
+    found, _ = solid_trees.problems(solid_trees.tree(kind, seed, 2026))
     assert not found
 
 
@@ -360,17 +360,15 @@ def test_the_volume_keeps_its_bound(name, tolerance):
     solid, volume, _ = CLOSED_FORMS[name]
     mesh = mesh_of(solid, tolerance)
     assert abs(mesh.volume * mesh.scale**3 - volume) <= mesh.volume_error * mesh.scale**3
-    low, high = solids.volume_bounds(solid, tolerance=tolerance)
-    assert low <= volume <= high
     # Twice the number of segments quarters what the facets miss.
-    closer = solids.volume_bounds(solid, tolerance=tolerance / 4)
-    assert closer[1] - closer[0] < 0.6 * (high - low)
+    closer = mesh_of(solid, tolerance / 4)
+    assert closer.volume_error < 0.6 * mesh.volume_error
 
 
 def test_bounds_of_planar_solids_are_exact_to_rounding():
-    low, high = solids.volume_bounds(Block() - Block((0, 0, 0.5), (0.5, 0.5, 0.5)))
-    assert low <= 1 - 0.5**3 / 2 <= high
-    assert high - low < 1e-8
+    mesh = mesh_of(Block() - Block((0, 0, 0.5), (0.5, 0.5, 0.5)))
+    error = mesh.volume_error * mesh.scale**3
+    assert abs(mesh.volume * mesh.scale**3 - (1 - 0.5**3 / 2)) <= error < 1e-8
 
 
 def test_a_gap_below_the_facets_is_held_or_refused():
