@@ -12,8 +12,6 @@ from vizlight import _check
 from vizlight.model import falloff
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from vizlight._types import Array, VectorLike
 
 
@@ -115,17 +113,7 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     return first, np.cross(axis, first)
 
 
-def segments(value: int | None) -> int | None:
-    """Validate the number of segments of a circle."""
-    return None if value is None else _check.integer("segments", value, low=3)
-
-
-def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:
-    """Return where from 0 to an end a luminance that falls reaches each level, by halving."""
-    low, high = np.zeros(len(levels)), np.full(len(levels), end)
-    while True:
-        middle = (low + high) / 2
-        if np.all((middle == low) | (middle == high)):
-            return high
-        bright = luminance(middle) > levels
-        low, high = np.where(bright, middle, low), np.where(bright, high, middle)
+def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
+    """Validate the number of segments of a circle and the form of the result."""
+    _check.choice("form", form, forms)
+    return None if segments is None else _check.integer("segments", segments, low=3)
