@@ -82,7 +82,7 @@ def part_of(
             sided = sided_normals(
                 mesh, options.normals, n, options.facing, kept=known, starts=starts, told=told
             )
-            if tangents is None and n == 3:
+            if tangents is None and n == 3 and polylines.has_several_kinds(mesh):
                 tangents, sided, dimensions = _several(mesh, sided)
             normals = sided.facing(options.facing, points, scene.view)
             alike = scene.view is None and _alike(sided, options.facing)

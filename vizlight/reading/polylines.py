@@ -34,15 +34,22 @@ def has_lines_only(mesh: Dataset) -> bool:
     return False
 
 
+def has_several_kinds(mesh: Dataset) -> bool:
+    """Return whether a mesh has lines or vertices beside other cells."""
+    if isinstance(mesh, vtkPolyData):
+        return has_faces(mesh) and mesh.GetNumberOfLines() + mesh.GetNumberOfVerts() > 0
+    kinds = hull.cell_types(mesh) if isinstance(mesh, vtkUnstructuredGrid) else set()
+    thin = kinds & (LINES | POINTS)
+    return bool(thin) and thin < kinds
+
+
 def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
-    """Return what each point of a mesh of several kinds of cells is, None where all are one kind.
+    """Return what each point of a mesh of several kinds of cells is, None where all are on faces.
 
     2 on a face, or where ``carried`` says that a point has a normal of its own, 1 on lines, 0 on
     vertices. A point that a face and a line have in common is the face's.
     """
     surface, origin = _flat(mesh)
-    if not has_faces(surface) or not (surface.GetNumberOfLines() or surface.GetNumberOfVerts()):
-        return None
     found = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
     found[connectivity(surface.GetVerts())[0]] = 0.0
     own = ~carried if origin is None else (origin < 0) | ~carried[origin]
