@@ -6,7 +6,7 @@ from studies import isoluminance
 
 
 def test_the_contours_of_smooth_normals_are_circles_and_those_of_light_at_points_come_near():
-    (ours, coarse), (_, fine) = (isoluminance.measure(side, 1) for side in (24, 48))
+    (ours, coarse), (_, fine) = (isoluminance.measure(side, 1) for side in (16, 64))
     assert ours.way == "isoluminance(mesh)"
     assert ours.error < 1e-5
     assert 1e-3 < fine.error < coarse.error / 3
