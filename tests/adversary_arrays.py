@@ -77,12 +77,6 @@ CALLS = {
         "eye": View(position=(0, 4, 0)),
     },
     "geometry.lines.curves.polyline_tangents": lambda: {"points": np.cumsum(unit(5, 3), axis=0)},
-    "geometry.lines.fur.grow": lambda: {
-        "roots": unit(4, 3),
-        "directions": unit(4, 3),
-        "lengths": np.full(4, 0.1),
-        "segments": 3,
-    },
     "geometry.lines.fur.seeds": lambda: dict(
         zip(("points", "faces"), triangles(), strict=True), count=5
     ),
@@ -165,10 +159,6 @@ CALLS = {
     "geometry.solids.primitives.Sphere": dict,
     "geometry.solids.primitives.Torus": dict,
     "geometry.solids.tessellation.tessellate": lambda: {
-        "solid": vizlight.Sphere(),
-        "tolerance": 0.1,
-    },
-    "geometry.solids.tessellation.volume_bounds": lambda: {
         "solid": vizlight.Sphere(),
         "tolerance": 0.1,
     },

@@ -181,7 +181,6 @@ ALIASES = {
 MARKED = {
     "model.half_vector.identity": ("^result$", "NaN where a vector is zero or not finite"),
     "model.half_vector.reflection": ("^result$", "NaN where a vector is zero or not finite"),
-    "geometry.lines.fur.grow": ("^result$", "NaN where an array is not finite"),
     "geometry.nspace.parametric.Manifold": (
         r"^\.(points|frame)$",
         "Numbers that are not finite are kept",

@@ -124,16 +124,19 @@ def test_no_seeds():
     assert weights.shape == (0, 3)
 
 
+def grown(directions, lengths, toward=None, **options):
+    """Return fibres, shape (F, S + 1, 3)."""
+    toward = None if toward is None else toward.T.copy()
+    return fur.strands(directions.T.copy(), lengths, toward=toward, **options).transpose(2, 0, 1)
+
+
 def test_straight_fibres(random):
-    roots = random.standard_normal((20, 3))
     direction = random.standard_normal((20, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     length = random.uniform(0.1, 2, 20)
-    strand = fur.grow(roots, direction, length, segments=4)
+    strand = grown(direction, length, segments=4)
     assert strand.shape == (20, 5, 3)
-    expected = (
-        roots[:, None] + np.linspace(0, 1, 5)[:, None] * (length[:, None] * direction)[:, None]
-    )
+    expected = np.linspace(0, 1, 5)[:, None] * (length[:, None] * direction)[:, None]
     np.testing.assert_allclose(strand, expected, atol=1e-14)
 
 
@@ -141,19 +144,18 @@ def test_straight_fibres(random):
     "shape", [{"bend": 2.0}, {"curl": 1.5, "turns": 3.0}, {"bend": -1.0, "curl": 0.5}]
 )
 def test_segments_keep_their_length(shape, random):
-    roots = np.zeros((30, 3))
     direction, toward = random.standard_normal((2, 30, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     toward /= np.linalg.norm(toward, axis=1, keepdims=True)
     phase = random.uniform(0, 6, 30)
-    strand = fur.grow(roots, direction, 0.7, segments=5, toward=toward, phase=phase, **shape)
+    strand = grown(direction, 0.7, segments=5, toward=toward, phase=phase, **shape)
     step = np.linalg.norm(np.diff(strand, axis=1), axis=2)
     np.testing.assert_allclose(step, 0.7 / 5, rtol=1e-12)
 
 
 def test_bend_goes_toward_more_and_more():
     up, right = np.array([[0.0, 0, 1]]), np.array([[1.0, 0, 0]])
-    strand = fur.grow(np.zeros((1, 3)), up, 1.0, segments=8, toward=right, bend=1.5)[0]
+    strand = grown(up, 1.0, segments=8, toward=right, bend=1.5)[0]
     step = np.diff(strand, axis=0)
     lean = step[:, 0] / step[:, 2]
     np.testing.assert_allclose(lean, 1.5 * (np.arange(8) + 0.5) / 8)
@@ -162,7 +164,7 @@ def test_bend_goes_toward_more_and_more():
 
 def test_curl_turns_about_the_direction():
     up = np.array([[0.0, 0, 1]])
-    strand = fur.grow(np.zeros((1, 3)), up, 1.0, segments=40, curl=1.0, turns=2.0)[0]
+    strand = grown(up, 1.0, segments=40, curl=1.0, turns=2.0)[0]
     step = np.diff(strand, axis=0)
     angle = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
     assert abs(angle[-1] - angle[0]) == pytest.approx(2 * 2 * np.pi * 39 / 40)

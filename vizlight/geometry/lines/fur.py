@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-__all__ = ["grow", "seeds"]
+__all__ = ["seeds"]
 
 #: Number of seeds per block; each block has its own random generator, independent of threads.
 SEED_BLOCK = 1 << 16
@@ -206,8 +206,7 @@ def seed_block(total: Array, draws: Draws) -> tuple[Indices, Array]:
     return face, weights
 
 
-def grow(
-    roots: Array,
+def strands(
     directions: Array,
     lengths: Array | float,
     /,
@@ -219,19 +218,17 @@ def grow(
     turns: float = 1.0,
     phase: Array | None = None,
 ) -> Array:
-    """Return the points of fibres that grow from their roots.
+    """Return the points of fibres relative to their roots.
 
     Parameters
     ----------
-    roots : ndarray, shape (F, 3)
-        Positions of the roots.
-    directions : ndarray, shape (F, 3)
+    directions : ndarray, shape (3, F)
         Unit directions of the fibres at the root.
     lengths : ndarray, shape (F,), or float
-        Lengths along the fibre, in the unit of the roots.
+        Lengths along the fibre, in any unit.
     segments : int
         Number S of segments of equal length per fibre, 1 or more.
-    toward : ndarray, shape (F, 3), optional
+    toward : ndarray, shape (3, F), optional
         Unit directions that the fibres bend toward.
     bend : float, default: 0.0
         Multiple of ``toward`` that is added to the direction at the tip; it grows from 0 at the
@@ -246,60 +243,9 @@ def grow(
 
     Returns
     -------
-    ndarray, shape (F, S + 1, 3)
-        Points from root to tip, of the type of the roots; NaN where an array is not finite.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument does not hold real numbers or does not have its shape, or a number is not
-        finite or above 1e9.
+    ndarray, shape (S + 1, 3, F)
+        Points from root to tip, of the type of the directions; NaN where an array is not finite.
     """
-    places = _check.vectors("roots", roots, n=3)
-    if places.ndim != 2:
-        raise ValueError(_check.message("roots", "shape (F, 3)", places))
-    count = len(places)
-
-    def rows(name: str, value: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-        array = _check.floats(name, value).astype(places.dtype, copy=False)
-        if array.shape not in shapes:
-            expected = " or ".join(f"shape {shape}" for shape in shapes)
-            raise ValueError(_check.message(name, f"{expected}, one for each of roots", array))
-        return array
-
-    def number(name: str, value: float) -> float:
-        return _check.number(name, value, low=-_check.LARGEST, high=_check.LARGEST)
-
-    segments = _check.integer("segments", segments, low=1)
-    _check.holds("segments", (segments, *places.shape))
-    grown = strands(
-        np.ascontiguousarray(rows("directions", directions, (count, 3)).T),
-        rows("lengths", lengths, (count,), ()),
-        segments=segments,
-        toward=(
-            None if toward is None else np.ascontiguousarray(rows("toward", toward, (count, 3)).T)
-        ),
-        bend=number("bend", bend),
-        curl=number("curl", curl),
-        turns=number("turns", turns),
-        phase=None if phase is None else rows("phase", phase, (count,)),
-    )
-    return np.ascontiguousarray(grown.transpose(2, 0, 1)) + places[:, np.newaxis]
-
-
-def strands(
-    directions: Array,
-    lengths: Array | float,
-    /,
-    *,
-    segments: int,
-    toward: Array | None = None,
-    bend: float = 0.0,
-    curl: float = 0.0,
-    turns: float = 1.0,
-    phase: Array | None = None,
-) -> Array:
-    """Return the points of :func:`grow` relative to their roots, shape (S + 1, 3, F)."""
     kind = directions.dtype
     out = np.zeros((segments + 1, *directions.shape), kind)
     step = np.asarray(lengths, kind) / segments

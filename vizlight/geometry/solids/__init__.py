@@ -1,5 +1,5 @@
 """Spheres, frusta and blocks, Boolean combinations of them, and their closed meshes."""
 
-from vizlight.geometry.solids.tessellation import tessellate, volume_bounds
+from vizlight.geometry.solids.tessellation import tessellate
 
-__all__ = ["tessellate", "volume_bounds"]
+__all__ = ["tessellate"]

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.solids import repair, triangle_mesh
+from vizlight.geometry.solids import triangle_mesh
 from vizlight.geometry.solids.exact_surfaces import onto
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
 #: Length of the part of a normal that is independent of other normals at a point: below it two
@@ -22,6 +22,8 @@ REACH = 20
 ROUNDS = 8
 #: Distance below which neighbouring points are one point.
 SAME = 1e-9
+#: Twice the area below which a triangle has no side, to rounding of normalised points.
+FLAT = 1e-14
 
 
 def place(mesh: Mesh, tolerance: float) -> Mesh:
@@ -38,22 +40,12 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     -------
     Mesh
         Mesh with each point on one surface, on two at a crease or on three at a corner, to
-        rounding. Where two surfaces touch, a point is on one of them. Triangles that this would
-        flip are removed by changes of their edges. Where such changes do not help, points stay
-        where they are.
+        rounding. Where two surfaces touch, a point is on one of them. Points that would flip a
+        triangle stay where they are.
     """
-    straight = repair.straighten(mesh)
-    points = _placed(straight, tolerance)
-    found = repair.upright(_merge(straight.replace(points, straight.triangles, straight.patch)))
-    if not repair.flipped(found).any():
-        return found
-    found = _kept(straight, points)
-    return found if not repair.flipped(found).any() else unplaced(mesh)
-
-
-def unplaced(mesh: Mesh) -> Mesh:
-    """Return a mesh with its own points, which are on the facets of its primitives."""
-    return _kept(mesh, mesh.points)
+    points = _placed(mesh, tolerance)
+    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
+    return _kept(mesh, points) if flipped(found).any() else found
 
 
 def _placed(mesh: Mesh, tolerance: float) -> Array:
@@ -75,11 +67,19 @@ def _kept(mesh: Mesh, points: Array) -> Mesh:
     points = points.copy()
     while True:
         found = mesh.replace(points, mesh.triangles, mesh.patch)
-        corners = np.unique(mesh.triangles[repair.flipped(found)])
+        corners = np.unique(mesh.triangles[flipped(found)])
         moved = corners[np.any(points[corners] != mesh.points[corners], axis=1)]
         if not len(moved):
-            return repair.upright(found)
+            return found
         points[moved] = mesh.points[moved]
+
+
+def flipped(mesh: Mesh) -> Bools:
+    """Return the triangles whose normal points into the solid."""
+    corners = mesh.points[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = triangle_mesh.normals_of(mesh, corners.mean(axis=1), mesh.patch)
+    return np.asarray(np.einsum("ij,ij->i", across, normal) < -FLAT)
 
 
 def _meeting(mesh: Mesh) -> Indices:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices
 
 
-__all__ = ["tessellate", "volume_bounds"]
+__all__ = ["tessellate"]
 
 #: Largest number of points of all primitives together.
 MOST = 400_000
@@ -124,43 +124,6 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     raise ValueError(_check.message("tolerance", expected, given, remedy))
 
 
-def volume_bounds(solid: Solid, /, *, tolerance: float = 3e-3) -> tuple[float, float]:
-    """Return a lower and an upper bound of the exact volume of a solid.
-
-    Parameters
-    ----------
-    solid : Solid
-        Primitive, or a combination of primitives.
-    tolerance : float, default: 3e-3
-        Largest distance of facets from surfaces, as for :func:`tessellate`.
-
-    Returns
-    -------
-    low, high : float
-        Bounds, in the cubed unit of the solid.
-
-    Raises
-    ------
-    ImportError, TypeError, ValueError
-        As for :func:`tessellate`.
-
-    Notes
-    -----
-    A Boolean combination without complements grows with each primitive that is added or common, and
-    shrinks with each that is subtracted. Facets inscribed in the former and circumscribed about the
-    latter bound it from below, and the reverse from above. Both combinations are computed, which
-    takes twice the time of one. The bounds include the rounding of coordinates.
-    """
-    tolerance = _checked(solid, tolerance)
-    tree = _Tree(solid, tolerance)
-    segments = tree.segments(tolerance)
-    found = []
-    for side in (-1.0, 1.0):
-        whole, area = tree.combined(segments, side)
-        found.append((whole.volume() + side * ROUNDING * area) * tree.scale**3)
-    return max(found[0], 0.0), found[1]
-
-
 def _checked(solid: Solid, tolerance: float) -> float:
     """Return the tolerance if both arguments are valid and the solid can be computed."""
     if not isinstance(solid, Solid):
@@ -246,30 +209,19 @@ class _Tree:
                     found[i] = max(found[i], 4 * math.ceil(fine / 4))
         return found
 
-    def combined(self, segments: list[int], side: float = 0.0) -> tuple[manifold3d.Manifold, float]:
-        """Return the combination of faceted primitives.
-
-        For a side of 0 all facets are inscribed, and the second number is a bound of the difference
-        of the volume from the exact one. For -1 or 1 the combination lies inside or outside of the
-        exact solid, and the second number is the area of all primitives.
-        """
+    def combined(self, segments: list[int]) -> tuple[manifold3d.Manifold, float]:
+        """Return the combination of faceted primitives, and a bound of its missing volume."""
         from manifold3d import Manifold
 
         leaves: list[manifold3d.Manifold] = []
         total = 0.0
-        for part, sign, count, first in zip(
-            self.parts, _signs(self.solid, 1.0), segments, self.first, strict=True
-        ):
+        for part, count, first in zip(self.parts, segments, self.first, strict=True):
             if part.empty:
                 leaves.append(Manifold())
                 continue
-            used = triangle_mesh.around(part, count, side * sign) if side else part
-            leaves.append(Manifold() if used.empty else _leaf(used, count, self.equal[first:]))
-            area = leaves[-1].surface_area()
-            if not side:
-                total += triangle_mesh.missed(part, count, leaves[-1].volume()) + ROUNDING * area
-            else:
-                total += area
+            leaves.append(_leaf(part, count, self.equal[first:]))
+            total += triangle_mesh.missed(part, count, leaves[-1].volume())
+            total += ROUNDING * leaves[-1].surface_area()
         return _combine(self.solid, iter(leaves)), total
 
     def mesh(self, segments: list[int], tolerance: float) -> Mesh:
@@ -295,11 +247,10 @@ class _Tree:
             self.scale,
         )
         placed = placement.place(mesh, tolerance)
-        if placed.volume_missing > self.allowed(placed):
+        fits = mesh.volume_missing <= self.allowed(mesh)
+        if fits and placed.volume_missing > self.allowed(placed):
             # Facets of walls thinner than their distance from the surfaces stay parallel.
-            own = placement.unplaced(mesh)
-            if own.volume_missing <= self.allowed(own):
-                placed = own
+            placed = mesh
         # The facets are within the sum of what the primitives miss; moving the points adds to it.
         bound += abs(placed.volume - whole.volume())
         return dataclasses.replace(placed, volume_error=bound)

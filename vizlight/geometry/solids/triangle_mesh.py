@@ -129,28 +129,6 @@ def missed(unit: Primitive, segments: int, volume: float) -> float:
     return 1e-14 if isinstance(unit, Polyhedron | HalfSpace) else abs(unit.volume - volume) + 1e-14
 
 
-def around(solid: Primitive, segments: int, side: float) -> Primitive:
-    """Return a primitive whose mesh contains the exact primitive, or is inside of it.
-
-    ``side`` is 1 or -1 for the one and the other.
-    """
-    if isinstance(solid, Torus):
-        tube = solid.tube_radius + side * 1.5 * ring_error(solid, segments)
-        return Torus(solid.center, solid.axis, solid.ring_radius, max(tube, 0.0))
-    if side < 0:
-        return solid
-    if isinstance(solid, Sphere):
-        points, triangles, _ = _ball(Sphere(), segments)
-        a, b, c = (points[triangles[:, i]] for i in range(3))
-        across = np.cross(b - a, c - a)
-        height = np.einsum("ij,ij->i", a, across) / np.linalg.norm(across, axis=1)
-        return Sphere(solid.center, solid.radius / height.min())
-    if isinstance(solid, Frustum):
-        wide = np.array(solid.radii) / math.cos(math.pi / segments)
-        return Frustum(solid.center, solid.axis, wide, height=solid.height)
-    return solid
-
-
 def _across_segments(unit: Torus, segments: int) -> int:
     """Return the number of segments of a torus's cross-section."""
     return max(12, math.ceil(segments * math.sqrt(unit.tube_radius / unit.roundness)))
