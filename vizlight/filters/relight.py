@@ -273,14 +273,13 @@ def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  
 def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
     from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
-    from vizlight.filters.tint import RGB
 
     kept = {name: value for name, value in options.items() if name != "occluders" or value}
     made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
     arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
     seen, field = _Seen(), mesh.copy(deep=False)
     # Colours of data, which tint() has put in the place of the light's.
-    field.point_data.pop(RGB, None)
+    field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
     with engine.observed(seen), warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
