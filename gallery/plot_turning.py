@@ -27,12 +27,12 @@ fibres["torus"] = np.repeat([0.0, 1.0, 2.0], fibres.n_points // 3)
 light, eye = (kind(direction=(0.3, -1, 0.6, 0)) for kind in (Light, View))
 scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9, specular=0))
 
-plotter = pv.Plotter(off_screen=True, window_size=(400, 380))
+plotter = pv.Plotter(off_screen=True, window_size=(360, 340))
 plotter.background_color = "#101a2a"
 plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.52)
 plotter.enable_anti_aliasing("ssaa")
 plotter.open_gif(Path(mkdtemp()) / "turning.gif", fps=9)
-for angle in np.linspace(0, np.pi, 26, endpoint=False):
+for angle in np.linspace(0, np.pi, 24, endpoint=False):
     turned = {"rotation": ("xw", angle), "distance": 1.3, "light": "before"}
     lit = vizlight.project(fibres, scene=scene, **turned)
     lit = vizlight.tint(lit, "torus", cmap=["#74adfe", "#f689b3", "#cba656"])
