@@ -119,7 +119,7 @@ class _FieldCaster:
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
-        self._field = height_field.make(found.x, found.y, found.z, base=None, border=options.border)
+        self._field = height_field.make(found.x, found.y, found.z, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
         self._to_points, self._method = found.to_points, options.method

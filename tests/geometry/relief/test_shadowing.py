@@ -85,7 +85,7 @@ def test_far_from_the_origin_in_float32(method):
 @pytest.mark.parametrize("depth", [0, 0.1])
 def test_no_normal_no_light(normal, depth):
     x, y, z = hills(12, 9)
-    normals = height_field.normals(height_field.make(x, y, z, base=None, border="extend"))
+    normals = height_field.normals(height_field.make(x, y, z, border="extend"))
     options = {"depth": depth, "direction": sun(50, 30), "method": "exact"}
     expected = relief.shadow(x, y, z, normals=normals, **options)
     expected[2, 3] = 0
