@@ -11,7 +11,8 @@ from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
-from vizlight.mesh import blocks, embree_rays, parallel_rays
+from vizlight.geometry.solids import parallel_rays
+from vizlight.mesh import blocks, embree_rays
 from vizlight.reading.cells import faces_only, triangles
 
 if TYPE_CHECKING:
