@@ -14,6 +14,7 @@ from vizlight import _check
 from vizlight.geometry.solids import parallel_rays
 from vizlight.mesh import blocks, embree_rays
 from vizlight.reading.cells import faces_only, triangles
+from vizlight.reading.topology import Owners, coincident
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,21 +75,15 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
     points = np.asarray(surface.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
         raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
+    # Zeros are added, because -0 is 0.
+    first = coincident(points + 0.0, Owners())
     there = np.zeros(len(points), np.bool_)
     there[corners] = True
     used = np.flatnonzero(there)
-    # Zeros are added, because -0 is 0.
-    rows = points[used] + 0.0
-    order = np.lexsort(rows.T)
-    first = np.ones(len(used), np.bool_)
-    first[1:] = np.any(rows[order[1:]] != rows[order[:-1]], axis=1)
-    same = np.empty(len(used), np.intp)
-    same[order] = np.cumsum(first) - 1
-    vertices = rows[order[first]]
-    place = np.cumsum(there) - 1
-    corners = same[place[corners]]
+    kept, same = np.unique(used if first is None else first[used], return_inverse=True)
+    corners = same.reshape(-1)[(np.cumsum(there) - 1)[corners]]
     a, b, c = corners.T
-    return vertices, corners[(a != b) & (b != c) & (c != a)], used, same
+    return points[kept], corners[(a != b) & (b != c) & (c != a)], used, same.reshape(-1)
 
 
 def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
