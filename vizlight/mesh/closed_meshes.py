@@ -241,7 +241,9 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
     Events are in the order from the end of the ray to its start, where a last event at distance 0
     makes the sum of the changes 0.
     """
-    reach = np.minimum(reach, _beyond(body, start))
+    # Farther away no ray can meet the solid.
+    away = np.linalg.norm(start - body.vertices.mean(axis=0), axis=1)
+    reach = np.minimum(reach, away + 2 * body.size)
     ray, cell, repeated = hits(body, start, way, reach)
     normal = body.normals[cell]
     against = np.einsum("ij,ij->i", way[ray], normal)
@@ -279,12 +281,6 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
     before = np.append(False, within[:-1])
     change = within.astype(np.intp) - before.astype(np.intp)
     return ray, s, change
-
-
-def _beyond(body: Solid, start: Array) -> Array:
-    """Return a length of each ray beyond which it cannot meet the solid."""
-    centre = body.vertices.mean(axis=0)
-    return np.asarray(np.linalg.norm(start - centre, axis=1) + 2 * body.size)
 
 
 def is_inside(body: Solid, place: Array) -> bool:
