@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from vizlight import Light, View
-from vizlight.geometry import isoluminance
-from vizlight.geometry.contours import spacing
 from vizlight.geometry.contours.isoluminance import sphere, virtual_light
 
 LIGHTS = {
@@ -113,13 +111,6 @@ def test_a_sphere_of_radius_0_has_no_cells():
     assert len(bands.points) == len(bands.values) == len(bands.lines) == 0
 
 
-def test_equal_steps_are_equally_far_along_the_axis():
-    """The source: latitudes have a cosine distribution along the light's direction."""
-    bands = sphere((0, 0, 0), 1.0, direction=(0, 0, 1), levels=8)
-    height = np.unique(np.round(bands.points[np.unique(bands.lines)][:, 2], 12))
-    np.testing.assert_allclose(height, np.arange(8) / 8, atol=1e-12)
-
-
 def test_virtual_light_is_exact_for_the_half_vector(random):
     light, eye = np.array([1.0, 0.2, 0.4]), np.array([-0.3, 0.9, 0.5])
     toward = virtual_light((0, 0, 0), light=light, eye=eye)
@@ -169,8 +160,3 @@ def test_bad_shapes():
         sphere((0, 0, 0), -1.0, direction=(0, 0, 1))
     with pytest.raises(ValueError, match="center: expected 3 components"):
         sphere((0, 0), 1.0, direction=(0, 0, 1))
-
-
-def test_public_names():
-    assert set(isoluminance.__all__) <= set(dir(isoluminance))
-    assert spacing.steps(3, 0, 1).error == pytest.approx(1 / 6)
