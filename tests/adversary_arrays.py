@@ -56,6 +56,7 @@ def half():
 
 #: Arguments of a valid call by the name of the callable; positional ones by name too.
 CALLS = {
+    "geometry.contours.banding.Laminae.order": lambda: {"toward": UP},
     "geometry.contours.frustum.truncus": lambda: {
         "center": (0, 0, 0),
         "axis": (0, 0, 1),

@@ -31,6 +31,7 @@ BESIDE = (
 #: Public classes that only vizlight makes, and methods that only it calls.
 RETURNED = {
     "geometry.contours.banding.Bands": "returned by sphere and truncus",
+    "geometry.contours.banding.Laminae": "returned by sphere and truncus",
     "observers.record.Legibility": "returned by legibility",
     "model.cylinder.Gradient": "returned by the gradients",
     "model.highlights.MaximumError": "returned by max_pixel_error",
@@ -125,6 +126,9 @@ CALLS = {**adversary_arrays.CALLS, **meshes.CALLS}
 #: Objects whose methods are called.
 SELF = {
     **{name: vizlight.Sphere for name in CALLS if name.startswith("geometry.solids.base.Solid.")},
+    "geometry.contours.banding.Laminae.order": lambda: vizlight.geometry.isoluminance.sphere(
+        (0, 0, 0), 1.0, direction=adversary_arrays.UP, levels=4, form="laminae"
+    ),
     "draw.component.Component.add_key": lambda: meshes.plotter().vizlight,
     "draw.component.Component.add_mesh": lambda: meshes.plotter().vizlight,
     "draw.component.Component.explain": lambda: meshes.LAST[0].vizlight,

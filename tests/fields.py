@@ -1,4 +1,4 @@
-"""Height fields as arrays and as grids, places on them, directions to the sun; swatches."""
+"""Height fields, places on them, directions to the sun; swatches; cells of several kinds."""
 
 from __future__ import annotations
 
@@ -105,3 +105,19 @@ def half_known():
     mesh["V"] = np.stack([0 * x, (x <= 0.05) * 1.0, 0 * x], axis=1)
     mesh["height"] = np.where(y <= 0.05, x + y, np.nan)
     return mesh
+
+
+def several_kinds(fine=8):
+    """Return faces, a line that starts on them and vertices in one mesh, and each by itself."""
+    ball = pv.Sphere(theta_resolution=fine, phi_resolution=fine)
+    faces = pv.PolyData(ball.points, faces=ball.faces)
+    t = np.linspace(0, 1, 10 * fine)[:, None]
+    start = faces.points[-1].astype(np.float64)
+    around = np.hstack([np.sin(12 * t), 1 - np.cos(12 * t), t - 0.3 * t**2])
+    lines = pv.MultipleLines(start + 0.5 * around)
+    vertices = pv.PolyData(start + np.array([[0.5, -0.6, -0.2], [-0.6, 0.5, 0.3], [0.2, 1.3, -1]]))
+    points = np.concatenate([faces.points, lines.points[1:], vertices.points])
+    mixed, own, count = pv.PolyData(points, faces=faces.faces), faces.n_points - 1, lines.n_points
+    mixed.SetLines(pv.CellArray(np.r_[count, own + np.arange(count)]))
+    mixed.SetVerts(pv.CellArray(np.c_[np.ones(3, int), own + count + np.arange(3)].ravel()))
+    return mixed, (faces, lines, vertices)

@@ -80,6 +80,33 @@ def test_colours_of_data_are_those_of_tint(tmp_path):
     np.testing.assert_allclose(255 * seen(colors), lit["rgb"], atol=1.01)
 
 
+@pytest.mark.parametrize("as_grid", [False, True])
+def test_a_cell_has_one_colour_and_light_stays_smooth(as_grid, tmp_path):
+    ball = pv.Sphere(theta_resolution=9, phi_resolution=9)
+    ball.clear_data()
+    ball["kind"] = np.arange(ball.n_cells) % 5
+    mesh = ball.cast_to_unstructured_grid() if as_grid else ball
+    scene = Scene(lights=FAR, material=Material(ambient=0.4, diffuse=0.5, specular=0))
+    path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="kind", cmap="tab10")
+    text, arrays = content(path)
+    primitive = text["meshes"][0]["primitives"][0]
+    colors, places = (arrays[primitive["attributes"][key]] for key in ("COLOR_0", "POSITION"))
+    corners = arrays[primitive["indices"]].reshape(-1, 3)
+    shown = seen(colors)
+    hue = shown / np.maximum(shown.max(axis=1, keepdims=True), 1e-9)
+    assert np.ptp(hue[corners], axis=1).max() < 0.03
+    assert len(np.unique(np.round(hue[corners[:, 0]], 1), axis=0)) == 5
+    # The light of a point is the same in all of its colours, and that of the sphere.
+    light = vizlight.illuminate(ball, scene)["luminance"]
+    bright = shown.max(axis=1)
+    nearest = [ball.find_closest_point(x + text["nodes"][1]["translation"]) for x in places]
+    full = {k: np.max(bright[corners[ball["kind"] == k]] / light[np.asarray(nearest)[
+        corners[ball["kind"] == k]]]) for k in range(5)}  # fmt: skip
+    for k, most in full.items():
+        at = corners[ball["kind"] == k]
+        np.testing.assert_allclose(bright[at], most * light[np.asarray(nearest)[at]], atol=0.02)
+
+
 def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path):
     lines = vizlight.load_example("fibre_bundle.vtp")
     lines["x"] = np.asarray(lines.points[:, 0], dtype=np.float64)

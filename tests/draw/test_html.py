@@ -16,7 +16,7 @@ import zlib
 import numpy as np
 import pytest
 import pyvista as pv
-from fields import half_known, swatches
+from fields import half_known, several_kinds, swatches
 from lamps import HEADLIT, SHINY, shiny
 from PIL import Image
 
@@ -81,6 +81,9 @@ CASES = {
         torus,
         Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
         {"normals": "n", "model": "blinn"},
+    ),
+    "faces, lines and vertices": (
+        lambda: several_kinds(120)[0], Scene(lights=[FAR, NEAR], material=SHINY), {}
     ),
     "far from the origin": (
         lambda: torus(AWAY),

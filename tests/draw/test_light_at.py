@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import several_kinds
 from lamps import shiny
 
 import vizlight
@@ -38,6 +39,10 @@ SCENE = Scene(
 )
 
 
+def lit_by(camera):
+    return SCENE.replace(view=View.from_camera(camera))
+
+
 def test_pictures_are_right_between_the_points():
     coarse, fine = (
         picture(vizlight.illuminate(helix(count), SCENE), camera=CAMERA) for count in (61, 6001)
@@ -46,6 +51,23 @@ def test_pictures_are_right_between_the_points():
     both = (fine.min(axis=-1) > 0) & (coarse.min(axis=-1) > 0)
     errors = [np.abs(shown - fine)[both].mean() for shown in (coarse, points)]
     assert errors[0] < 0.5 * errors[1]
+
+
+@pytest.mark.parametrize("sky", [False, True])
+def test_faces_lines_and_vertices_have_the_light_of_their_points(sky):
+    mesh, options = several_kinds(120)[0], {}
+    if sky:
+        mesh["sky"] = np.linspace(0.2, 1, mesh.n_points)
+        options = {"occlusion": "sky"}
+    camera = render.camera_on(mesh.bounds, (1, 0.5, 0.6))
+    lit = vizlight.illuminate(mesh, lit_by(camera), **options)
+    look = {"camera": camera, "scalars": "luminance"}
+    got, expected = picture(lit, **look), picture(lit, light="points", **look)
+    error = np.abs(got - expected).max(axis=-1)[expected.max(axis=-1) > 0]
+    assert np.quantile(error, 0.995) <= 4
+    # What is drawn of the lines and the vertices is a share that matters.
+    faces = picture(vizlight.illuminate(several_kinds(120)[1][0], lit_by(camera)), **look)
+    assert np.mean((expected > 0) & (faces == 0)) > 0.004
 
 
 def test_light_is_that_of_the_record_whatever_the_camera():

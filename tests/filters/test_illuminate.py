@@ -8,6 +8,7 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import several_kinds
 from lamps import SHINY, SHOULDER, shiny
 
 import vizlight
@@ -263,13 +264,47 @@ def test_the_users_own_parts_are_not_overwritten():
     assert "luminance" in illuminate(plane, SCENE, tangents="V").point_data
 
 
-def test_lines_beside_faces_are_marked():
-    ball = pv.Sphere()
-    mixed = ball.append_polydata(pv.Line((2, 0, 0), (3, 0, 0)))
-    mixed.clear_data()
-    with pytest.warns(UserWarning, match="2 of 844 points could not be lit"):
-        lit = illuminate(mixed, SCENE)
-    np.testing.assert_array_equal(np.flatnonzero(lit["luminance_valid"] == 0), [842, 843])
+@pytest.mark.parametrize("as_grid", [False, True])
+@pytest.mark.parametrize("seen", [False, True])
+def test_faces_lines_and_vertices_of_one_mesh_are_lit_as_such(as_grid, seen):
+    mixed, parts = several_kinds()
+    faces, lines, vertices = parts
+    scene = SCENE.replace(view=View(position=(3, 2, 1)) if seen else None)
+    mesh = mixed.cast_to_unstructured_grid() if as_grid else mixed
+    # The first point of the lines is the faces' too.
+    own = np.arange(faces.n_points - 1, faces.n_points - 1 + lines.n_points)
+    with vizlight.report(sample=500) as report:
+        light = illuminate(mesh, scene)["luminance"]
+    assert report.error < 1e-6
+    expected = illuminate(faces, scene)["luminance"]
+    np.testing.assert_allclose(light[: faces.n_points], expected, atol=1e-6)
+    np.testing.assert_allclose(light[own[1:]], illuminate(lines, scene)["luminance"][1:], atol=1e-6)
+    toward = (3, 2, 1) - vertices.points if seen else np.ones((vertices.n_points, 3))
+    vertices["to the eye"] = toward
+    by_eye = illuminate(vertices, scene, normals="to the eye", facing="as given")["luminance"]
+    np.testing.assert_allclose(light[own[-1] + 1 :], by_eye, atol=1e-6)
+
+
+def test_vertices_beside_faces_keep_normals_that_they_have():
+    mixed, (faces, lines, vertices) = several_kinds()
+    normals = np.array(mixed.points)
+    normals[-vertices.n_points :] = (0, 0.6, 0.8)
+    mixed.point_data.active_normals = normals
+    light = illuminate(mixed, SCENE)["luminance"]
+    vertices.point_data.active_normals = np.tile([0.0, 0.6, 0.8], (vertices.n_points, 1))
+    own = illuminate(vertices, SCENE)["luminance"]
+    np.testing.assert_allclose(light[-vertices.n_points :], own, atol=1e-6)
+    along = illuminate(lines, SCENE)["luminance"]
+    start = faces.n_points
+    np.testing.assert_allclose(light[start : start + lines.n_points - 1], along[1:], atol=1e-6)
+
+
+def test_what_is_refined_stays_lines_and_faces():
+    mixed, _ = several_kinds()
+    light = vizlight.refine(mixed, SCENE, error=0.02)["luminance"]
+    expected = illuminate(mixed, SCENE)["luminance"]
+    assert len(light) > mixed.n_points
+    np.testing.assert_allclose(light[: mixed.n_points], expected, atol=1e-6)
 
 
 def test_zero_and_nan_vectors_are_marked_with_one_warning():

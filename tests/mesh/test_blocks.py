@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import several_kinds
 
 import vizlight
 from vizlight import Scene, View, files
@@ -45,15 +46,8 @@ def of_cells():
     return grid.point_data_to_cell_data()
 
 
-def several_kinds():
-    """Return faces, lines and vertices in one mesh, with arrays at all points."""
-    mesh = pv.Sphere(theta_resolution=8, phi_resolution=8)
-    count = mesh.n_points
-    points = np.concatenate([mesh.points, [[2, 0, 0], [2, 1, 0], [2, 2, 0.5], [3, 3, 3]]])
-    faces = mesh.faces
-    mesh = pv.PolyData(points, faces=faces)
-    mesh.SetLines(pv.CellArray([3, count, count + 1, count + 2]))
-    mesh.SetVerts(pv.CellArray([1, count + 3]))
+def cells_of_several_kinds():
+    mesh, _ = several_kinds()
     mesh["U"] = np.tile([1.0, 0.3, 0.1], (mesh.n_points, 1))
     mesh["p"] = np.full(mesh.n_points, 0.1)
     return mesh
@@ -64,7 +58,7 @@ MESHES = {
     "tetrahedra": lambda: volume().triangulate(),
     "case": case,
     "arrays of cells": of_cells,
-    "cells of several kinds": several_kinds,
+    "cells of several kinds": cells_of_several_kinds,
 }
 
 

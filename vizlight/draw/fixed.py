@@ -13,15 +13,20 @@ from vizlight.reading.normals import piece_numbers
 from vizlight.shading.display import NO_DATA, displayable, on_colors
 
 if TYPE_CHECKING:
+    from vizlight._types import Indices
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene, View
     from vizlight.shading.display import Bytes
 
+#: Rows of all points.
+EVERY = slice(None)
 #: What is left out, for a page, a file and its reader.
 LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"
 
 
-def fixed_colors(source: Source, scene: Scene, colors: Bytes | None) -> tuple[Bytes, str]:
+def fixed_colors(
+    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
+) -> tuple[Bytes, str]:
     """Return colours in light that stays as it is when the eye moves.
 
     Parameters
@@ -29,12 +34,14 @@ def fixed_colors(source: Source, scene: Scene, colors: Bytes | None) -> tuple[By
     source : Source
     scene : Scene
         Scene; its view is used only where ambient and diffuse light cannot do without one.
-    colors : ndarray of uint8, shape (N, 4), or None
+    colors : ndarray of uint8, shape (M, 4), or None
         Colours of data; None for the material's.
+    ids : ndarray of int, shape (M,), optional
+        Point of the source that each colour belongs to. Default: all points, one after the other.
 
     Returns
     -------
-    colors : ndarray of uint8, shape (N, 4)
+    colors : ndarray of uint8, shape (M, 4)
         Colours in ambient and diffuse light.
     from_view : str
         What was computed as the view of the scene sees it, in words; empty if nothing was.
@@ -56,20 +63,23 @@ def fixed_colors(source: Source, scene: Scene, colors: Bytes | None) -> tuple[By
         depth_cue=None,
         view=scene.view if seen else None,
     )
-    return lit_colors(_on_one_side(source, bare.view), bare, colors), " and ".join(seen)
+    return lit_colors(_on_one_side(source, bare.view), bare, colors, ids), " and ".join(seen)
 
 
-def lit_colors(source: Source, scene: Scene, colors: Bytes | None) -> Bytes:
-    """Return colours of data, or of the material, in light, as bytes of shape (N, 4)."""
+def lit_colors(
+    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
+) -> Bytes:
+    """Return colours of data, or of the material, in light, as bytes of shape (M, 4)."""
     if colors is not None:
-        return on_colors(colors, *light_on_colors([source], scene)[0])
+        light, valid = light_on_colors([source], scene)[0]
+        return on_colors(colors, light[ids], valid[ids])
     inputs = source.seen_from(scene.view, source.inputs)
     parts = [(inputs, source.options)]
     (shading,), _ = lighting.light(parts, scene, progress_bar=False)
     rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
     shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
     shown[~shading.valid] = NO_DATA
-    return np.insert(255.0 * shown + 0.5, 3, 255.0, axis=1).astype(np.uint8)
+    return np.insert(255.0 * shown + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
 
 
 def _on_one_side(source: Source, view: View | None) -> Source:

@@ -64,7 +64,8 @@ def unfit(
     if stroke.round and (options.conditioned or not alone):
         return "only lines that are lit by their tangents alone can be round"
     reason = unfit_layout(layout, options, stroke)
-    if not reason and inputs.tangents is not None and _reverses(inputs, mesh):
+    lines = inputs.tangents is not None and inputs.dimensions is None
+    if not reason and lines and _reverses(inputs, mesh):
         return "the tangents reverse from point to point, so their sign is arbitrary"
     return reason
 
@@ -152,6 +153,9 @@ class Fragments:
             share = 1 + np.where(share >= 0, share, 1.0)
             along = np.array([[1.0, 0.0, 0.0]]) if tangents is None else tangents
             carried = share[:, np.newaxis] * along
+        if inputs.dimensions is not None and carried is not None:
+            less = 2 - live.picked(np.asarray(inputs.dimensions[:]))
+            carried = carried + program.LENGTHS * less[:, np.newaxis] * kernels.unit_rows(carried)
         if carried is not None:
             point_arrays.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
             data.SetActiveTangents(TANGENTS)

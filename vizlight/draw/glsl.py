@@ -28,6 +28,7 @@ _INPUTS = {
     "tangents": ("vizT", "vec3"),
     "fur_height": ("vizHeight", "float"),
     "occlusion": ("vizShare", "float"),
+    "dimensions": ("vizDimension", "float"),
 }
 _CALLS = {"absolute": "abs", "maximum": "max", "minimum": "min", "arctan2": "atan"}
 #: Largest power for which the rounding of 1 - deficit to float32 does not show.

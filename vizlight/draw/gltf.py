@@ -17,6 +17,9 @@ from vizlight.draw.live import lifted
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks, hull
+from vizlight.mesh.normals import split_values
+from vizlight.reading.arrays import is_of_cells
+from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene, View
 from vizlight.shading.options import LightOptions
 
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import NDArray
 
+    from vizlight._types import Indices
     from vizlight.filters.relight import Source
     from vizlight.filters.tint import ColorMap
 
@@ -65,8 +69,9 @@ def save_gltf(
     path : path
         Path of the file, which ends in .glb. An existing file is replaced.
     scalars : str, optional
-        Name of the point array that gives the colours. Default: the material's, or the array of
-        :func:`vizlight.tint` for a mesh that it returned.
+        Name of the array that gives the colours; each cell has one colour where the values are
+        the cells'. Default: the material's, or the array of :func:`vizlight.tint` for a mesh that
+        it returned.
     cmap, clim
         Colour map and its ends, as for :func:`vizlight.tint`.
     **options
@@ -108,16 +113,18 @@ def save_gltf(
         raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
     names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
     file, fixed = _File(), set()
-    colors = _colors(sources, scalars, cmap, clim)
-    for source, name, own in zip(sources, names, colors, strict=True):
+    drawn = [_drawn(source.mesh, scalars) for source in sources]
+    colors = _colors(sources, drawn, scalars, cmap, clim)
+    for source, name, (surface, ids), own in zip(sources, names, drawn, colors, strict=True):
         if not source.mesh.n_points:
             continue
         n = int(source.inputs.points.shape[1])
         here = lifted(used, n)
         if here.view is None:
             here = here.replace(view=View.isometric(n))
-        lit, seen = fixed_colors(source, here, own)
-        file.add(name or "mesh", source.mesh, lit)
+        lit, seen = fixed_colors(source, here, own, ids)
+        # A control point of a curved cell, which has no index, is not lit.
+        file.add(name or "mesh", surface, np.where(ids[:, np.newaxis] >= 0, lit, np.uint8(0)))
         fixed |= {seen} - {""}
     if not file.nodes:
         raise ValueError(_check.message("mesh", "a mesh with points", "none"))
@@ -129,24 +136,37 @@ def save_gltf(
     return written
 
 
+def _drawn(mesh: pv.DataSet, scalars: str | None) -> tuple[pv.PolyData, Indices]:
+    """Return what is drawn of a mesh, and the point of the mesh that each of its points is.
+
+    Points are split where cells of different values meet.
+    """
+    surface, ids = hull.outer_surface(mesh)
+    if scalars is None or not is_of_cells(surface, scalars) or not has_faces(surface):
+        return surface, ids
+    split, origin = split_values(surface, scalars)
+    return split, ids[origin]
+
+
 def _colors(
     sources: Sequence[Source],
+    drawn: Sequence[tuple[pv.PolyData, Indices]],
     scalars: str | None,
     cmap: ColorMap,
     clim: Sequence[float] | float | None,
 ) -> list[NDArray[np.uint8] | None]:
     """Return for each source the colours of data, None for the colour of the material."""
     if scalars is not None:
-        values = [values_of(source.mesh, scalars) for source in sources]
+        values = [values_of(surface, scalars) for surface, _ in drawn]
         table = color_table(values, cmap=cmap, clim=clim)
         return [map_colors(table, value) for value in values]
     found: list[NDArray[np.uint8] | None] = []
-    for source in sources:
+    for source, (surface, _) in zip(sources, drawn, strict=True):
         name, own = tinted(source.mesh)
         if name is None:
             found.append(None)
         else:
-            value = values_of(source.mesh, name, own["component"])
+            value = values_of(surface, name, own["component"])
             found.append(map_colors(own["cmap"], value))
     return found
 
@@ -162,16 +182,13 @@ class _File:
         self.buffer = bytearray()
         self.clear = False
 
-    def add(self, name: str, mesh: pv.DataSet, colors: NDArray[np.uint8]) -> None:
+    def add(self, name: str, surface: pv.PolyData, shown: NDArray[np.uint8]) -> None:
         """Add a mesh with the colours of its points."""
-        surface, ids = hull.outer_surface(mesh)
         flat = surface.triangulate(pass_verts=True, pass_lines=True)
         points = np.asarray(surface.points, dtype=np.float64)
         good = np.all(np.abs(points) < 1e38, axis=1)
         drawn = points[good] if np.any(good) else np.zeros((1, 3))
         centre = (drawn.min(axis=0) + drawn.max(axis=0)) / 2
-        # A control point of a curved cell, which has no index, is not lit.
-        shown = np.where(ids[:, np.newaxis] >= 0, colors[ids], np.uint8(0))
         self.clear |= bool(np.any(shown[:, 3] < 255))
         # glTF knows no number that is not finite in float32; no cell with one is drawn.
         rows = np.where(good[:, np.newaxis], points - centre, 0.0)

@@ -211,7 +211,8 @@ class Page:
                 "front": cue.front, "back": cue.back, "scales": [cue.front_scale, cue.back_scale]
             }  # fmt: skip
         arrays, linear = live.drawn.point_data, matrix[:3, :3]
-        if TANGENTS in arrays and (plan.occluded or not plan.surface):
+        mixed = plan.line_exponent is not None
+        if TANGENTS in arrays and (plan.occluded or mixed or not plan.surface):
             made["tangents"] = _directions(arrays[TANGENTS], linear.T)
         if NORMALS in arrays and (plan.surface or plan.conditioned or plan.fur):
             made["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))

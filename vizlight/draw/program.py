@@ -58,6 +58,12 @@ class Varying(NamedTuple):
     value: str
 
 
+#: What a tangent of a mesh of several kinds of cells is longer by for each dimension that a point
+#: has less than a face, and that dimension.
+LENGTHS = 2.0
+DIMENSION = "(2.0 - step(2.5, {size}) - step(4.5, {size}))"
+
+
 class Stroke(NamedTuple):
     """How wide lines are drawn, and whether they are lit as a cylinder across their width.
 
@@ -158,6 +164,7 @@ def write(
     Program
     """
     functions, body = glsl.fragment(plan, turned=turned, data=data)
+    mixed = plan.line_exponent is not None
     names = [Varying("vizP", "vec3", "{position}")]
     read = f"  vec3 vizP = {suffixed('vizP')};\n  bool vizGood = true;\n"
     if (plan.surface and not stroke.round) or plan.conditioned or plan.fur:
@@ -168,9 +175,13 @@ def write(
     if plan.fur or turned:
         names.append(Varying("vizH", "float", "{length} - 1.0"))
     if plan.occluded:
-        names.append(Varying("vizS", "float", "{size} - 1.0"))
+        past = f" - {2 * LENGTHS:.1f} + {LENGTHS:.1f} * {DIMENSION}" if mixed else ""
+        names.append(Varying("vizS", "float", "{size} - 1.0" + past))
         read += f"  float vizShare = {suffixed('vizS')};\n"
-    if stroke.round or not plan.surface:
+    if mixed:
+        names.append(Varying("vizK", "float", DIMENSION))
+        read += f"  float vizDimension = {suffixed('vizK')};\n"
+    if stroke.round or not plan.surface or mixed:
         names.append(Varying("vizT", "vec3", "{tangent}"))
         read += _unit("vizT")
     if stroke.round:

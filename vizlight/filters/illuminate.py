@@ -54,7 +54,9 @@ def illuminate(
 
     With ``tangents`` each point is lit as a k-manifold: by one vector per point as a line, by k
     vectors as the space that they span. Without, a mesh of lines is lit by its own tangents, any
-    other by the normals of its surface (codimension 1).
+    other by the normals of its surface (codimension 1). In a mesh in 3-space that has lines and
+    vertices beside its faces, points that are on no face are lit as lines by their own tangents,
+    and vertices by the normals that the mesh has, else as they face the eye.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.contours.banding import Bands
+    from vizlight.geometry.contours.banding import Bands, Laminae
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
     from vizlight.model.reflection import SpecularModel
@@ -240,6 +240,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     scene, asked = light.scene, light.options
     low = scene.material.ambient * scene.ambient_intensity
     dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
+    found: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = (light.seen_from(scene.view) for light in scene.lights)
@@ -249,11 +250,13 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
             "attenuation": lamp.attenuation, "levels": asked.levels,
         }  # fmt: skip
         if isinstance(solid, Sphere):
-            return closed.sphere(solid.center, solid.radius, **source)
-        if lamp.direction is not None:
-            return closed.truncus(
+            found = closed.sphere(solid.center, solid.radius, **source)
+        if isinstance(solid, Frustum) and lamp.direction is not None:
+            found = closed.truncus(
                 solid.center, solid.axis, solid.radii, height=solid.height, **source
             )
+    if isinstance(found, banding.Bands):
+        return found
     light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
     return refinement.draw(
         light.shape, light, asked.levels, low=low if dull else None, progress=light.progress

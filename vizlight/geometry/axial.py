@@ -115,9 +115,10 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     return first, np.cross(axis, first)
 
 
-def segments(value: int | None) -> int | None:
-    """Validate the number of segments of a circle."""
-    return None if value is None else _check.integer("segments", value, low=3)
+def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
+    """Validate the number of segments of a circle and the form of the result."""
+    _check.choice("form", form, forms)
+    return None if segments is None else _check.integer("segments", segments, low=3)
 
 
 def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:

@@ -162,6 +162,11 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
         if name == "normals":
             added = between.turned(added, between.facts[count:], between.points[count:])
         own[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
+    if inputs.dimensions is not None and inputs.tangents is not None:
+        # New points are on faces; what a point is not lit by has any direction.
+        new = np.ones((len(between.points) - count, 3))
+        own["tangents"] = _joined(inputs.tangents, new)
+        own["dimensions"] = _joined(inputs.dimensions, 2 * new[:, :1]).ravel()
     sides = inputs.sides and inputs.sides()
     if sided is not None and sides is not None:
         facts = between.facts

@@ -128,7 +128,7 @@ def _part(
         kind,
         mesh,
         cells,
-        made.inputs,
+        made.inputs.of_faces(),
         options,
         _shares(mesh, sum(light.intensity > 0 for light in scene.lights)),
         None if scalars is None else values_of(mesh, scalars),

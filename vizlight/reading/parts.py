@@ -73,7 +73,7 @@ def part_of(
         n = int(points.shape[1])
         tangents = _tangents(mesh, n, options, kept)
         _check_options(tangents, n, options)
-        base = normals = sided = None
+        base = normals = sided = dimensions = None
         alike = False
         if isinstance(options.conditioned, str):
             base = tangents_of(mesh, options.conditioned, n, argument="conditioned")
@@ -82,6 +82,8 @@ def part_of(
             sided = sided_normals(
                 mesh, options.normals, n, options.facing, kept=known, starts=starts, told=told
             )
+            if tangents is None and n == 3 and polylines.has_several_kinds(mesh):
+                tangents, sided, dimensions = _several(mesh, sided)
             normals = sided.facing(options.facing, points, scene.view)
             alike = scene.view is None and _alike(sided, options.facing)
     except (TypeError, ValueError) as error:
@@ -93,6 +95,7 @@ def part_of(
         tangents=tangents,
         normals=normals,
         base_tangents=base,
+        dimensions=dimensions,
         two_sided=alike,
         line_field=options.line_field or _has_no_sign(mesh, options),
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
@@ -155,6 +158,22 @@ def _tangents(mesh: Dataset, n: int, options: LightOptions, kept: Kept | None) -
         known = None if kept is None else kept.tangents(mesh)
         return polylines.line_tangents(mesh) if known is None else known
     return None
+
+
+def _several(mesh: Dataset, sided: Sided) -> tuple[Array | None, Sided, Array | None]:
+    """Return tangents, normals and dimensions of the points of a mesh of several kinds of cells.
+
+    What a point is not lit by is a direction of any length but 0.
+    """
+    carried = np.any(sided.vectors, axis=1) & (not sided.computed)
+    kinds = polylines.dimensions(mesh, carried)
+    if kinds is None:
+        return None, sided, None
+    tangents, vectors = polylines.line_tangents(mesh), sided.vectors.copy()
+    tangents = tangents.astype(vectors.dtype)
+    tangents[(kinds != 1) & ~np.any(tangents, axis=1)] = 1
+    vectors[kinds < 2] = 1
+    return tangents, dataclasses.replace(sided, vectors=vectors), kinds
 
 
 def _has_no_sign(mesh: Dataset, options: LightOptions) -> bool:

@@ -10,12 +10,12 @@ from vtkmodules.vtkFiltersCore import vtkStripper
 
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.reading import hull
-from vizlight.reading.cells import as_vtk, connectivity, has_faces, places
+from vizlight.reading.cells import as_vtk, connectivity, faces, has_faces, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Dataset, Indices
+    from vizlight._types import Array, Bools, Dataset, Indices
 
 #: VTK's types of cells: lines, polylines, quadratic edges, cubic lines, and curves of any degree
 #: by Lagrange and by Bezier.
@@ -32,6 +32,36 @@ def has_lines_only(mesh: Dataset) -> bool:
         kinds = hull.cell_types(mesh)
         return bool(kinds & LINES) and kinds <= LINES | POINTS
     return False
+
+
+def has_several_kinds(mesh: Dataset) -> bool:
+    """Return whether a mesh has lines or vertices beside other cells."""
+    if isinstance(mesh, vtkPolyData):
+        return has_faces(mesh) and mesh.GetNumberOfLines() + mesh.GetNumberOfVerts() > 0
+    kinds = hull.cell_types(mesh) if isinstance(mesh, vtkUnstructuredGrid) else set()
+    thin = kinds & (LINES | POINTS)
+    return bool(thin) and thin < kinds
+
+
+def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
+    """Return what each point of a mesh of several kinds of cells is, None where all are on faces.
+
+    2 on a face, or where ``carried`` says that a point has a normal of its own, 1 on lines, 0 on
+    vertices. A point that a face and a line have in common is the face's.
+    """
+    surface, origin = _flat(mesh)
+    found = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
+    found[connectivity(surface.GetVerts())[0]] = 0.0
+    own = ~carried if origin is None else (origin < 0) | ~carried[origin]
+    found[~own] = 2.0
+    found[connectivity(surface.GetLines())[0]] = 1.0
+    for ids, _ in faces(surface):
+        found[ids] = 2.0
+    if origin is not None:
+        whole = np.full(mesh.GetNumberOfPoints(), 2.0, dtype=np.float32)
+        whole[origin[origin >= 0]] = found[origin >= 0]
+        found = whole
+    return found if np.any(found < 2) else None
 
 
 def line_tangents(mesh: Dataset) -> Array:

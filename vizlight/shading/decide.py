@@ -136,6 +136,7 @@ def decide(
             if layout.base and options.exponent == "compensated"
             else 1.0
         ),
+        line_exponent=_exponent(options, 1, n) if layout.mixed else None,
         shadowed=layout.shadowed,
         dimmed=layout.dimmed and (diffuse or specular),
         occluded=layout.occluded,

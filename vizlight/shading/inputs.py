@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Names of the arrays: vectors of the space, and numbers.
 PLACED = ("points", "tangents", "normals", "base_tangents")
-SHARES = ("fur_height", "shadow", "transmittance", "occlusion")
+SHARES = ("fur_height", "shadow", "transmittance", "occlusion", "dimensions")
 
 
 class ArraySource(Protocol):
@@ -61,6 +61,8 @@ class Layout(NamedTuple):
         Whether the share of the ambient light is given.
     two_sided : bool
         Whether the normals have no side.
+    mixed : bool
+        Whether some of the points are lit as lines or alone, see ``ShadingInputs.dimensions``.
     """
 
     n: int = 3
@@ -72,6 +74,7 @@ class Layout(NamedTuple):
     dimmed: bool = False
     occluded: bool = False
     two_sided: bool = False
+    mixed: bool = False
 
 
 class Sides(NamedTuple):
@@ -116,6 +119,10 @@ class ShadingInputs:
         Share of each light that reaches the points.
     occlusion : ArraySource, shape (N,), optional
         Share of the ambient light that reaches the points.
+    dimensions : ArraySource, shape (N,), optional
+        What each point is lit as, where a mesh in 3-space has cells of several kinds: 2 by its
+        normal, 1 as a line by its tangent, 0 as a point that faces the eye. What a point is not lit
+        by has any length but 0.
     two_sided : bool, default: False
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
     line_field : bool, default: False
@@ -144,6 +151,7 @@ class ShadingInputs:
     shadow: ArraySource | None = None
     transmittance: ArraySource | None = None
     occlusion: ArraySource | None = None
+    dimensions: ArraySource | None = None
     two_sided: bool = False
     line_field: bool = False
     repeat: int = 1
@@ -166,12 +174,13 @@ class ShadingInputs:
     @property
     def layout(self) -> Layout:
         """What a plan needs to know."""
-        n = int(self.points.shape[1])
-        k = None if self.tangents is None else int(np.prod(self.tangents.shape[1:])) // n
+        n, mixed = int(self.points.shape[1]), self.dimensions is not None
+        flat = self.tangents is None or mixed
+        k = None if flat else int(np.prod(self.tangents.shape[1:])) // n  # type: ignore[union-attr]
         base = 0 if self.base_tangents is None else int(np.prod(self.base_tangents.shape[1:])) // n
         return Layout(
             n, k, self.normals is not None, base, self.shadow is not None, self.fur,
-            self.transmittance is not None, self.occlusion is not None, self.two_sided,
+            self.transmittance is not None, self.occlusion is not None, self.two_sided, mixed,
         )  # fmt: skip
 
     @property
@@ -179,6 +188,12 @@ class ShadingInputs:
         """Whether the vectors have no more digits than float32."""
         given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
         return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
+
+    def of_faces(self) -> ShadingInputs:
+        """Return inputs that light all points by their normals, where some are not on faces."""
+        if self.dimensions is None:
+            return self
+        return dataclasses.replace(self, tangents=None, dimensions=None)
 
     def stored(self) -> ShadingInputs:
         """Return inputs whose rows are arrays, not made on demand."""
@@ -243,6 +258,7 @@ class ShadingInputs:
             ("fur_height", self.fur_height, (count,)),
             ("transmittance", self.transmittance, (count, lights)),
             ("occlusion", self.occlusion, (count,)),
+            ("dimensions", self.dimensions, (count,)),
         ):
             if given is not None and tuple(given.shape) != expected:
                 got = f"shape {tuple(given.shape)}"

@@ -69,6 +69,9 @@ class Plan:
         none.
     base_exponent : float
         Exponent of that factor.
+    line_exponent : float or None
+        Exponent of the diffuse term of lines beside the faces; None where all points are lit as
+        one kind.
     shadowed : bool
         Whether t of the cos-theta shadow takes the place of the cosine of normals.
     dimmed, occluded : bool
@@ -105,6 +108,7 @@ class Plan:
     fur: float
     diffuse: bool
     specular: bool
+    line_exponent: float | None = None
     unseen: bool = False
     compiled: bool = False
     code: str = ""
@@ -143,7 +147,8 @@ class Plan:
     @property
     def needs_eye(self) -> bool:
         """Whether anything depends on where the eye is."""
-        return self.splits_eye or (self.fur > 0 and self.diffuse)
+        turned = self.line_exponent is not None and (self.diffuse or self.specular)
+        return turned or self.splits_eye or (self.fur > 0 and self.diffuse)
 
     @property
     def splits_eye(self) -> bool:
@@ -204,6 +209,11 @@ def _manifold(plan: Plan, words: _Words) -> None:
             f"surface: one unit normal per point, lit on {sides}",
             "frame: a surface is lit by its normals, no tangents are needed",
         )
+        if plan.line_exponent is not None:
+            words.add(
+                "lines beside the faces: by their own tangents, diffuse |wi_N| to the power "
+                f"{plan.line_exponent:.6g}; points of neither face the eye"
+            )
     else:
         words.add(
             f"frame: {plan.k} orthonormal tangent(s) per point in {plan.n}-space, "

@@ -41,25 +41,22 @@ def light(w: Algebra, plan: Plan) -> None:
     """
     normal = w.direction("normals") if w.has("normals") else None
     base = w.frame("base_tangents", plan.base) if plan.base else None
-    shape = _shape(w, plan, normal)
-    eye: Split | None = None
+    wo, distance_o = w.eye() if plan.needs_eye else (None, None)
+    shape = _shape(w, plan, normal, wo)
+    eye = shape.split(wo) if plan.splits_eye else None
     height: Value = None
     path: Value = None
-    distance_o: Value = None
-    if plan.needs_eye:
-        wo, distance_o = w.eye()
-        eye = shape.split(wo) if plan.splits_eye else None
-        if plan.fur:
-            height = w.read("fur_height")
-            w.need(height >= 0.0)
-            path = formulas.fur_path(height, absolute(w.dot(normal, wo)))
+    if plan.needs_eye and plan.fur:
+        height = w.read("fur_height")
+        w.need(height >= 0.0)
+        path = formulas.fur_path(height, absolute(w.dot(normal, wo)))
     diffuse, specular = w.total(), w.total()
     for lamp in w.lamps():
         wi, distance = w.toward(lamp.position, lamp.direction, far=lamp.position is None)
         lit = shape.split(wi)
         cosine: Value = None
         if normal is not None:
-            cosine = lit.size if plan.surface else w.dot(normal, wi)
+            cosine = lit.up if plan.surface else w.dot(normal, wi)
         # f: what of the lamp's light reaches the point.
         f = w.number(lamp.intensity)
         if distance is not None:
@@ -123,12 +120,16 @@ def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
 
 
 class Split(NamedTuple):
-    """A direction at a manifold: itself, its tangential coefficients, its normal part and size."""
+    """A direction at a manifold: itself, its tangential coefficients, its normal part and size.
+
+    ``up`` is N.x of a surface.
+    """
 
     vector: Value
     along: Sequence[Value] = ()
     rest: Value = None
     size: Value = None
+    up: Value = None
 
 
 def split(w: Algebra, x: Value, frame: Sequence[Value]) -> Split:
@@ -181,26 +182,28 @@ class _Shape(Protocol):
         """Return S."""
 
 
-def _shape(w: Algebra, plan: Plan, normal: Value) -> _Shape:
+def _shape(w: Algebra, plan: Plan, normal: Value, wo: Value) -> _Shape:
+    if plan.line_exponent is not None:
+        return Mixed(w, plan, normal, wo)
     if plan.surface:
         return Surface(w, plan, normal)
     rows = w.frame("tangents", plan.k)
-    return (Cylinder if plan.model == "cylinder" else Frame)(w, plan, rows)
+    return (Cylinder if plan.model == "cylinder" else Frame)(w, plan, rows, plan.exponent)
 
 
 class Surface:
-    """An (n - 1)-manifold by its normal, with sides; the size of a split is N.x."""
+    """An (n - 1)-manifold by its normal, with sides."""
 
     def __init__(self, w: Algebra, plan: Plan, normal: Value) -> None:
         self.w, self.plan, self.normal = w, plan, normal
 
     def split(self, x: Value) -> Split:
         """Split a unit direction."""
-        return Split(x, size=self.w.dot(self.normal, x))
+        return Split(x, up=self.w.dot(self.normal, x))
 
     def diffuse(self, lit: Split, eye: Split | None) -> Value:  # noqa: ARG002 - it has no part
         """Return (N.wi)^p."""
-        side, p = _side(self.plan, lit.size), self.plan.exponent
+        side, p = _side(self.plan, lit.up), self.plan.exponent
         return side if p == 1 else formulas.surface_diffuse(side, p)
 
     def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
@@ -220,14 +223,14 @@ class Surface:
             up = w.dot(self.normal, half)
             along = self._along(half, up)
             if h.model == "phong":
-                sides = (lit.size, eye.size)
+                sides = (lit.up, eye.up)
                 if plan.two_sided:
-                    sides = (formulas.both_sides(lit.size), formulas.both_sides(eye.size))
+                    sides = (formulas.both_sides(lit.up), formulas.both_sides(eye.up))
                 value = formulas.phong(along, *sides, h.shininess)
             else:
                 up = _side(plan, up)
                 value = formulas.blinn(along, up * up, h.shininess)
-        return value if plan.two_sided else formulas.lit_highlight(value, lit.size)
+        return value if plan.two_sided else formulas.lit_highlight(value, lit.up)
 
     def _along(self, half: Value, up: Value) -> Value:
         """Return the squared length of the tangential part, which is a residual."""
@@ -238,8 +241,8 @@ class Surface:
 class Frame:
     """A k-manifold by an orthonormal frame: |wi_N| stands for N.wi, and it has no sides."""
 
-    def __init__(self, w: Algebra, plan: Plan, rows: Sequence[Value]) -> None:
-        self.w, self.plan, self.rows = w, plan, rows
+    def __init__(self, w: Algebra, plan: Plan, rows: Sequence[Value], exponent: float) -> None:
+        self.w, self.plan, self.rows, self.exponent = w, plan, rows, exponent
 
     def split(self, x: Value) -> Split:
         """Split a unit direction."""
@@ -247,7 +250,7 @@ class Frame:
 
     def diffuse(self, lit: Split, eye: Split | None) -> Value:  # noqa: ARG002 - it has no part
         """Return sin(a)^p."""
-        return _sine_power(lit, self.plan.exponent)
+        return _sine_power(lit, self.exponent)
 
     def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
         """Return max(0, V.R)^s or |h_N|^s."""
@@ -261,6 +264,35 @@ class Frame:
             return formulas.phong(along, lit.size, eye.size, h.shininess)
         both = split(w, lit.vector + eye.vector, self.rows)
         return formulas.blinn(_square(both.along), w.dot(both.rest, both.rest), h.shininess)
+
+
+class Mixed(Surface):
+    """Faces, lines and single points of one mesh, by the dimension of what each point is lit as.
+
+    A fragment between a point of a line and one of a face is the line's.
+    """
+
+    def __init__(self, w: Algebra, plan: Plan, normal: Value, wo: Value) -> None:
+        dimension, exponent = w.read("dimensions"), plan.line_exponent
+        assert exponent is not None
+        if wo is not None:
+            alone = where(dimension < 0.5, 1.0, 0.0)
+            normal = normal + alone * (wo - normal)
+        super().__init__(w, plan, normal)
+        self.on_line = absolute(dimension - 1.0) < 0.99
+        self.line = Frame(w, plan, w.frame("tangents", 1), exponent)
+
+    def split(self, x: Value) -> Split:
+        """Split a unit direction."""
+        return self.line.split(x)._replace(up=self.w.dot(self.normal, x))
+
+    def diffuse(self, lit: Split, eye: Split | None) -> Value:
+        """Return sin(a)^p of a line, else (N.wi)^p."""
+        return where(self.on_line, self.line.diffuse(lit, eye), super().diffuse(lit, eye))
+
+    def specular(self, lit: Split, eye: Split | None, h: Highlight) -> Value:
+        """Return the highlight of a line or of a surface."""
+        return where(self.on_line, self.line.specular(lit, eye, h), super().specular(lit, eye, h))
 
 
 class Cylinder(Frame):

@@ -84,6 +84,7 @@ class Between:
         scene: Scene,
         options: ShadingOptions,
     ) -> None:
+        inputs = inputs.of_faces()
         self.inputs, self.scene = inputs, scene
         self.options = dataclasses.replace(options, precision="float64", components=False)
         n = int(inputs.points.shape[1])

@@ -14,6 +14,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model import frames
+from vizlight.scene import View
 from vizlight.shading.engine import observed
 from vizlight.verify import between, oracle
 
@@ -590,10 +591,20 @@ def _reference(
         flat = numbers(rows, own if rows.shape[0] == given.points.shape[0] else shared)
         return [flat[j : j + n] for j in range(0, len(flat), n)]
 
+    tangents = vectors(given.tangents)
+    normal: Sequence[float] | None = None
+    if given.normals is not None:
+        normal = numbers(given.normals, shared)
+    if given.dimensions is not None:
+        dimension = numbers(given.dimensions, own)[0]
+        if dimension == 0:
+            eye = scene.view or View.isometric(n)
+            normal = oracle.FLOATS.toward(eye, numbers(given.points, own))[0]
+        tangents, normal = (tangents, None) if dimension == 1 else (None, normal)
     return oracle.light(
         numbers(given.points, own),
-        vectors(given.tangents),
-        None if given.normals is None else numbers(given.normals, shared),
+        tangents,
+        normal,
         scene,
         base_tangents=vectors(given.base_tangents),
         fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],

@@ -101,6 +101,20 @@ def test_terminator_of_a_near_light_is_a_ruling():
     np.testing.assert_allclose(x, 0.25 / 3, atol=1e-12)
 
 
+def test_the_sources_approximation_falls_with_distance():
+    """Rulings seen from the centre against the near light: first order in size / distance."""
+    worst = []
+    for distance in (8.0, 16.0, 32.0, 64.0):
+        position = distance * np.array([1.0, -0.6, 0.7]) / np.linalg.norm([1.0, -0.6, 0.7])
+        bands = made("frustum", position=position, method="rulings", levels=400)
+        place, polygon = banded.places(bands, np.random.default_rng(3), 20)
+        on, normal = onto(place, bands.patch[polygon], "frustum")
+        error = np.abs(law(on, normal, position=position) - bands.values[polygon])
+        worst.append(error.max() - bands.steps.error)
+    order = np.log2(np.array(worst[:-1]) / worst[1:])
+    np.testing.assert_allclose(order, 1, atol=0.2)
+
+
 @pytest.mark.parametrize(
     ("radii", "height", "cells", "area"),
     [
@@ -134,12 +148,13 @@ def test_a_light_along_the_axis():
 
 
 @pytest.mark.parametrize("size", [1e-150, 1e150])
-@pytest.mark.parametrize("light", ["direction", "position"])
-def test_any_scale(size, light):
-    radii = (0.2 * size, 0.5 * size)
-    lamp = np.array([3.0, 0, 1])
-    bands = truncus((0, 0, 0), (0, 0, size), radii, levels=4, **{light: size * lamp})
-    unit = truncus((0, 0, 0), (0, 0, 1), (0.2, 0.5), levels=4, **{light: lamp})
+@pytest.mark.parametrize("method", ["rulings", "curves"])
+def test_any_scale(size, method):
+    options = {"levels": 4, "method": method}
+    bands = truncus(
+        (0, 0, 0), (0, 0, size), (0.2 * size, 0.5 * size), position=(3 * size, 0, size), **options
+    )
+    unit = truncus((0, 0, 0), (0, 0, 1), (0.2, 0.5), position=(3, 0, 1), **options)
     np.testing.assert_allclose(bands.points / size, unit.points, atol=1e-9)
     np.testing.assert_allclose(bands.values, unit.values, atol=1e-9)
 
@@ -153,6 +168,24 @@ def test_an_allowed_error():
     assert near.error <= 0.02
 
 
+def test_laminae_hold_no_empty_one_and_close_the_far_side():
+    laminae = made("frustum", direction=(1, -2, 0.5), levels=8, form="laminae")
+    quads = [
+        laminae.points[a:b] for a, b in zip(laminae.offsets, laminae.offsets[1:], strict=False)
+    ]
+    for quad in quads:
+        assert np.linalg.norm(np.cross(quad[1] - quad[0], quad[2] - quad[0])) > 1e-6
+        # Each lamina is plane, as the source states.
+        rel = quad - quad[0]
+        assert np.linalg.svd(rel)[1][2] < 1e-12
+    side = np.array([q.mean(axis=0) for q in quads[:-2]])
+    light = np.array([1, -2, 0.5]) - (np.array([1, -2, 0.5]) @ AXIS) * AXIS
+    assert (side @ light).min() < -0.4 * np.abs(side @ light).max()
+    assert laminae.values[-2] == pytest.approx(
+        max(0.1, 0.1 + 0.8 * (AXIS @ (1, -2, 0.5)) / np.sqrt(5.25))
+    )
+
+
 @pytest.mark.parametrize(
     ("arguments", "options", "words"),
     [
@@ -160,6 +193,12 @@ def test_an_allowed_error():
         (((0, 0, 0), (0, 0, 1), (1, -1)), {}, "radii: expected"),
         (((0, 0, 0), (0, 0, 1), (1, 1, 1)), {}, "radii: expected two radii"),
         (((0, 0, 0), (0, 0, 1), (1, 1)), {"height": -1}, "height: expected"),
+        (((0, 0, 0), (0, 0, 1), (1, 1)), {"method": "lines"}, "method: expected 'rulings'"),
+        (
+            ((0, 0, 0), (0, 0, 1), (1, 1)),
+            {"method": "curves", "form": "laminae"},
+            "method: expected",
+        ),
     ],
 )
 def test_bad_input(arguments, options, words):

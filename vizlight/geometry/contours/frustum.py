@@ -5,14 +5,16 @@ The source calls a conical frustum and its limits a truncus.
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
+from vizlight import _check
 from vizlight.geometry import axial
 from vizlight.geometry.contours import refinement, spacing
-from vizlight.geometry.contours.banding import Bands
+from vizlight.geometry.contours.banding import Bands, Laminae
 from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels
 
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Indices, VectorLike
     from vizlight.geometry.contours.refinement import Luminance
     from vizlight.geometry.contours.spacing import Levels, Steps
+
+Form = Literal["bands", "laminae"]
+Method = Literal["rulings", "curves"]
 
 
 def truncus(
@@ -39,7 +44,9 @@ def truncus(
     attenuation: VectorLike = (1.0, 0.0, 0.0),
     levels: Levels = 16,
     segments: int | None = None,
-) -> Bands:
+    form: Form = "bands",
+    method: Method | None = None,
+) -> Any:
     """Return the isoluminance contours of a frustum: rulings of its side, and its two ends.
 
     Parameters
@@ -63,10 +70,18 @@ def truncus(
         at infinity each end has one exact value.
     segments : int, optional
         Smallest number of points on the circle of an end, 3 or more. Default: 36.
+    form : {"bands", "laminae"}
+        Form of the result. Bands are a closed surface; laminae are quadrilaterals and the two
+        ends, to be painted by :meth:`Laminae.order`.
+    method : {"rulings", "curves"}, optional
+        Treatment of a near light. Rulings replace it by a light at infinity in its direction from
+        the centre, which is the source's approximation. Curves are found by halving edges and are
+        right for the position of the light, also on the ends. Default: curves for bands, rulings
+        for laminae.
 
     Returns
     -------
-    Bands
+    Bands or Laminae
         Contours; patches 0, 1 and 2 are the side, the first end and the second end.
 
     Raises
@@ -82,8 +97,8 @@ def truncus(
     two radii of 0 lead to a division by zero. With phi the angle around the axis from the light,
     ``N . L = A cos(phi) + B``: each level has two rulings, which are exact for a light at infinity.
 
-    A near light has curves in place of rulings, which are found by halving edges, also on the
-    ends; the source takes it for a light at infinity in its direction from the centre.
+    The source's laminae for ``0 <= i < N`` begin with a lamina without area and never close the
+    far side; here they are the chords through both rulings of each contour, on both sides.
 
     The luminance at a ruling differs from its level by at most ``(8 + 4 power) eps`` of
     ``diffuse``, plus ``H / max(R1, R2) eps`` from the rotation of rulings by rounding of long thin
@@ -96,20 +111,36 @@ def truncus(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.segments(segments) or axial.FEWEST
+    segments = axial.options(segments, form, get_args(Form)) or axial.FEWEST
+    if method is None:
+        method = "curves" if position is not None and form == "bands" else "rulings"
+    _check.choice("method", method, get_args(Method))
+    if method == "curves" and form == "laminae":
+        remedy = "use form='bands' or method='rulings'"
+        raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
     spacing.check(levels)
-    if position is not None:
+    if method == "curves":
         return refinement.draw(
             triangle_mesh.mesh(solid, segments), shade(light, solid.center), levels, low=light.low
         )
-    side = _Rulings(light, solid)
-    return _bands(side, side.steps(levels), segments)
+    # A near light fades with its distance from the centre.
+    near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))
+    if math.isfinite(light.distance):
+        fading = light.luminance(np.array(1.0), light.distance) - light.low
+        near = dataclasses.replace(near, scale=float(fading), distance=math.inf)
+    side = _Rulings(near, solid)
+    steps = side.steps(levels)
+    if form == "laminae":
+        return _laminae(side, steps, segments)
+    return _bands(side, steps, segments)
 
 
 def shade(light: axial.Source, center: Array) -> Luminance:
     """Return the function of points and normals that gives the luminance under one light."""
 
     def luminance(points: Array, normals: Array) -> Array:
+        if math.isinf(light.distance):
+            return light.luminance(normals @ light.toward)
         toward = light.toward * light.distance - (points - center)
         size = kernels.length(np.ascontiguousarray(toward.T))
         cosine = np.einsum("ij,ij->i", toward, normals) / np.where(size > 0, size, 1)
@@ -222,4 +253,37 @@ def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
         line_levels=steps.edges[contour[on]],
         steps=steps,
         error=steps.error,
+    )
+
+
+def _laminae(side: _Rulings, steps: Steps, segments: int) -> Laminae:
+    """Return the chords through both rulings of each contour, and the two ends."""
+    places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
+    inside = (places > 0) & (places < np.pi)
+    lit = places[inside]
+    values = steps.values[1:][inside] if len(lit) else np.empty(0)
+    # Beyond the last contour the side has one value, with as many segments as on a circle.
+    start = lit.max(initial=0.0)
+    count = max(math.ceil((np.pi - start) * segments / (2 * np.pi)), 2)
+    beyond = np.linspace(start, np.pi, count + 1)[:-1]
+    beyond[0] += 1e-9
+    angle = np.concatenate([lit, beyond])
+    values = np.concatenate([values, np.full(len(beyond), float(side.luminance(np.pi)))])
+    quads = np.stack(
+        [side.place(-angle, first=True), side.place(angle, first=True),
+         side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
+    )  # fmt: skip
+    if not (side.solid.height > 0 and max(side.solid.radii) > 0):
+        quads, values = quads[:0], values[:0]
+    pieces, sizes = [quads.reshape(-1, 3)], [4] * len(quads)
+    ring = 2 * np.pi * np.arange(segments) / segments
+    for first in (True, False):
+        if side.solid.radii[0 if first else 1] > 0:
+            pieces.append(side.place(ring, first=first))
+            sizes.append(segments)
+            values = np.append(values, side.end(first=first))
+    return Laminae(
+        points=np.concatenate(pieces),
+        offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp),
+        values=values,
     )

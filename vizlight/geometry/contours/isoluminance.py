@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from vizlight import _check
 from vizlight.geometry import axial
 from vizlight.geometry.contours import spacing
-from vizlight.geometry.contours.banding import Bands
+from vizlight.geometry.contours.banding import Bands, Laminae
 from vizlight.geometry.contours.frustum import truncus
 
 if TYPE_CHECKING:
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from vizlight._types import Array, VectorLike
     from vizlight.geometry.contours.spacing import Levels, Steps
 
-__all__ = ["Bands", "sphere", "truncus", "virtual_light"]
+__all__ = ["Bands", "Laminae", "sphere", "truncus", "virtual_light"]
+
+Form = Literal["bands", "laminae"]
 
 
 def sphere(
@@ -35,7 +37,8 @@ def sphere(
     attenuation: VectorLike = (1.0, 0.0, 0.0),
     levels: Levels = 16,
     segments: int | None = None,
-) -> Bands:
+    form: Form = "bands",
+) -> Any:
     """Return the isoluminance contours of a sphere: circles of latitude about the light.
 
     Parameters
@@ -61,11 +64,14 @@ def sphere(
     segments : int, optional
         Number of points per circle, 3 or more. Default: the number with which chords instead of
         circles add at most 5 % of half a step.
+    form : {"bands", "laminae"}
+        Form of the result. Bands are a closed surface; laminae are filled circles, to be painted
+        by :meth:`Laminae.order`.
 
     Returns
     -------
-    Bands
-        Contours, and the parts of the surface between them, which is closed.
+    Bands or Laminae
+        Contours, and the parts of the surface between them.
 
     Raises
     ------
@@ -92,11 +98,13 @@ def sphere(
         middle, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.segments(segments)
+    segments = axial.options(segments, form, get_args(Form))
     latitudes = _Latitudes(light, radius)
     steps = latitudes.steps(levels)
     places = latitudes.contours(steps)
     count, error = _round(latitudes, steps, places, levels, segments)
+    if form == "laminae":
+        return _laminae(latitudes, steps, places, count, middle, radius)
     return _bands(latitudes, steps, places, count, error, middle, radius)
 
 
@@ -279,4 +287,24 @@ def _bands(
         line_levels=np.repeat(steps.edges[contour[on]], count),
         steps=steps,
         error=error,
+    )
+
+
+def _laminae(
+    latitudes: _Latitudes, steps: Steps, places: Array, count: int, middle: Array, radius: float
+) -> Laminae:
+    """Return filled circles of the lit side, and their mirror images for the unlit side."""
+    lit = places[(places > 0) & (places < 1)]
+    band = np.arange(1, len(steps.edges))[(places > 0) & (places < 1)]
+    # The unlit side begins with a circle just behind the widest lit one, which it hides when seen
+    # from behind; its other circles are as far apart as on the lit side.
+    beyond = np.concatenate([[max(latitudes.dark, 0.5) + 1e-9], 1 - lit[lit < 0.5]])
+    q = np.concatenate([lit, beyond])
+    values = np.concatenate([steps.values[band], np.full(len(beyond), steps.edges[0])])
+    if radius == 0:
+        q, values = q[:0], values[:0]
+    return Laminae(
+        points=_circles(q, count, latitudes.light.toward, radius, middle),
+        offsets=np.arange(len(q) + 1) * count,
+        values=values,
     )
