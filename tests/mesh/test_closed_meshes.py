@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import closed_meshes, parallel_rays
+from vizlight.geometry.solids import parallel_rays
+from vizlight.mesh import closed_meshes
 
 EMBREE = importlib.util.find_spec("embreex") is not None
 

@@ -108,55 +108,6 @@ def test_without_a_view_both_sides_are_lit_alike():
     assert ball["luminance"][np.asarray(ball.points)[:, 2] > 0.1].max() == np.float32(0.1)
 
 
-def pieces(mesh, way, random):
-    """Cut a mesh in 12 pieces, and return them with the indices of their points."""
-    centres = mesh.cell_centers().points
-    order = {
-        "at random": lambda: random.integers(0, 12, mesh.n_cells),
-        "in slabs": lambda: np.argsort(np.argsort(centres[:, 0])) * 12 // mesh.n_cells,
-        "in runs of cells": lambda: np.arange(mesh.n_cells) * 12 // mesh.n_cells,
-        "in turns": lambda: np.arange(mesh.n_cells) % 12,
-        "by angle": lambda: np.digitize(
-            np.arctan2(*(centres - centres.mean(axis=0))[:, :2].T), np.linspace(-3.1, 3.1, 11)
-        ),
-    }[way]()
-    faces = mesh.regular_faces
-    for number in range(12):
-        used, corners = np.unique(faces[order == number], return_inverse=True)
-        if len(used):
-            piece = pv.PolyData.from_regular_faces(mesh.points[used], corners.reshape(-1, 3))
-            piece["N"] = np.asarray(mesh["N"])[used]
-            yield piece, used
-
-
-@pytest.mark.parametrize("kind", ["open", "closed"])
-@pytest.mark.parametrize(
-    "way", ["at random", "in slabs", "in runs of cells", "in turns", "by angle"]
-)
-def test_light_in_pieces_is_that_of_the_whole(way, kind, isosurface, random):
-    if kind == "open":
-        mesh = isosurface[1].triangulate()
-        mesh["N"] = np.asarray(mesh.point_data.active_normals)
-    else:
-        mesh = pv.Sphere()
-        mesh["N"] = np.asarray(mesh.points)
-    mesh.point_data.active_normals_name = None
-    scene = Scene(
-        lights=[Light(direction=(1, -2, 1)), Light.headlight(intensity=0.4)],
-        view=View(position=tuple(5 * mesh.length * np.array([0.4, 0.5, 0.7]))),
-        material=SHINY,
-    )
-    facings = ("eye",) if kind == "open" else ("eye", "as given")
-    for facing in facings:
-        whole = illuminate(mesh, scene, normals="N", facing=facing)["luminance"]
-        count = 0
-        for piece, used in pieces(mesh, way, random):
-            lit = illuminate(piece, scene, normals="N", facing=facing)["luminance"]
-            np.testing.assert_allclose(lit, whole[used], atol=1e-6)
-            count += 1
-        assert count == 12 or way == "by angle"
-
-
 def test_lines_on_an_open_surface_are_lit_on_the_side_that_is_seen():
     sheet = pv.Plane(i_resolution=10, j_resolution=10)
     sheet["V"] = np.tile([1.0, 0.3, 0], (sheet.n_points, 1))

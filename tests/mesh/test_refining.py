@@ -544,24 +544,6 @@ def test_a_flow_that_reverses_in_a_triangle_is_interpolated_as_vtk_does():
     assert np.mean(np.abs(true - shown) > PIXEL) < 0.01
 
 
-def test_opposite_vectors_in_one_triangle_meet_at_zero():
-    """The lines of the two are one line, so that nothing is split; as vectors they turn round."""
-    mesh = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
-    mesh["t"] = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 0.8, 0.6]])
-    shares = np.random.default_rng(1).dirichlet(np.ones(3), 4096)
-    true = line_light(unit(shares @ mesh["t"]), SCENE)
-    off = np.abs(true - shares @ illuminate(mesh, SCENE, tangents="t")["luminance"])
-    with vizlight.report() as found:
-        illuminate(mesh, SCENE, tangents="t")
-    assert found.runs[0].visible == pytest.approx(np.mean(off > PIXEL), abs=0.03)
-    assert found.runs[0].between == pytest.approx(off.max(), rel=0.1)
-    flat = mesh.copy()
-    flat["t"] = np.array([[1.0, 0, 0], [-1, 0, 0], [1, 0, 0]])
-    lines = refine(flat, SCENE, tangents="t", line_field=True)
-    assert lines.n_points == 3
-    assert lines.field_data["luminance_error"][0] < 1e-12
-
-
 def part_with_creases():
     made = pv.Cylinder(radius=0.5, height=1, resolution=24).triangulate()
     return made.compute_normals(feature_angle=30, split_vertices=True)

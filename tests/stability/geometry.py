@@ -473,7 +473,7 @@ def inside_ends(_, count, random):
     flat, size = np.zeros((9, 9)), float(x[-1] - x[0])
     inside = np.stack([*random.uniform(x[3], x[5], (2, many)), -random.uniform(0.1, 1, many)], 1)
     solid = partial(shadowing.inside_length, x, y, method="exact")
-    walls = partial(solid, border="wall", base=-2.0)
+    walls = partial(solid, border="wall")
 
     def against(case, work, true):
         value, seconds = timed(work)
@@ -484,13 +484,10 @@ def inside_ends(_, count, random):
     yield against(
         "at the horizon, to a wall", lambda: walls(flat, inside, direction=(1, 0, 0)), level
     )
-    # Down by 3 of 5: the base is 2 - depth below, unless the wall is nearer.
-    low = [
-        min((2 + p[2]) * 5 / 3, d * 5 / 4)
-        for p, d in zip(oracles.exact(inside), level, strict=True)
-    ]
+    # Down by 3 of 5.
+    low = [d * 5 / 4 for d in level]
     yield against(
-        "below the horizon, to the base", lambda: walls(flat, inside, direction=(4, 0, -3)), low
+        "below the horizon, to a wall", lambda: walls(flat, inside, direction=(4, 0, -3)), low
     )
     holed = flat.copy()
     holed[:, 7] = np.nan

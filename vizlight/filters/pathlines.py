@@ -232,7 +232,7 @@ def _lines(
         carrier.between(before, after)
         before, start, duration = after, float(times[i - 1]), float(times[i] - times[i - 1])
         if i == 1:
-            rows = rows.joined(seeds, carrier.at(seeds, 0.0), start)
+            rows = rows.joined(Rows(seeds[None], carrier.at(seeds, 0.0)[None], np.array([start])))
         here = rows.places.reshape(-1, 3) if streaks else rows.places[-1]
         count = carrier.count(here, duration, options.step)
         if streaks and count > MOST_STEPS:
@@ -245,16 +245,17 @@ def _lines(
             if streaks:
                 # What has left the mesh stays as a gap in the streak.
                 rows = Rows(moved.reshape(-1, *seeds.shape), rows.vectors, rows.times).thinned(MOST)
-                rows = rows.joined(seeds, np.full(seeds.shape, np.nan), time)
+                none = np.full((1, *seeds.shape), np.nan)
+                rows = rows.joined(Rows(seeds[None], none, np.array([time])))
                 here = rows.places.reshape(-1, 3)
             else:
-                rows = rows.joined(moved, carrier.at(moved, share), time)
-                here = moved
+                new = Rows(moved[None], carrier.at(moved, share)[None], np.array([time]))
+                rows, here = rows.joined(new), moved
             if options.tail is not None:
-                rows = rows.since(time - options.tail)
+                rows = rows[rows.times >= time - options.tail]
                 here = rows.places.reshape(-1, 3) if streaks else here
         if streaks:
-            rows = rows._replace(vectors=carrier.at(here, 1.0).reshape(rows.places.shape))
+            rows.vectors = carrier.at(here, 1.0).reshape(rows.places.shape)
         lines = rows.lines(name, TIMES)
         if i == 1 and not lines.n_points:
             expected = "points inside the mesh where the vectors are not zero"

@@ -12,6 +12,8 @@ from vizlight import _check
 from vizlight.model import falloff
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight._types import Array, VectorLike
 
 
@@ -117,3 +119,14 @@ def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | No
     """Validate the number of segments of a circle and the form of the result."""
     _check.choice("form", form, forms)
     return None if segments is None else _check.integer("segments", segments, low=3)
+
+
+def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:
+    """Return where from 0 to an end a luminance that falls reaches each level, by halving."""
+    low, high = np.zeros(len(levels)), np.full(len(levels), end)
+    while True:
+        middle = (low + high) / 2
+        if np.all((middle == low) | (middle == high)):
+            return high
+        bright = luminance(middle) > levels
+        low, high = np.where(bright, middle, low), np.where(bright, high, middle)

@@ -17,6 +17,7 @@ from vizlight.reading.cells import (
     POLYDATA,
     as_numpy,
     cell_data,
+    connectivity,
     grid_cells,
     point_count,
     point_data,
@@ -97,7 +98,10 @@ def parts_of(
             # One by one they tell which of them is wrong.
             groups += _alone(meshes, group.members)
             continue
-        if group.starts is not None and _differ(part, scene):
+        sided = part.sided
+        # Some of the meshes may have two sides, which only counts without a view.
+        differ = sided is not None and sided.any_open and not np.all(sided.open)
+        if group.starts is not None and scene.view is None and differ:
             groups += _alone(meshes, group.members)
             continue
         made.append(group)
@@ -108,12 +112,6 @@ def parts_of(
 def _alone(meshes: Sequence[pv.DataSet], members: Iterable[int]) -> list[Batch]:
     """Return some meshes as batches of one, the last one first."""
     return [Batch(meshes[i], [i]) for i in reversed(list(members))]
-
-
-def _differ(part: Part, scene: Scene) -> bool:
-    """Return whether some of the meshes have two sides, which only counts without a view."""
-    sided = part.sided
-    return scene.view is None and sided is not None and sided.any_open and not np.all(sided.open)
 
 
 class Splits(Protocol):
@@ -200,19 +198,14 @@ def _kinds(mesh: pv.DataSet) -> Key | None:
         if strips:
             return None
         # Where there are segments, lines are joined at their ends.
-        return ("polydata", verts, lines, polys, lines and _has_segments(mesh.GetLines()))
+        segments = lines and 2 in np.diff(connectivity(mesh.GetLines())[1])
+        return ("polydata", verts, lines, polys, segments)
     if isinstance(mesh, pv.UnstructuredGrid):
         if cell_data(mesh).HasArray(GHOSTS) or point_data(mesh).HasArray(GHOSTS):
             return None
         kinds = as_numpy(vtkUnstructuredGrid.GetDistinctCellTypesArray(mesh)).tolist()
         return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
     return None
-
-
-def _has_segments(lines: vtkCellArray) -> bool:
-    """Return whether a line has two points."""
-    size = lines.IsHomogeneous()
-    return size == 2 if size > 0 else 2 in np.diff(as_numpy(lines.GetOffsetsArray()))
 
 
 def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[str]) -> Batch:

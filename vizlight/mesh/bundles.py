@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -165,18 +166,18 @@ class Live:
         return dataclasses.replace(inputs, transmittance=made.transmittance)
 
 
+@dataclasses.dataclass
 class _Work:
     """Lines and what is computed of them once they are needed."""
 
-    def __init__(self, lines: Lines, source: str, bundle: Bundle) -> None:
-        self.lines, self.source, self.bundle = lines, source, bundle
-        self._made: tuple[Medium, float] | None = None
+    lines: Lines
+    source: str
+    bundle: Bundle
 
+    @functools.cached_property
     def medium(self) -> tuple[Medium, float]:
-        """Return the medium of the lines and their diameter."""
-        if self._made is None:
-            self._made = medium_of(self.lines, self.bundle)
-        return self._made
+        """Medium of the lines and their diameter."""
+        return medium_of(self.lines, self.bundle)
 
 
 def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
@@ -251,7 +252,7 @@ class _Target:
             facts = {name: known.record.get(name) for name in ("diameter", "voxel")}
         missing = [i for i, key in enumerate(keys) if key not in columns]
         if missing:
-            medium, diameter = self._work.medium()
+            medium, diameter = self._work.medium
             found = medium.dimmed(
                 medium.targets(self._points, self._rows, self._lengths),
                 diameter,

@@ -14,7 +14,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.mesh import closed_meshes, georeference, normals
-from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.mesh.height_grids import Grid, Raster, heights_of
 from vizlight.model import kernels
 from vizlight.shading.options import Options, check_sides
 from vizlight.verify import rays
@@ -119,20 +119,22 @@ class _FieldCaster:
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
-        self._field = height_field.make(found.x, found.y, found.z, base=None, border=options.border)
+        self._field = height_field.make(found.x, found.y, found.z, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
         self._to_points, self._method = found.to_points, options.method
         self._turn = found.turn
+        # The nodes are then others than the points of the mesh.
+        sampled = isinstance(found, Raster)
         self.depth = _depth(options.depth, height_field.default_depth(self._field))
         self.points = found.points()
         normals = self._normal if self._turn is None else self._normal @ self._turn
         upright = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
-        self.normals = kernels.unit_rows(upright) if found.sampled else upright
+        self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
-        exact = not found.sampled and self.depth > shadowing.LEAST_DEPTH * size
+        exact = not sampled and self.depth > shadowing.LEAST_DEPTH * size
         self.effort = sum(self._field.heights.shape) if exact else 0
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:

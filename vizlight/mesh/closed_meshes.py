@@ -11,8 +11,10 @@ from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
-from vizlight.mesh import blocks, embree_rays, parallel_rays
+from vizlight.geometry.solids import parallel_rays
+from vizlight.mesh import blocks, embree_rays
 from vizlight.reading.cells import faces_only, triangles
+from vizlight.reading.topology import Owners, coincident
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,21 +75,15 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
     points = np.asarray(surface.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
         raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
+    # Zeros are added, because -0 is 0.
+    first = coincident(points + 0.0, Owners())
     there = np.zeros(len(points), np.bool_)
     there[corners] = True
     used = np.flatnonzero(there)
-    # Zeros are added, because -0 is 0.
-    rows = points[used] + 0.0
-    order = np.lexsort(rows.T)
-    first = np.ones(len(used), np.bool_)
-    first[1:] = np.any(rows[order[1:]] != rows[order[:-1]], axis=1)
-    same = np.empty(len(used), np.intp)
-    same[order] = np.cumsum(first) - 1
-    vertices = rows[order[first]]
-    place = np.cumsum(there) - 1
-    corners = same[place[corners]]
+    kept, same = np.unique(used if first is None else first[used], return_inverse=True)
+    corners = same.reshape(-1)[(np.cumsum(there) - 1)[corners]]
     a, b, c = corners.T
-    return vertices, corners[(a != b) & (b != c) & (c != a)], used, same
+    return points[kept], corners[(a != b) & (b != c) & (c != a)], used, same.reshape(-1)
 
 
 def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
@@ -245,7 +241,9 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
     Events are in the order from the end of the ray to its start, where a last event at distance 0
     makes the sum of the changes 0.
     """
-    reach = np.minimum(reach, _beyond(body, start))
+    # Farther away no ray can meet the solid.
+    away = np.linalg.norm(start - body.vertices.mean(axis=0), axis=1)
+    reach = np.minimum(reach, away + 2 * body.size)
     ray, cell, repeated = hits(body, start, way, reach)
     normal = body.normals[cell]
     against = np.einsum("ij,ij->i", way[ray], normal)
@@ -283,12 +281,6 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
     before = np.append(False, within[:-1])
     change = within.astype(np.intp) - before.astype(np.intp)
     return ray, s, change
-
-
-def _beyond(body: Solid, start: Array) -> Array:
-    """Return a length of each ray beyond which it cannot meet the solid."""
-    centre = body.vertices.mean(axis=0)
-    return np.asarray(np.linalg.norm(start - centre, axis=1) + 2 * body.size)
 
 
 def is_inside(body: Solid, place: Array) -> bool:

@@ -61,19 +61,10 @@ def cut(
     heights = np.concatenate([heights, heights[middles].mean(axis=1)])
     edges, weights, cells = slices.cut(heights, simplices)
     count, total = mesh.n_points, mesh.n_points + len(middles)
-    rows = np.repeat(np.arange(len(edges)), 2)
-    parts = np.stack([1 - weights, weights], axis=1).ravel()
-    between = scipy.sparse.coo_array(
-        (parts, (rows, edges.ravel())), shape=(len(edges), total)
-    ).tocsr()
+    parts = np.stack([1 - weights, weights], axis=1)
+    between = _sparse(parts, edges, total)
     if len(middles):
-        spread = scipy.sparse.coo_array(
-            (
-                np.full(middles.size, 1 / middles.shape[1]),
-                (np.repeat(np.arange(len(middles)), middles.shape[1]), middles.ravel()),
-            ),
-            shape=(len(middles), count),
-        ).tocsr()
+        spread = _sparse(np.full(middles.shape, 1 / middles.shape[1]), middles, count)
         between = between[:, :count] + between[:, count:] @ spread
     # A point with weight 0 must not contribute a NaN.
     between.eliminate_zeros()
@@ -88,6 +79,14 @@ def cut(
     for key, value in mesh.field_data.items():
         out.field_data[key] = value
     return out
+
+
+def _sparse(parts: Array, columns: Indices, count: int) -> scipy.sparse.csr_array:
+    """Return a sparse array of rows with equally many parts in given columns."""
+    ends = np.arange(0, parts.size + 1, parts.shape[1])
+    made = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
+    made.sum_duplicates()
+    return made
 
 
 def _mean_frames(array: Array, between: scipy.sparse.csr_array, n: int) -> Array:

@@ -47,11 +47,6 @@ class Heights:
     place: Indices
     turn: Array | None = None
 
-    @property
-    def sampled(self) -> bool:
-        """Whether the nodes are others than the points of the mesh."""
-        return False
-
     def covered(self) -> Bools:
         """Return a mask of the points over the grid."""
         return np.ones(self.place.size, np.bool_)
@@ -80,11 +75,6 @@ class Raster(Heights):
     """
 
     own: Array = field(default_factory=lambda: np.empty((0, 3)))
-
-    @property
-    def sampled(self) -> bool:
-        """Whether the nodes are others than the points of the mesh."""
-        return True
 
     def covered(self) -> Bools:
         """Return a mask of the points that have a height."""

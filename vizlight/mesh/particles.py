@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
+from vizlight.geometry.lines.columns import Columns
 from vizlight.mesh import point_arrays, polylines
 
 if TYPE_CHECKING:
@@ -19,7 +21,8 @@ BOTH = "vizlight vectors"
 MOST_STEPS = 10_000
 
 
-class Rows(NamedTuple):
+@dataclass
+class Rows(Columns):
     """Particles at R times of release or of passage, for each of N seeds; NaN where there is none.
 
     Attributes
@@ -34,19 +37,6 @@ class Rows(NamedTuple):
     vectors: Array
     times: Array
 
-    def joined(self, places: Array, vectors: Array, time: float) -> Rows:
-        """Return these rows and then another."""
-        return Rows(
-            np.concatenate([self.places, places[np.newaxis]]),
-            np.concatenate([self.vectors, vectors[np.newaxis]]),
-            np.append(self.times, time),
-        )
-
-    def since(self, time: float) -> Rows:
-        """Return the rows from a time on."""
-        kept = self.times >= time
-        return Rows(self.places[kept], self.vectors[kept], self.times[kept])
-
     def thinned(self, most: int) -> Rows:
         """Return the rows from the oldest that is there on, without one that is close to others."""
         there = np.any(np.isfinite(self.places), axis=(1, 2))
@@ -54,7 +44,7 @@ class Rows(NamedTuple):
         if len(kept) > most:
             times = self.times[kept]
             kept = np.delete(kept, 1 + np.argmin(times[2:] - times[:-2]))
-        return Rows(self.places[kept], self.vectors[kept], self.times[kept])
+        return self[kept]
 
     def lines(self, vectors: str, time: str) -> pv.PolyData:
         """Return one line for each seed, more where one is interrupted."""

@@ -120,7 +120,7 @@ def skies(
         if field is None:
             shapes[number] = mesh
             continue
-        if up is not None and not _is_above(up):
+        if up is not None and not (up[2] > 0 and up[0] == up[1] == 0):
             remedy = "leave it out, or pass the surface of the grid"
             raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
         found[number] = _of_field(field, error, openness=openness, report=report)
@@ -131,10 +131,6 @@ def skies(
         made = _by_rays([*shapes.values()], error, up, diameter, report)
         found |= dict(zip(shapes, made, strict=True))
     return [found[number] for number in range(len(meshes))]
-
-
-def _is_above(up: Sequence[float]) -> bool:
-    return up[2] > 0 and up[0] == up[1] == 0
 
 
 def is_grid(mesh: pv.DataSet) -> bool:

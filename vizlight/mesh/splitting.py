@@ -98,17 +98,12 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
                 )
         for key, array in surface.cell_data.items():
             found.cell_data[key] = np.asarray(array)
-        _copy(mesh, found)
+        found.GetPointData().ShallowCopy(mesh.GetPointData())
+        found.GetFieldData().DeepCopy(mesh.GetFieldData())
     if not (has_faces(found) or found.n_lines):
         remedy = "between points alone there is no light to refine"
         raise ValueError(_check.message("mesh", "faces or lines", "points alone", remedy))
     return found
-
-
-def _copy(mesh: pv.DataSet, out: pv.PolyData) -> None:
-    """Copy the point and field arrays of a mesh, with what is active, to one of equal points."""
-    out.GetPointData().ShallowCopy(mesh.GetPointData())
-    out.GetFieldData().DeepCopy(mesh.GetFieldData())
 
 
 class Cells:

@@ -71,13 +71,14 @@ class Strands:
     def inputs(self, *, normals: bool, fur: float, origin: Vector) -> ShadingInputs:
         """Return the inputs of the engine, for light through fur of a density."""
         count, m = self.points.shape[:2]
-        tangents = self._ways if self._straight else self._tangents
+        tangents = (lambda rows: self._at(rows)[0].ways.T) if self._straight else self._tangents
+        upright = lambda rows: self._at(rows)[0].normals.T  # noqa: E731
         rows = count if self._straight else count * m
         single = np.dtype(np.float32)
         return ShadingInputs(
             points=_Rows((count * m, 3), self.points.dtype, self._points),
             tangents=_Rows((rows, 3), single, tangents),
-            normals=_Rows((count, 3), single, self._normals) if normals else None,
+            normals=_Rows((count, 3), single, upright) if normals else None,
             fur_height=_Rows((count * m,), single, self._heights) if fur else None,
             fur=fur,
             repeat=m,
@@ -107,12 +108,6 @@ class Strands:
     def _points(self, rows: slice) -> Array:
         self._at(rows)
         return self.points.reshape(-1, 3)[rows]
-
-    def _ways(self, rows: slice) -> Array:
-        return self._at(rows)[0].ways.T
-
-    def _normals(self, rows: slice) -> Array:
-        return self._at(rows)[0].normals.T
 
     def _tangents(self, rows: slice) -> Array:
         """Return tangents, of any length, of the parabola through three points.

@@ -147,20 +147,6 @@ def test_diffuse_and_specular_together(levels_, random):
     assert np.quantile(gap, 0.9) < 1e-12
 
 
-@pytest.mark.parametrize("solid", [Sphere(), Block(), Frustum(radii=(0.2, 0.7))])
-def test_several_lights(solid, random):
-    """The composite contours of the source's footnote, terminators of both lights included."""
-    lights = np.array([[1.0, 0, 0.3], [-0.5, 0.8, 0.2]])
-    lights /= np.linalg.norm(lights, axis=1, keepdims=True)
-
-    def both(_, normals):
-        return 0.1 + 0.45 * np.maximum(normals @ lights.T, 0).sum(axis=1)
-
-    made = refinement.draw(triangle_mesh.mesh(solid, 24), both, 9, low=0.1)
-    assert banded.is_closed(made)
-    assert made.error <= 1.11 * made.steps.error
-
-
 def test_empty_shapes():
     for solid in (Sphere(radius=0), Frustum(radii=(0, 0)), Block(size=(0, 0, 1))):
         made = refinement.draw(triangle_mesh.mesh(solid, 24), spot, 5, low=0.1)

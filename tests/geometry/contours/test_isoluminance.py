@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from vizlight import Light, View
-from vizlight.geometry import isoluminance
-from vizlight.geometry.contours import spacing
 from vizlight.geometry.contours.isoluminance import sphere, virtual_light
 
 LIGHTS = {
@@ -193,8 +191,3 @@ def test_bad_shapes():
         sphere((0, 0, 0), -1.0, direction=(0, 0, 1))
     with pytest.raises(ValueError, match="center: expected 3 components"):
         sphere((0, 0), 1.0, direction=(0, 0, 1))
-
-
-def test_public_names():
-    assert set(isoluminance.__all__) <= set(dir(isoluminance))
-    assert spacing.steps(3, 0, 1).error == pytest.approx(1 / 6)

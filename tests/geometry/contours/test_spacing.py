@@ -22,28 +22,6 @@ def test_worst_error_is_half_a_step(count, low, span, seed):
     np.testing.assert_allclose(np.abs(steps.values[k] - steps.edges[k]), steps.error, rtol=1e-6)
 
 
-def test_mid_values_are_the_best():
-    """Any other values of the same bands have a larger worst error."""
-    steps = spacing.steps(7, 0.1, 0.9)
-    value = np.linspace(0.1, 0.9, 70_001)[1:]
-    band = steps.band(value)
-    best = np.abs(steps.values[band] - value).max()
-    for shift in (-0.01, -1e-3, 1e-3, 0.01):
-        for k in range(1, 8):
-            other = steps.values.copy()
-            other[k] += shift
-            assert np.abs(other[band] - value).max() > best + abs(shift) / 2
-
-
-@given(st.floats(1e-4, 1.9), st.floats(1e-3, 10))
-def test_smallest_count_for_an_error(error, span):
-    steps = spacing.steps(error, 0.0, span, exact=True)
-    n = len(steps.edges) - 1
-    assert steps.error <= error * (1 + 1e-9)
-    if n > 1:
-        assert span / (n - 1) / 2 > error * (1 - 1e-9)
-
-
 def test_the_lowest_luminance_is_exact():
     steps = spacing.steps(5, 0.1, 1.0)
     assert steps.band(np.array([0.1]))[0] == 0

@@ -150,43 +150,21 @@ def test_depth():
     np.testing.assert_allclose(found, [-0.6, 0.2])
 
 
+ROWS = np.zeros((2, 4))
+
+
 @pytest.mark.parametrize(
-    ("call", "error", "words"),
+    ("call", "words"),
     [
-        (lambda: projection.perspective([1.0]), ValueError, "points: expected vectors"),
-        (
-            lambda: projection.perspective(np.zeros((2, 4)), distance=0),
-            ValueError,
-            "distance: expected a number above 0",
-        ),
-        (
-            lambda: projection.perspective(np.zeros((2, 4)), distance=-1),
-            ValueError,
-            "distance: expected",
-        ),
-        (
-            lambda: projection.perspective(np.zeros((2, 4)), distance=np.nan),
-            ValueError,
-            "distance: expected",
-        ),
-        (
-            lambda: projection.push_forward(np.zeros((2, 4)), np.zeros((2, 4))),
-            ValueError,
-            "vectors: expected shape",
-        ),
-        (
-            lambda: projection.push_forward(np.zeros((2, 1, 4)), np.zeros((2, 3))),
-            ValueError,
-            "points: expected vectors",
-        ),
-        (
-            lambda: projection.turn(np.zeros((2, 4)), np.eye(3)),
-            ValueError,
-            r"matrix: expected shape \(4, 4\)",
-        ),
-        (lambda: projection.plane_rotation(1, (0, 1), 0.1), ValueError, "n: expected an integer"),
+        (lambda: projection.perspective([1.0]), "points: expected vectors"),
+        (lambda: projection.perspective(ROWS, distance=0), "distance: expected a number above 0"),
+        (lambda: projection.perspective(ROWS, distance=np.nan), "distance: expected"),
+        (lambda: projection.push_forward(ROWS, ROWS), "vectors: expected shape"),
+        (lambda: projection.push_forward(ROWS[:, None], ROWS[:, :3]), "points: expected vectors"),
+        (lambda: projection.turn(ROWS, np.eye(3)), r"matrix: expected shape \(4, 4\)"),
+        (lambda: projection.plane_rotation(1, (0, 1), 0.1), "n: expected an integer"),
     ],
 )
-def test_bad_projections(call, error, words):
-    with pytest.raises(error, match=words):
+def test_bad_projections(call, words):
+    with pytest.raises(ValueError, match=words):
         call()

@@ -154,15 +154,6 @@ def test_a_plane_has_the_cosine_for_every_depth(method, depth):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_plane_under_a_near_light_has_the_cosine_seen_from_below_the_surface(method):
-    x = np.linspace(-5, 5, 41)
-    light, depth = np.array([1.0, -0.5, 2.0]), 0.3
-    t = relief.shadow(x, x, np.zeros((41, 41)), depth=depth, position=light, method=method)
-    gap = light - np.stack([*np.meshgrid(x, x), np.full((41, 41), -depth)], axis=-1)
-    np.testing.assert_allclose(t, gap[..., 2] / np.linalg.norm(gap, axis=-1), atol=1e-14)
-
-
-@pytest.mark.parametrize("method", METHODS)
 def test_shallow_depth_goes_to_the_clamped_cosine(method):
     """A dome occludes nothing: t is the cosine or 0; small depths come as near as cells allow."""
     errors = []

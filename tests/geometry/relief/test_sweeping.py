@@ -37,7 +37,7 @@ def test_bands_of_profiles_change_nothing(border, monkeypatch):
     x, y, z = hills(32, 26)
     z[10:14, 20:26] = np.nan
     for way in (sun(12, 20), sun(9, 110), sun(15, 200), sun(14, 305), sun(8, 0), sun(10, 90)):
-        field = height_field.make(x, y, z, base=None, border=border)
+        field = height_field.make(x, y, z, border=border)
         profiles = sweeping.profiles(field, way, 0.2)
         assert profiles.count > 10 * sweeping.NARROW
         one = relief.shadow(x, y, z, depth=0.2, direction=way, border=border)
@@ -56,7 +56,7 @@ def test_levels_are_followed_as_by_single_columns(random):
     start = np.column_stack(
         [random.uniform(x[0], x[-1], 300), np.full(300, 2.0), random.uniform(-2, 3, 300)]
     )
-    field = height_field.make(x, np.arange(5.0), z, base=None, border="extend")
+    field = height_field.make(x, np.arange(5.0), z, border="extend")
     assert sweeping.profiles(field, way, 2.0) is not None
     found = relief.inside_length(x, np.arange(5.0), z, start, direction=way)
     edge = np.append(x, x[-1] + 100)

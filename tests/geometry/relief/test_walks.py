@@ -22,13 +22,13 @@ def _compile(monkeypatch):
 @pytest.mark.parametrize("border", ["extend", "wall"])
 def test_squares_are_the_cells(way, border, random):
     x, y, z = hills(37, 28)
-    field = height_field.make(x, y, z, base=-3.0, border=border)
+    field = height_field.make(x, y, z, border=border)
     start = (places(x, y, z, 500, random) - field.origin).T.copy()
     found = np.empty(500)
     ways = np.repeat(way[:, None], 500, axis=1)
     walks.walk(
         start, ways, np.full(500, marching.FAR), *field.edges, field.corners,
-        walks.levels(field.bounds), field.base, field.top, border == "wall", found,
+        walks.levels(field.bounds), field.top, border == "wall", found,
     )  # fmt: skip
     np.testing.assert_allclose(found, by_cells(field, start, way), atol=1e-11)
 

@@ -356,7 +356,10 @@ def _pieces(
             of_side, level, vertex,
         )  # fmt: skip
         position = np.where(flipped[triangle], -position, position)
-        order = _sorted(triangle, band, position)
+        # By triangle, band and position; no two are equal, and the numbers are below 2^60.
+        low, many = position.min(initial=0), band.max(initial=0) + 1
+        places = position.max(initial=0) - low + 1
+        order = np.argsort((triangle * many + band) * places + position - low)
         size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
         parts.append(
@@ -373,16 +376,6 @@ def _pieces(
     )
     offsets = np.concatenate([[0], np.cumsum(size)])
     return _Pieces(offsets, corners, band, triangle), new, lines, line_level
-
-
-def _sorted(triangle: Indices, band: Indices, position: Indices) -> Indices:
-    """Return the order by triangle, band and position; no two are equal."""
-    low = int(position.min(initial=0))
-    places = int(position.max(initial=0)) - low + 1
-    count = int(band.max(initial=0)) + 1
-    if (int(triangle.max(initial=0)) + 1) * count * places < 1 << 62:
-        return np.argsort((triangle * count + band) * places + position - low)
-    return np.lexsort((position, band, triangle))
 
 
 def _touched(

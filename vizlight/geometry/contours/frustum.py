@@ -178,15 +178,7 @@ class _Rulings:
 
     def contours(self, steps: Steps) -> Array:
         """Return the angle of each contour, in [0, pi]; the lowest level is the terminator."""
-        edges = steps.edges[:-1]
-        low, high = np.zeros(len(edges)), np.full(len(edges), np.pi)
-        for _ in range(1080 if len(edges) else 0):
-            middle = (low + high) / 2
-            if np.all((middle == low) | (middle == high)):
-                break
-            bright = self.luminance(middle) > edges
-            low, high = np.where(bright, middle, low), np.where(bright, high, middle)
-        return high
+        return axial.reached(self.luminance, steps.edges[:-1], np.pi)
 
     def end(self, first: bool) -> float:
         """Return the luminance of an end."""

@@ -185,15 +185,7 @@ class _Latitudes:
 
     def contours(self, steps: Steps) -> Array:
         """Return q of each contour, the terminator first; empty if no light reaches the sphere."""
-        edges = steps.edges[:-1]
-        low, high = np.zeros(len(edges)), np.full(len(edges), self.dark)
-        for _ in range(1080 if len(edges) else 0):
-            middle = (low + high) / 2
-            if np.all((middle == low) | (middle == high)):
-                break
-            bright = self.luminance(middle) > edges
-            low, high = np.where(bright, middle, low), np.where(bright, high, middle)
-        return high
+        return axial.reached(self.luminance, steps.edges[:-1], self.dark)
 
     def chord(self, places: Array, segments: int) -> float:
         """Return the largest change of the luminance by chords instead of circles."""

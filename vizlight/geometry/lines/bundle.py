@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
+from vizlight.geometry import axial
 from vizlight.geometry.lines import lamps, voxels
 
 if TYPE_CHECKING:
@@ -394,6 +395,4 @@ def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
 def _frame(toward: VectorLike) -> Array:
     """Return an orthonormal frame, in rows, whose last row is a direction."""
     w = np.asarray(toward, np.float64) / np.linalg.norm(toward)
-    u = np.cross(w, np.eye(3)[np.argmin(np.abs(w))])
-    u /= np.linalg.norm(u)
-    return np.stack([u, np.cross(w, u), w])
+    return np.stack([*axial.frame(w), w])

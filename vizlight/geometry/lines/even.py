@@ -9,7 +9,7 @@ import numpy as np
 
 from vizlight.geometry.lines.samples import SAMPLES, Samples
 from vizlight.geometry.lines.simplices import Places
-from vizlight.geometry.lines.tracing import Curves, Flow, Trail, Walkers
+from vizlight.geometry.lines.tracing import Curves, Flow, Walkers, passed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -95,7 +95,8 @@ class Growth:
         self, flow: Flow, normals: Array | None, asked: Spacing, random: np.random.Generator
     ) -> None:
         self.flow, self.normals, self.asked, self.random = flow, normals, asked, random
-        self.samples, self.trail = Samples(), Trail()
+        self.samples = Samples()
+        self.trail: list[Walkers] = []
         #: Whether there are two families of curves that do not stop each other.
         self.crossing = flow.mesh.sheets is not None
         #: Number of the last step that is kept, by curve and sign, where some are not.
@@ -150,7 +151,7 @@ class Growth:
         for curve in made.curve.tolist():
             self.growing[curve] = self.growing.get(curve, 0) + 1
         at = self.flow.mesh.positions(made.places)
-        self.trail.add(made)
+        self.trail.append(made)
         self.samples.add(made, at, self.embedded(made.places, at))
         self.walkers = self.walkers.joined(made)
         self.returning = np.append(self.returning, np.full(len(made.curve), -1))
@@ -175,9 +176,9 @@ class Growth:
         self.dropped.update(losers.tolist())
         lost = np.isin(ahead.curve, losers)
         made &= ~blocked & ~lost
-        self.trail.add(ahead.kept(made))
+        self.trail.append(ahead[made])
         due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
-        self.samples.add(ahead.kept(due), points[due], embedded[due])
+        self.samples.add(ahead[due], points[due], embedded[due])
         self.sampled = np.where(due, ahead.length, self.sampled)
         for row in np.flatnonzero(made & (reached >= 0)).tolist():
             self._close(ahead, row, int(reached[row]))
@@ -193,7 +194,7 @@ class Growth:
                 self.last.setdefault(key, int(self.returning[row]))
             self._stop(int(ahead.curve[row]), float(walkers.length[row]))
         self.returning = np.where(back, began, -1)[going]
-        self.walkers, self.sampled = ahead.kept(going), self.sampled[going]
+        self.walkers, self.sampled = ahead[going], self.sampled[going]
 
     def _met(
         self, ahead: Walkers, points: Array, embedded: Array
@@ -365,7 +366,7 @@ def evenly_spaced(
             before, growth.last_gaps = kept, True
             pool = growth.widest(places_of(flow, asked.spacing, random, DENSER**flow.mesh.k))
     report(total)
-    curves = growth.trail.curves(growth.last, closed=growth.closed, dropped=growth.dropped)
+    curves = passed(growth.trail, growth.last, closed=growth.closed, dropped=growth.dropped)
     return curves, len(growth.closed - growth.dropped)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
+from vizlight.geometry.lines.columns import Columns
 from vizlight.geometry.lines.even import embedded, with_normals
 from vizlight.geometry.lines.samples import CROSSING, parallel
 from vizlight.geometry.lines.simplices import Places
@@ -136,7 +137,7 @@ class Distances:
 
 
 @dataclass
-class Parts:
+class Parts(Columns):
     """Parts of cells: simplices in them, which are halved.
 
     Attributes
@@ -156,23 +157,6 @@ class Parts:
     corners: Array
     far: Array
     radius: Array
-
-    def __getitem__(self, rows: Indices | Bools) -> Parts:
-        """Return some of the parts."""
-        return Parts(
-            self.cell[rows], self.weights[rows], self.corners[rows], self.far[rows],
-            self.radius[rows],
-        )  # fmt: skip
-
-    def joined(self, other: Parts) -> Parts:
-        """Return these parts and then others."""
-        return Parts(
-            np.concatenate([self.cell, other.cell]),
-            np.concatenate([self.weights, other.weights]),
-            np.concatenate([self.corners, other.corners]),
-            np.concatenate([self.far, other.far]),
-            np.concatenate([self.radius, other.radius]),
-        )
 
     def halved(self, distances: Distances) -> tuple[Parts, Bools]:
         """Return both halves of each part, cut across its longest side, and which have curves.

@@ -32,16 +32,10 @@ class Samples:
     """Samples of the curves, found by distance."""
 
     def __init__(self) -> None:
-        self.points: Array = np.empty((0, 3))
-        self.along: Array = np.empty((0, 3))
-        self.sign: Array = np.empty(0)
-        self.length: Array = np.empty(0)
-        self.curve: Indices = np.empty(0, dtype=np.intp)
-        self.number: Indices = np.empty(0, dtype=np.intp)
-        self._cell: Indices = np.empty(0, dtype=np.intp)
-        self._weights: Array = np.empty((0, 3))
-        self._embedded: Array = np.empty((0, 3))
-        self._used: Bools = np.empty(0, dtype=np.bool_)
+        self.points = self.along = self.weights = self.embedded = np.empty((0, 3))
+        self.sign = self.length = np.empty(0)
+        self.curve = self.number = self.cell = np.empty(0, dtype=np.intp)
+        self.used = np.empty(0, dtype=np.bool_)
         self._size = 0
         # Most samples are in a tree that is seldom made again, the rest in one that often is.
         self._old: scipy.spatial.cKDTree | None = None
@@ -52,54 +46,31 @@ class Samples:
 
     def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
         """Add where ends are now."""
-        count, size = len(points), self._size
-        if not count:
-            return
-        if size + count > len(self.curve):
-            columns = embedded.shape[1], walkers.places.weights.shape[1]
-            self._grow(max(4096, 2 * (size + count)), *columns)
-        rows = slice(size, size + count)
-        self.points[rows], self._embedded[rows] = points, embedded
-        self.curve[rows], self.sign[rows] = walkers.curve, walkers.sign
-        self.along[rows] = walkers.along
-        self.length[rows], self.number[rows] = walkers.length, walkers.number
-        self._cell[rows], self._weights[rows] = walkers.places.cell, walkers.places.weights
-        self._used[rows] = True
-        self._size += count
-
-    def _grow(self, room: int, dimension: int, corners: int) -> None:
-        """Make room for more samples."""
-
-        def larger(array: Array, *columns: int) -> Array:
-            made = np.zeros((room, *columns))
-            if self._size:
-                made[: self._size] = array[: self._size]
-            return made
-
-        def longer(numbers: Indices) -> Indices:
-            return np.resize(numbers, room) if len(numbers) else np.zeros(room, dtype=np.intp)
-
-        self.points, self.along = larger(self.points, 3), larger(self.along, 3)
-        self._embedded = larger(self._embedded, dimension)
-        self._weights = larger(self._weights, corners)
-        self.sign, self.length = larger(self.sign), larger(self.length)
-        self.curve, self.number = longer(self.curve), longer(self.number)
-        self._cell = longer(self._cell)
-        used = np.zeros(room, dtype=np.bool_)
-        used[: self._size] = self._used[: self._size]
-        self._used = used
+        size, total = self._size, self._size + len(points)
+        new = vars(walkers) | vars(walkers.places)
+        new |= {"points": points, "embedded": embedded, "used": np.ones(len(points), np.bool_)}
+        del new["places"]
+        for name, rows in new.items():
+            known = getattr(self, name)
+            if not size or total > len(known):
+                known = np.zeros((max(4096, 2 * total), *rows.shape[1:]), rows.dtype)
+                if size:
+                    known[:size] = getattr(self, name)[:size]
+                setattr(self, name, known)
+            known[size:total] = rows
+        self._size = total
 
     def drop(self, curve: int) -> None:
         """Forget the samples of a curve."""
         rows = np.flatnonzero(self.curve[: self._size] == curve)
-        self._used[rows] = False
+        self.used[rows] = False
         self._seen = -1
         self._stale += int(np.count_nonzero(rows < self._whole))
 
     def of(self, curve: int) -> tuple[Places, Array]:
         """Return the places of a curve's samples, and its directions there."""
         rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
-        return Places(self._cell[rows], self._weights[rows]), self.along[rows]
+        return Places(self.cell[rows], self.weights[rows]), self.along[rows]
 
     def near(
         self, embedded: Array, radius: float, count: int, along: Array | None = None
@@ -112,13 +83,13 @@ class Samples:
             # Curves of the other family, which are not counted, can be nearer.
             count += CROSSING
         if self._size - self._whole > RECENT or self._stale > RECENT:
-            self._rows = np.flatnonzero(self._used[: self._size])
-            self._old = scipy.spatial.cKDTree(self._embedded[self._rows], balanced_tree=False)
+            self._rows = np.flatnonzero(self.used[: self._size])
+            self._old = scipy.spatial.cKDTree(self.embedded[self._rows], balanced_tree=False)
             self._whole, self._seen, self._stale = self._size, -1, 0
             self._recent, self._new = self._rows[:0], None
         if self._seen != self._size:
-            self._recent = self._whole + np.flatnonzero(self._used[self._whole : self._size])
-            self._new = scipy.spatial.cKDTree(self._embedded[self._recent], balanced_tree=False)
+            self._recent = self._whole + np.flatnonzero(self.used[self._whole : self._size])
+            self._new = scipy.spatial.cKDTree(self.embedded[self._recent], balanced_tree=False)
             self._seen = self._size
         distances: list[Array] = []
         numbers: list[Indices] = []
@@ -128,7 +99,7 @@ class Samples:
             found = tree.query(embedded, k=count, distance_upper_bound=radius)
             distance = np.asarray(found[0]).reshape(-1, count)
             row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
-            counted = self._used[row]
+            counted = self.used[row]
             if along is not None:
                 counted &= parallel(self.along[row], along[:, np.newaxis])
             distances.append(np.where(counted, distance, np.inf))

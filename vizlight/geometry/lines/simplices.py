@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 
 from vizlight import _compiled
+from vizlight.geometry.lines.columns import Columns
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
@@ -20,8 +21,8 @@ MOST_CROSSINGS = 300
 SAVED = 4e-4, 4e-6
 
 
-@dataclass(frozen=True)
-class Places:
+@dataclass
+class Places(Columns):
     """Places in cells.
 
     Attributes
@@ -34,16 +35,6 @@ class Places:
 
     cell: Indices
     weights: Array
-
-    def __getitem__(self, rows: Indices | Bools | slice) -> Places:
-        """Return some of the places."""
-        return Places(self.cell[rows], self.weights[rows])
-
-    def joined(self, other: Places) -> Places:
-        """Return these places and then others."""
-        return Places(
-            np.concatenate([self.cell, other.cell]), np.concatenate([self.weights, other.weights])
-        )
 
 
 def numbered(points: Array) -> Indices:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.lines.simplices import Places, Simplices
+from vizlight.geometry.lines.columns import Columns
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.geometry.lines.simplices import Places, Simplices
 
 #: Speed below which a curve has come to rest.
 AT_REST = 1e-6
@@ -93,7 +94,7 @@ class Flow:
 
 
 @dataclass
-class Walkers:
+class Walkers(Columns):
     """Ends of curves that grow.
 
     Attributes
@@ -129,25 +130,7 @@ class Walkers:
             np.tile(curves, 2), sign, places, along,
             np.zeros(2 * count, dtype=np.intp), np.zeros(2 * count),
         )  # fmt: skip
-        return made.kept(moving)
-
-    def kept(self, rows: Bools) -> Walkers:
-        """Return some of the ends."""
-        return Walkers(
-            self.curve[rows], self.sign[rows], self.places[rows], self.along[rows],
-            self.number[rows], self.length[rows],
-        )  # fmt: skip
-
-    def joined(self, other: Walkers) -> Walkers:
-        """Return these ends and then others."""
-        return Walkers(
-            np.concatenate([self.curve, other.curve]),
-            np.concatenate([self.sign, other.sign]),
-            self.places.joined(other.places),
-            np.concatenate([self.along, other.along]),
-            np.concatenate([self.number, other.number]),
-            np.concatenate([self.length, other.length]),
-        )
+        return made[moving]
 
     def moved(self, places: Places, along: Array, step: Array) -> Walkers:
         """Return the ends after a step."""
@@ -185,66 +168,45 @@ class Curves:
         return Curves(self.places[: offsets[-1]], self.along[: offsets[-1]], offsets)
 
 
-@dataclass
-class Trail:
-    """What was passed, step by step."""
+def passed(
+    trail: list[Walkers], last: dict[tuple[int, int], int], *, closed: set[int], dropped: set[int]
+) -> Curves:
+    """Return the curves along which ends have gone, in the order of their numbers.
 
-    walkers: list[Walkers] = field(default_factory=list)
-
-    def add(self, walkers: Walkers) -> None:
-        """Add where ends are now."""
-        self.walkers.append(walkers)
-
-    def curves(
-        self, last: dict[tuple[int, int], int], *, closed: set[int], dropped: set[int]
-    ) -> Curves:
-        """Return the curves in the order of their numbers.
-
-        Parameters
-        ----------
-        last : dict
-            Number of the last step that is kept, by curve and sign, where some are not.
-        closed : set of int
-            Curves whose last place is followed by the first.
-        dropped : set of int
-            Curves that are left out.
-        """
-        all_ = self.walkers[0]
-        if len(self.walkers) > 1:
-            parts = self.walkers
-            all_ = Walkers(
-                np.concatenate([w.curve for w in parts]),
-                np.concatenate([w.sign for w in parts]),
-                Places(
-                    np.concatenate([w.places.cell for w in parts]),
-                    np.concatenate([w.places.weights for w in parts]),
-                ),
-                np.concatenate([w.along for w in parts]),
-                np.concatenate([w.number for w in parts]),
-                np.concatenate([w.length for w in parts]),
-            )
-        limit = np.full((int(all_.curve.max(initial=0)) + 1, 2), np.iinfo(np.intp).max)
-        for (curve, sign), number in last.items():
-            limit[curve, int(sign > 0)] = number
-        limit[[*dropped]] = -1
-        kept = all_.number <= limit[all_.curve, (all_.sign > 0).astype(np.intp)]
-        order = np.lexsort((all_.sign * all_.number, all_.curve))
-        order = order[kept[order]]
-        # Both ends begin at the seed; one of them is enough.
-        same = (all_.curve[order][1:] == all_.curve[order][:-1]) & (
-            (all_.number[order][1:] == 0) & (all_.number[order][:-1] == 0)
-        )
-        order = order[np.append(True, ~same)] if len(order) else order
-        names, starts, counts = np.unique(all_.curve[order], return_index=True, return_counts=True)
-        runs = []
-        for name, start, count in zip(names.tolist(), starts, counts, strict=True):
-            run = order[start : start + count]
-            if count > 1:
-                runs.append(np.append(run, run[0]) if name in closed else run)
-        rows = np.concatenate(runs) if runs else np.empty(0, dtype=np.intp)
-        offsets = np.concatenate([[0], np.cumsum([len(run) for run in runs])]).astype(np.intp)
-        along = all_.along[rows] * all_.sign[rows][:, np.newaxis]
-        return Curves(all_.places[rows], along, offsets)
+    Parameters
+    ----------
+    trail : list of Walkers
+        Ends after each step.
+    last : dict
+        Number of the last step that is kept, by curve and sign, where some are not.
+    closed : set of int
+        Curves whose last place is followed by the first.
+    dropped : set of int
+        Curves that are left out.
+    """
+    all_ = trail[0].joined(*trail[1:])
+    limit = np.full((int(all_.curve.max(initial=0)) + 1, 2), np.iinfo(np.intp).max)
+    for (curve, sign), number in last.items():
+        limit[curve, int(sign > 0)] = number
+    limit[[*dropped]] = -1
+    kept = all_.number <= limit[all_.curve, (all_.sign > 0).astype(np.intp)]
+    order = np.lexsort((all_.sign * all_.number, all_.curve))
+    order = order[kept[order]]
+    # Both ends begin at the seed; one of them is enough.
+    same = (all_.curve[order][1:] == all_.curve[order][:-1]) & (
+        (all_.number[order][1:] == 0) & (all_.number[order][:-1] == 0)
+    )
+    order = order[np.append(True, ~same)] if len(order) else order
+    names, starts, counts = np.unique(all_.curve[order], return_index=True, return_counts=True)
+    runs = []
+    for name, start, count in zip(names.tolist(), starts, counts, strict=True):
+        run = order[start : start + count]
+        if count > 1:
+            runs.append(np.append(run, run[0]) if name in closed else run)
+    rows = np.concatenate(runs) if runs else np.empty(0, dtype=np.intp)
+    offsets = np.concatenate([[0], np.cumsum([len(run) for run in runs])]).astype(np.intp)
+    along = all_.along[rows] * all_.sign[rows][:, np.newaxis]
+    return Curves(all_.places[rows], along, offsets)
 
 
 def trace(
@@ -284,7 +246,7 @@ def trace(
     is below a millionth, or where it turns by a right angle in one step.
     """
     walkers = Walkers.at(flow, seeds, np.arange(len(seeds.cell)))
-    trail = Trail([walkers])
+    trail = [walkers]
     for _ in range(max_steps):
         if not len(walkers.curve):
             break
@@ -293,7 +255,7 @@ def trace(
             walkers.places, walkers.along, walkers.sign, size
         )
         walkers = walkers.moved(places, along, size)
-        trail.add(walkers.kept(made))
-        walkers = walkers.kept(made & inside & (walkers.length < max_length * (1 - 1e-9)))
+        trail.append(walkers[made])
+        walkers = walkers[made & inside & (walkers.length < max_length * (1 - 1e-9))]
         report(2 * len(seeds.cell) - len(walkers.curve))
-    return trail.curves({}, closed=set(), dropped=set())
+    return passed(trail, {}, closed=set(), dropped=set())

@@ -72,12 +72,11 @@ def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False
         index = np.concatenate([index, back[np.newaxis]])
         closed = (False, *closed[1:])
     index = np.pad(index, [(0, int(wraps)) for wraps in closed], mode="wrap")
-    return np.stack([_shifted(index, corner).ravel() for corner in _CORNERS[len(shape)]], axis=1)
-
-
-def _shifted(index: Indices, corner: tuple[int, ...]) -> Indices:
-    part = tuple(slice(c, n - 1 + c) for c, n in zip(corner, index.shape, strict=True))
-    return index[part]
+    parts = [
+        index[tuple(slice(c, n - 1 + c) for c, n in zip(corner, index.shape, strict=True))]
+        for corner in _CORNERS[len(shape)]
+    ]
+    return np.stack([part.ravel() for part in parts], axis=1)
 
 
 def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Indices, Indices]:

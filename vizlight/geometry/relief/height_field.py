@@ -43,8 +43,6 @@ class Field:
         Heights at the nodes; NaN in holes, unless the field extends over them.
     edges : tuple of ndarray, shapes (nx + 2,), (ny + 2,)
         Boundaries of the cells, from -inf to inf.
-    base : float
-        Height of the lower side of the solid, -inf without one.
     top : float
         Largest height.
     border : {"extend", "wall"}
@@ -56,7 +54,6 @@ class Field:
     y: Array
     heights: Array
     edges: tuple[Array, Array]
-    base: float
     top: float
     border: Border
 
@@ -104,7 +101,7 @@ def locate(nodes: Array, place: Array) -> Indices:
     return guess
 
 
-def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border: Border) -> Field:
+def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
     """Return the :class:`Field` of heights over a grid.
 
     Raises
@@ -136,11 +133,6 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
         expected = "a field with sides between 1e-70 and 1e70"
         raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
-    if base is not None:
-        base = _check.number("base", base)
-        if base > low:
-            expected = f"a height not above the lowest one, {low:g}"
-            raise ValueError(_check.message("base", expected, base))
     wide = wide if border == "wall" else filled(wide)
     return Field(
         origin=np.array([axes[0][0], axes[1][0], low]),
@@ -148,7 +140,6 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, base: float | None, border
         y=axes[1] - axes[1][0],
         heights=wide,
         edges=(_edges(axes[0]), _edges(axes[1])),
-        base=-np.inf if base is None else base - low,
         top=top,
         border=border,
     )

@@ -48,14 +48,14 @@ def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool)
 
 
 def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, Array]:
-    """Return the distances at which rays enter and leave the slab between base and top."""
+    """Return the distances between which rays are below the highest node."""
     rise, z = way[2], start[2]
-    # With a rise near 0 the distance to top or base may exceed FAR.
+    # With a rise near 0 the distance may exceed FAR.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        up, down = (field.top - z) / rise, (field.base - z) / rise
-    first = np.where(rise > 0, down, np.where(rise < 0, up, 0.0))
-    last = np.where(rise > 0, up, np.where(rise < 0, down, FAR))
-    outside = (rise == 0) & ((z < field.base) | (z >= field.top))
+        place = (field.top - z) / rise
+    first = np.where(rise < 0, place, 0.0)
+    last = np.where(rise > 0, place, FAR)
+    outside = (rise == 0) & (z >= field.top)
     return np.maximum(first, 0.0), np.where(outside, -1.0, np.minimum(last, reach))
 
 

@@ -42,7 +42,6 @@ def inside_length(
     *,
     direction: VectorLike | None = None,
     position: VectorLike | None = None,
-    base: float | None = None,
     border: Border = "extend",
     method: Method = "fast",
 ) -> Array:
@@ -60,9 +59,6 @@ def inside_length(
         Direction toward a light at infinity, of any length but 0.
     position : vector of 3 components, optional
         Position of a light outside the solid. Exactly one of direction and position is required.
-    base : float, optional
-        Height of the solid's flat lower side, not above the lowest height. Default: the solid is
-        unbounded below.
     border : {"extend", "wall"}
         Shape of the solid beyond the outermost nodes. "extend": the heights of the border continue
         without end, and a hole has the height of the nearest node by index. "wall": the solid ends
@@ -109,7 +105,7 @@ def inside_length(
     >>> round(float(inside_length([0, 1], [0, 1], flat, below, direction=(0, 3, 4))), 12)
     1.25
     """
-    field = height_field.make(x, y, z, base=base, border=border)
+    field = height_field.make(x, y, z, border=border)
     starts = _check.vectors("points", points, n=3)
     flat = starts.reshape(-1, 3).astype(np.float64) - field.origin
     odd = ~np.all(np.abs(flat) <= _check.FARTHEST, axis=1)
@@ -134,7 +130,6 @@ def shadow(
     direction: VectorLike | None = None,
     position: VectorLike | None = None,
     normals: ArrayLike | None = None,
-    base: float | None = None,
     border: Border = "extend",
     method: Method = "fast",
 ) -> Array:
@@ -142,7 +137,7 @@ def shadow(
 
     Parameters
     ----------
-    x, y, z, direction, position, base, border, method
+    x, y, z, direction, position, border, method
         As for :func:`inside_length`.
     depth : float
         Depth d below the surface at which the light is collected, 0 or more, in the unit of the
@@ -172,7 +167,7 @@ def shadow(
     depends on the slope of the cell on the side of a node that faces the light. The source prints
     ``t = r/d`` once; the correct ratio is d/r. Source: cos-theta, sections 2 and 3.
     """
-    field = height_field.make(x, y, z, base=base, border=border)
+    field = height_field.make(x, y, z, border=border)
     depth = _check.number("depth", depth, low=0.0)
     dark = np.isnan(np.asarray(z, dtype=np.float64))
     if normals is None:
@@ -235,7 +230,7 @@ def toward(
     place = np.array(vector) - field.origin
     height = float(field.height(place[:1], place[1:2])[0])
     size = max(field.x[-1], field.y[-1], field.top)
-    if field.base <= place[2] < height - 1e-9 * size:
+    if place[2] < height - 1e-9 * size:
         expected = f"a light outside the solid, above {height + field.origin[2]:.9g} there"
         raise ValueError(_check.message("position", expected, vector, "raise the light"))
     return Ray(None, place)
@@ -318,8 +313,7 @@ def _lengths(
     report: Callable[[int], None] | None,
 ) -> Array:
     length = np.empty(count)
-    endless = field.border == "extend" and field.base == -np.inf
-    if ray.direction is not None and ray.direction[2] < 0 and endless:
+    if ray.direction is not None and ray.direction[2] < 0 and field.border == "extend":
         length[:] = np.inf
         return length
     if ray.direction is not None and count:
@@ -348,7 +342,7 @@ def _lengths(
         else:
             walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
-                field.corners, bounds, float(field.base), float(field.top),
+                field.corners, bounds, float(field.top),
                 field.border == "wall", length[rows],
             )  # fmt: skip
         return int(rows.stop)

@@ -112,7 +112,7 @@ def sky(
     (1 + cos b) / 2. A compiled azimuth takes about 220 ns per node; NumPy takes ten times as long.
     """
     error = _check.number("error", error, low=LEAST, high=LARGEST)
-    field = height_field.make(x, y, np.asarray(z), base=None, border="wall")
+    field = height_field.make(x, y, np.asarray(z), border="wall")
     search = _Search(field, openness=openness, progress=progress)
     return search.until(error)
 

@@ -389,7 +389,7 @@ class Strips:
 
 def strips(field: Field, way: Array, below: float, count: int) -> Strips | None:
     """Return the strips of a field for a number of rays, or None where they do not apply."""
-    if field.border != "extend" or field.base != -np.inf or way[2] <= 0:
+    if field.border != "extend" or way[2] <= 0:
         return None
     across = float(np.hypot(way[0], way[1]))
     if across < ACROSS or way[2] < RISE * across:

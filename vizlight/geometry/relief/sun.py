@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight.geometry import axial
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -126,22 +127,15 @@ def disc(direction: VectorLike, diameter: float, count: int, /) -> Array:
     The directions follow a sunflower's spiral: the radius grows as a square root and the angle by
     the golden angle.
     """
-    axis = np.array(_check.vector("direction", direction, direction=True))
-    axis = axis / np.abs(axis).max()
-    axis /= np.linalg.norm(axis)
-    if len(axis) != 3:
-        raise ValueError(_check.message("direction", "3 components", len(axis)))
+    axis = _check.unit("direction", direction)
     diameter = _check.number("diameter", diameter, low=0.0, high=1.0)
     count = _check.integer("count", count, low=1)
-    least = np.zeros(3)
-    least[np.abs(axis).argmin()] = 1
-    side = np.cross(axis, least)
-    side /= np.linalg.norm(side)
+    side, other = axial.frame(axis)
     k = np.arange(count)
     radius = np.tan(diameter / 2) * np.sqrt((k + 0.5) / count)
     angle = k * np.pi * (3 - np.sqrt(5))
     spread = np.outer(np.cos(angle) * radius, side)
-    spread += np.outer(np.sin(angle) * radius, np.cross(axis, side))
+    spread += np.outer(np.sin(angle) * radius, other)
     way = axis + spread
     unit: Array = way / np.linalg.norm(way, axis=1, keepdims=True)
     return unit

@@ -39,7 +39,7 @@ def profiles(field: Field, way: Array, below: float) -> Profiles | None:
     """Return the profiles of a field, or None where rays are faster to follow without them.
 
     That is so where rays leave the relief within few columns or hardly rise at all, and where the
-    solid has a base or the rays start far outside it.
+    rays start far outside the solid.
     """
     across = float(np.hypot(way[0], way[1]))
     size = max(field.x[-1], field.y[-1])
@@ -47,7 +47,7 @@ def profiles(field: Field, way: Array, below: float) -> Profiles | None:
     columns = max(abs(way[a]) * steps[a] for a in (0, 1)) * (field.top + below)
     if not across * 1e-6 < way[2] < columns / STEEP:
         return None
-    if field.base != -np.inf or below > size:
+    if below > size:
         return None
     return Profiles(field, way, below)
 

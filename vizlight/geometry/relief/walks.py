@@ -76,12 +76,12 @@ def in_cell(corners: Array, i: int, j: int, place: Triple, rate: Triple, length:
 
 
 @_compiled.kernel(inline=True)
-def slab(base: float, top: float, z: float, rise: float, reach: float) -> tuple[float, float]:
-    """Return the distances at which a ray enters and leaves the slab between base and top."""
+def below_top(top: float, z: float, rise: float, reach: float) -> tuple[float, float]:
+    """Return the distances between which a ray is below the highest node."""
     if rise == 0:
-        return (0.0, reach) if base <= z < top else (0.0, -1.0)
-    one, other = (base - z) / rise, (top - z) / rise
-    return max(min(one, other), 0.0), min(max(one, other), reach)
+        return (0.0, reach) if z < top else (0.0, -1.0)
+    place = (top - z) / rise
+    return (0.0, min(place, reach)) if rise > 0 else (max(place, 0.0), reach)
 
 
 @_compiled.kernel(inline=True)
@@ -123,7 +123,7 @@ def beside(largest: Array, at: int, before_x: int, before_y: int) -> tuple[int, 
 @_compiled.kernel(seconds=1.4)
 def walk(
     start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Levels,
-    base: float, top: float, walls: bool, out: Array,
+    top: float, walls: bool, out: Array,
 ) -> None:  # fmt: skip
     """Write the lengths of rays inside the solid, as :func:`marching.march` returns them.
 
@@ -133,7 +133,7 @@ def walk(
     for ray in range(len(out)):
         px, py, pz = start[0, ray], start[1, ray], start[2, ray]
         wx, wy, wz = way[0, ray], way[1, ray], way[2, ray]
-        s, end = slab(base, top, pz, wz, reach[ray])
+        s, end = below_top(top, pz, wz, reach[ray])
         i, j, level, length = locate(x, px + s * wx), locate(y, py + s * wy), 0, 0.0
         before_x = 1 if walls and wx == 0 and px == x[i] else 0
         before_y = columns[0] if walls and wy == 0 and py == y[j] else 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -139,10 +138,6 @@ class Primitive(Solid):
         """Return the surfaces that bound the solid."""
         raise NotImplementedError
 
-    @functools.cached_property
-    def _faces(self) -> tuple[Surface, ...]:
-        return self.surfaces()
-
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Primitive:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         raise NotImplementedError
@@ -174,7 +169,7 @@ class Primitive(Solid):
         if self.empty:
             return np.zeros(len(points), np.bool_)
         found = np.ones(len(points), np.bool_)
-        for surface in self._faces:
+        for surface in self.surfaces():
             found &= surface.distance(points) < 0
         return found
 

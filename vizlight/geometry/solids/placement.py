@@ -85,7 +85,9 @@ def flipped(mesh: Mesh) -> Bools:
 def _meeting(mesh: Mesh) -> Indices:
     """Return up to three independent surfaces of each point; fewer are repeated."""
     count = len(mesh.points)
-    pairs = np.stack(np.divmod(_incidence(mesh), len(mesh.surfaces)), axis=1)
+    sides = len(mesh.surfaces)
+    codes = np.unique(mesh.triangles * sides + mesh.patch[:, np.newaxis])
+    pairs = np.stack(np.divmod(codes, sides), axis=1)
     start = np.searchsorted(pairs[:, 0], np.arange(count + 1))
     several = np.diff(start)
     which = np.repeat(pairs[start[:-1], 1][:, np.newaxis], 3, axis=1)
@@ -104,11 +106,6 @@ def _meeting(mesh: Mesh) -> Indices:
         basis[rows, slot] = rest[new] / size[new][:, np.newaxis]
         found[rows] += 1
     return which
-
-
-def _incidence(mesh: Mesh) -> Indices:
-    """Return the sorted codes ``point * number of surfaces + surface`` of all triangles."""
-    return np.unique(mesh.triangles * len(mesh.surfaces) + mesh.patch[:, np.newaxis])
 
 
 def _merge(mesh: Mesh) -> Mesh:

@@ -9,6 +9,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry import axial
+from vizlight.geometry.solids import parallel_rays
 from vizlight.geometry.solids.base import Primitive, place
 from vizlight.geometry.solids.exact_surfaces import Plane
 from vizlight.geometry.solids.primitives import Block
@@ -212,31 +213,16 @@ class Polyhedron(Primitive):
         Equal corners are one point and each edge is evaluated from its lower corner, so that a ray
         through an edge crosses one of its two triangles.
         """
-        order = np.argsort(points[:, 0])
-        x, y, z = points[order].T
-        count = np.zeros(len(points), np.intp)
-        corners = self.points[self.triangles]
-        low = np.searchsorted(x, corners[:, :, 0].min(axis=1), side="left")
-        high = np.searchsorted(x, corners[:, :, 0].max(axis=1), side="right")
-        for t in np.flatnonzero(high > low):
-            rows = np.arange(low[t], high[t])
-            under = np.zeros(len(rows), np.bool_)
-            for i in range(3):
-                a, b = sorted((self.triangles[t, i], self.triangles[t, i - 1]))
-                (ax, ay, _), (bx, by, _) = self.points[a], self.points[b]
-                if ay != by:
-                    between = (ay <= y[rows]) != (by <= y[rows])
-                    under ^= between & (x[rows] < ax + (y[rows] - ay) * ((bx - ax) / (by - ay)))
-            rows = rows[under]
-            first, *_ = corners[t]
-            normal = np.cross(corners[t, 1] - first, corners[t, 2] - first)
-            if len(rows) and normal[2] != 0:
-                away = (x[rows] - first[0]) * normal[0] + (y[rows] - first[1]) * normal[1]
-                above = first[2] - away / normal[2] > z[rows]
-                count[rows[above]] += 1 if normal[2] > 0 else -1
-        found = np.zeros(len(points), np.bool_)
-        found[order] = count > 0
-        return found
+        up = np.array([0.0, 0.0, 1.0])
+        hits = parallel_rays.hits(self.points, self.triangles, points, up, np.inf)
+        assert hits is not None
+        ray, cell = hits
+        a, b, c = self.points[self.triangles[cell]].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            above = np.einsum("ij,ij->i", a - points[ray], normal) / normal[:, 2] > 0
+        turns = np.bincount(ray[above], np.sign(normal[above, 2]), len(points))
+        return np.asarray(turns > 0)
 
 
 class Prism(Polyhedron):

@@ -228,7 +228,9 @@ class _Tree:
         """Return the mesh, with the bound of its volume."""
         whole, bound = self.combined(segments)
         if whole.is_empty():
-            return dataclasses.replace(self._empty(), volume_error=bound)
+            none = np.empty((0, 3), np.intp)
+            own = self.surfaces, self.signs, self.shift, self.scale
+            return Mesh(np.empty((0, 3)), none, none[:, 0], *own, bound)
         found = whole.to_mesh64()
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
@@ -263,12 +265,6 @@ class _Tree:
                 expected = "a bounded combination of a half-space with others"
                 remedy = "intersect it with a bounded solid, or subtract it from one"
                 raise ValueError(_check.message("solid", expected, part, remedy))
-
-    def _empty(self) -> Mesh:
-        none = np.empty((0, 3), np.intp)
-        return Mesh(
-            np.empty((0, 3)), none, none[:, 0], self.surfaces, self.signs, self.shift, self.scale
-        )
 
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.base import Primitive
     from vizlight.geometry.solids.exact_surfaces import Surface
 
+#: Corners of the faces of a block, x before y before z, the side of larger coordinates first.
+_FACES = (
+    (7, 5, 4, 6), (2, 0, 1, 3), (7, 6, 2, 3), (1, 0, 4, 5), (7, 3, 1, 5), (4, 0, 2, 6),
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -216,27 +221,14 @@ def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
 def _block(unit: Block) -> tuple[Array, Indices, Indices]:
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     points = unit.center + (signs * unit.size / 2) @ unit.axes
-    cells = []
-    right = np.linalg.det(unit.axes) > 0
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for sign in (1, -1):
-            around = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-            face = []
-            for u, v in around:
-                corner = np.zeros(3, int)
-                corner[[i, j, k]] = sign, u, v
-                face.append(int(np.flatnonzero(np.all(signs == corner, axis=1))[0]))
-            if (sign > 0) != right:
-                face = face[::-1]
-            cells += [[face[0], face[1], face[2]], [face[0], face[2], face[3]]]
-    patch = np.repeat(np.arange(6), 2)
-    there = np.repeat(unit.size > 0, 4)[: len(cells)]
-    if np.count_nonzero(unit.size) < 2:
-        there[:] = False
-    elif np.any(unit.size == 0):
-        there = np.repeat(unit.size == 0, 4)
-    return points, np.array(cells, np.intp)[there], patch[there]
+    faces = np.array(_FACES, np.intp)
+    if np.linalg.det(unit.axes) < 0:
+        faces = faces[:, ::-1]
+    cells = faces[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+    # A block without thickness has its two wide faces, one of less than two sides none.
+    flat = unit.size == 0
+    there = np.repeat(flat if flat.any() else ~flat, 4) & (np.count_nonzero(flat) < 2)
+    return points, cells[there], np.repeat(np.arange(6), 2)[there]
 
 
 def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:

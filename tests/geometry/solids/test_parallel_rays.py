@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import closed_meshes, parallel_rays
+from vizlight.geometry.solids import parallel_rays
+from vizlight.mesh import closed_meshes
 
 WAYS = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (0.6, 0.0, 0.8), (0.48, 0.6, 0.64), (1e-9, 0, 1)]
 

@@ -20,7 +20,7 @@ CELLS = 1 << 11
 
 
 def hits(
-    vertices: Array, triangles: Indices, start: Array, way: Array
+    vertices: Array, triangles: Indices, start: Array, way: Array, most: float = MOST
 ) -> tuple[Indices, Indices] | None:
     """Return the ray and the triangle of every hit of the lines through parallel rays.
 
@@ -34,6 +34,8 @@ def hits(
         Starting points of the rays.
     way : ndarray, shape (3,)
         Unit direction of all rays.
+    most : float, optional
+        Number of pairs for each ray and triangle beyond which None is returned.
 
     Returns
     -------
@@ -56,7 +58,7 @@ def hits(
     grid = _Grid(np.ascontiguousarray(((start - origin) @ across).T), low, high)
     begin, end, owner = grid.runs(low, high)
     size = end - begin
-    if size.sum() > MOST * (len(start) + len(triangles)):
+    if size.sum() > most * (len(start) + len(triangles)):
         return None
     edges = _Edges(place, triangles)
     rays, cells = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
