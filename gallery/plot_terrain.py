@@ -2,37 +2,42 @@
 Islands under a low sun
 =======================
 
-Hawaii and the sea floor around it, heights 9 times as they are, under a low sun in the west and the
-light of the sky. ``t``, the cos-theta shadow, is the sunlight that arrives: 0 behind a ridge, the
-cosine where nothing is in the way. The sky's light is the share of it that each point sees, so that
-valleys are dark also out of the sun. One call finds both: ``relief_shadow(..., occlusion="sky")``.
-This light tells heights by their shadows; slopes are read better by ``presets.shape``.
+Hawaii and the sea floor around it, heights 9 times as they are, under a low warm sun in the west, a
+blue light from the other side, and the light of the sky. The two hues tell which way a slope faces:
+its normal is read with a median error of 6 degrees, in PyVista's light of 12, under one white sun
+of 30. Cast shadows tell heights, and valleys are dark out of the sun too, by the share of the sky
+that each point sees. One call finds both: ``relief_shadow(..., occlusion="sky")``.
 """
 
 import pyvista as pv
 from matplotlib.colors import LinearSegmentedColormap
 
-import vizlight
-from vizlight import Light, Material, Scene, render
+from vizlight import Light, Material, Scene, legibility, load_example, relief_shadow, render, tint
 
 tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#d6ecec", "#5f9a52", "#b5965f", "#f4efe6"]
 places = [0, 0.3, 0.58, 0.665, 0.67, 0.83, 1]  # of heights from -5800 to 2860 m: 0.67 is the coast
 tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
-relief = vizlight.load_example("hawaii.vti").resample(8.0, interpolation="bspline")
-material = Material(ambient=0.65, diffuse=1.25, specular=0)
-scene = Scene(lights=Light(direction=(-0.85, 0.25, 0.4)), material=material)
+relief = load_example("hawaii.vti").resample(8.0, interpolation="bspline")
+sun = Light(direction=(-0.87, 0.25, 0.42), color="#ffc080", intensity=1.1)
+blue = Light(direction=(0.48, -0.14, 0.87), color="#80b8ff", intensity=0.6)
+scene = Scene(lights=[sun, blue], material=Material(ambient=0.4, diffuse=0.85, specular=0))
 options = {"elevation": "elevation", "exaggeration": 9, "depth": 1500}
-lit = vizlight.relief_shadow(relief, scene, lit=True, occlusion="sky", **options)
-lit = vizlight.tint(lit, "elevation", cmap=tints, clim=(-5800, 2860))
+lit = relief_shadow(relief, scene, lit=True, occlusion="sky", **options)
+lit = tint(lit, "elevation", cmap=tints, clim=(-5800, 2860))
 ground = lit.warp_by_scalar("elevation", factor=9)
 
-islands = (4.1e5, 10e5, 2.2e5, 6.6e5, -4e4, 2e4)
-camera = render.camera_on(islands, (0.3, -1, 1.3), aspect=1.5, zoom=1.5)
-look = {"size": (1500, 1000), "background": "#1f4a7c"}
-plotter = render.make_plotter(render.Panel(ground, "rgb"), camera=camera, **look)
+plotter = pv.Plotter(off_screen=True, window_size=(1500, 1000))
+plotter.background_color = "#1f4a7c"
+bar = {"title": "height, m\n", "color": "white", "fmt": "%.0f", "n_labels": 3, "vertical": True}
+plotter.vizlight.add_mesh(ground, scalar_bar_args={**bar, "position_y": 0.5})
+plotter.camera = render.camera_on((4e5, 1e6, 2.2e5, 6.6e5, 0, 0), (0.3, -1, 1.3), zoom=1.55)
 north = pv.Arrow(start=(4.4e5, 2e5, -3.8e4), direction=(0, 1, 0), scale=6e4)
 plotter.add_mesh(north + pv.Box((4.6e5, 5.6e5, 2e5, 2.06e5, -3.9e4, -3.8e4)), color="white")
-words = {"shape": None, "show_points": False, "text_color": "white", "font_size": 26}
 places = [(4.8e5, 2.15e5, -3.8e4), (4.34e5, 2.65e5, -3.8e4)]
-plotter.add_point_labels(places, ["100 km", "N"], **words)
-plotter.show()
+plotter.add_point_labels(places, ["100 km", "N"], shape=None, show_points=False, text_color="white")
+plotter.show(auto_close=False)
+
+# %%
+# What can be read of the shape in this light, but for its shadows:
+
+print(legibility(ground, scene, view=plotter.camera))

@@ -586,6 +586,8 @@ def test_files_whose_standard_has_y_up_stand_upright(tmp_path):
     plotter = pv.Plotter(off_screen=True)
     plotter.add_mesh(tall)
     plotter.export_vrml(tmp_path / "a.wrl")
+    plotter.export_gltf(tmp_path / "a.glb", rotate_scene=False)
+    assert np.argmax(files.read(tmp_path / "a.glb").bounds_size) == 2
     tall.save(tmp_path / "a.ply")
     assert np.argmax(files.read(tmp_path / "a.ply").bounds_size) == 1
     assert np.argmax(files.read(tmp_path / "a.wrl").bounds_size) == 2

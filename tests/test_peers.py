@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
 import json
+import re
 import runpy
 import sys
 from pathlib import Path
@@ -98,3 +100,26 @@ def test_the_six_sheets_are_kept():
         with Image.open(path) as picture:
             assert picture.width == 4 * sheets.SIZE[0]
             assert np.asarray(picture.convert("RGB")).std() > 20, name
+
+
+def test_the_ten_pictures_are_measured_and_their_scripts_are_short():
+    with (kept.HERE / "plain.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 10
+    for row in rows:
+        name = re.search(r"plot_\w+", row["picture"])[0]
+        lines = kept.code_lines(PAGES.parent / f"{name}.py")
+        # A script that has changed is measured again.
+        assert lines == int(row["lines of the script"]) <= 25, name
+        ours, theirs = abs(float(row["vizlight"])), abs(float(row["PyVista"]))
+        better = ours > theirs if re.match("rank|contrast", row["figure"]) else ours < theirs
+        assert better, name
+
+
+def test_the_pairs_and_the_four_tools_are_on_the_page():
+    text = (PAGES / "peers.rst").read_text(encoding="utf-8")
+    pictures = [*kept.HERE.glob("plain_*.webp"), kept.HERE / "tools_fibres.webp"]
+    assert len(pictures) == 6
+    for path in pictures:
+        assert path.stat().st_size <= 150_000
+        assert f"peers/{path.name}" in text

@@ -23,7 +23,7 @@ EXTRAS = PROJECT["optional-dependencies"]
 #: Packages whose modules have another name.
 MODULES = {"pillow": {"PIL"}, "trx-python": {"trx"}, "vtk": {"vtk", "vtkmodules"}}
 #: Modules of packages that a declared package brings, and that package.
-BROUGHT = {"docutils": "sphinx", "nbformat": "nbclient"}
+BROUGHT = {"docutils": "sphinx", "nbformat": "nbclient", "websocket": "pyvista[jupyter]"}
 #: Declared packages that no file imports, and what uses them.
 REASONS = {
     "check-jsonschema": "command: checks .github/workflows",

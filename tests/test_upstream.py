@@ -24,7 +24,7 @@ def test_the_patches_apply_and_their_tests_pass(tmp_path):
     # Of no repository around the folder.
     environment = os.environ | {"GIT_CEILING_DIRECTORIES": str(tmp_path.parent)}
     environment |= {"PYTHONPATH": str(tmp_path), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-    assert len(PATCHES) == 3
+    assert len(PATCHES) == 4
     for check in (["--check"], []):  # each by itself, then all of them
         for patch in PATCHES:
             command = ["git", "apply", *check, str(patch)]
@@ -35,4 +35,4 @@ def test_the_patches_apply_and_their_tests_pass(tmp_path):
     tests = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"]
     run = subprocess.run(tests, cwd=tmp_path, env=environment, capture_output=True, check=False)
     assert run.returncode == 0, run.stdout.decode()
-    assert b"8 passed" in run.stdout
+    assert b"10 passed" in run.stdout

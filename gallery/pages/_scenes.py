@@ -49,7 +49,7 @@ SECTIONS = {
         "plot_carotid": "Lines of blood by speed inside arteries of clear glass",
     },
     "How deep is the shadow?": {
-        "plot_terrain": "Hawaii rises from a blue sea floor, with shadows toward the east",
+        "plot_terrain": "Hawaii on a blue sea floor with shadows, a bar of heights, north, 100 km",
         "plot_terrain_day": "Ridges at five hours of a day, and the mean sunlight of each slope",
         "plot_bas_relief": "Relief of a dog under one moving light, and with deeper shadows",
         "plot_seeping_light": "Dog before a light, whose ears glow as if of wax",
@@ -59,7 +59,7 @@ SECTIONS = {
         "plot_complex_curve": "Graph of a complex function at four steps of a turn",
     },
     "How does it move?": {
-        "plot_turning": "Three tori of linked circles turn inside out",
+        "plot_turning": "Three tori of linked circles turn inside out, bright across the view",
         "plot_streaklines": "Smoke rolls up in vortices that drift to the right",
     },
 }

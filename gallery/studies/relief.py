@@ -4,15 +4,18 @@ The fields are random hills with a power spectrum like that of terrain, and a he
 The shadow of the hemisphere is known in closed form; the error of both methods is there the
 discretisation error of the field, which falls with its spacing. Both methods are timed in turn, by
 NumPy alone; where the extra ``fast`` is installed, the exact method is timed as compiled code too.
+Beside them stand the hard shadows of RVT's ``shadow_horizon`` where that is installed: the share of
+nodes that are on the wrong side, as of vizlight with a depth of nearly 0, from rays in small steps.
 """
 
 from __future__ import annotations
 
+import importlib
 import math
 import os
 from contextlib import contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -24,7 +27,7 @@ from vizlight.geometry.relief import shadowing
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Bools, Indices
 
     Errors = tuple[float, float, float]
 
@@ -109,6 +112,60 @@ def measure(side: int, height: float = HEIGHT, repeats: int = 3) -> list[Row]:
     return rows
 
 
+def lit_places(z: Array, at: Indices, toward: Array, step: float = 0.05) -> Bools:
+    """Return whether nodes of a field of spacing 1 see a light: rays in steps of a share of a cell.
+
+    Heights between the nodes are bilinear; beyond the border there is nothing.
+    """
+    (flat,) = np.hypot(toward[:1], toward[1:2])
+    way, rise = toward[:2] / flat, toward[2] / flat
+    seen = np.ones(len(at), dtype=bool)
+    for s in np.arange(step, (z.max() - z.min()) / rise, step):
+        y, x = (at + s * way[::-1]).T
+        inside = (x >= 0) & (y >= 0) & (x <= z.shape[1] - 1) & (y <= len(z) - 1)
+        if not inside.any():
+            break
+        above = z[tuple(at[inside].T)] + s * rise
+        heights = ndimage.map_coordinates(z, [y[inside], x[inside]], order=1)
+        seen[inside] &= heights <= above
+    return seen
+
+
+def hard(side: int, repeats: int = 3, places: int = 2000) -> list[Row]:
+    """Return the rows of hard shadows on hills, with rays in small steps as the reference."""
+    x, z = np.arange(float(side)), hills(side) * (side - 1)
+    at = np.random.default_rng(3).integers(0, side, (places, 2))
+    toward = sun(HEIGHT)
+    true = lit_places(z, at, toward)
+
+    def ours() -> Bools:
+        # In the shadow t is the depth over a length of the order of a cell.
+        t: Array = shadowing.shadow(x, x, z, depth=1e-6, direction=toward)
+        return np.asarray(t > 1e-3)
+
+    found: dict[str, Callable[[], Bools]] = {"hard shadow, depth 1e-6": ours}
+    try:
+        vis: Any = importlib.import_module("rvt.vis")
+    except ImportError:
+        pass
+    else:
+        # Rows run southward there, and azimuths clockwise from north.
+        def theirs() -> Bools:
+            made = vis.shadow_horizon(z[::-1], 1, shadow_az=50, shadow_el=HEIGHT)
+            return np.asarray(np.asarray(made["shadow"])[::-1] > 0.5)
+
+        found["hard shadow, RVT"] = theirs
+    ours()
+    seconds = take_turns(found, repeats)
+    return [
+        Row(
+            way, side, float(np.mean(work()[tuple(at.T)] != true)),
+            1e9 * seconds[way] / side**2,
+        )
+        for way, work in found.items()
+    ]  # fmt: skip
+
+
 def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Errors:
     """Return errors of t for a unit hemisphere on a plane of 6 x 6.
 
@@ -165,6 +222,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
             if side <= SMALL
         ),
         *(partial(of_hemisphere, side) for side in round_ones),
+        *(partial(hard, side) for side in hilly if side <= SMALL),
     ]
 
 

@@ -619,6 +619,9 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
         2,
         True,
     )
+    # So it is where the only vectors are taken.
+    _, _, same = run(capfd, "streamlines", "case/case.foam", "--time", "0", "-o", "a.vtp")
+    assert same == err
     (folder / "out").mkdir()
     code, out, _ = run(capfd, *arguments, "--times", "1:", "-o", "out", *SMALL)
     assert (code, "note" in out) == (0, False)

@@ -198,6 +198,19 @@ def test_light_of_filters_is_lit_again_from_its_record(plotter, kind):
     np.testing.assert_array_equal(bare["luminance"], lit["luminance"])
 
 
+def test_a_field_in_coloured_light_is_drawn_with_colours_of_data(plotter):
+    """The colours of data are not those of the light, and stand under one name."""
+    field = pv.ImageData(dimensions=(9, 9, 1))
+    field["height"] = np.random.default_rng(1).uniform(size=81)
+    scene = Scene(lights=Light(direction=(1, 1, 1), color="gold"), material=SHINY)
+    lit = vizlight.relief_shadow(field, scene, elevation="height", lit=True)
+    plotter.vizlight.add_mesh(vizlight.tint(lit, "height", cmap="viridis", clim=(0, 1)))
+    coloured = picture(plotter)
+    plotter.clear_actors()
+    plotter.vizlight.add_mesh(lit, scalars="height", cmap="viridis", clim=(0, 1))
+    np.testing.assert_array_equal(coloured, picture(plotter))
+
+
 def test_manifolds_of_four_space_keep_their_eye_or_follow_the_camera(plotter):
     view = View(direction=(0, 0, 1, 1))
     scene = Scene(lights=Light(direction=(1, 1, 1, 0)), view=view, material=SHINY)

@@ -6,6 +6,7 @@ import foam
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkIOParallel import vtkEnSightWriter
 
 import vizlight
 from vizlight import files
@@ -51,7 +52,26 @@ def netcdf(folder):
     return path
 
 
-@pytest.mark.parametrize("make", [pvd, netcdf])
+def ensight(folder):
+    writer = vtkEnSightWriter()
+    writer.SetFileName(str(folder / "a"))
+    for i, time in enumerate((0, 0.5, 2)):
+        mesh = pv.ImageData(dimensions=(3, 3, 3)).cast_to_structured_grid()
+        mesh = mesh.cast_to_unstructured_grid()
+        mesh["p"] = np.full(27, time, np.float32)
+        # The writer asks for the number of the part.
+        mesh.cell_data["BlockId"] = np.ones(mesh.n_cells, np.int32)
+        writer.SetTimeStep(i)
+        writer.SetInputData(mesh)
+        writer.Write()
+    writer.WriteCaseFile(3)
+    path = folder / "a.0.case"
+    text = path.read_text().replace("0.000000 1.000000 2.000000", "0 0.5 2")
+    path.write_text(text.replace(" p_n ", " p "))
+    return path
+
+
+@pytest.mark.parametrize("make", [pvd, netcdf, ensight])
 @pytest.mark.parametrize(
     ("asked", "time"),
     [(None, 2), ("last", 2), ("first", 0), (0.5, 0.5), ("0.5", 0.5), (1, 0.5), (-3, 0), (2, 2)],

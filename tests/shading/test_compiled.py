@@ -240,6 +240,29 @@ def test_engine_runs_compiled_code(fast, random):
     np.testing.assert_array_equal(other.luminance, lit.luminance)
 
 
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_faces_lines_and_vertices_are_lit_by_compiled_code(model, fast, random):
+    points, tangents, normals = cloud(random, 1000)
+    kinds = random.integers(0, 3, 1000).astype(np.float32)
+    tangents[7] = 0
+    given = ShadingInputs(points=points, tangents=tangents, normals=normals, dimensions=kinds)
+    options = ShadingOptions(model=model, components=True)
+    lit = engine.run(given, SCENE, options)
+    assert lit.plan.compiled
+    with _compiled.setting("0"):
+        same = engine.run(given, SCENE, options)
+    np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=20 * 1.2e-7)
+    np.testing.assert_allclose(lit.specular, same.specular, rtol=0, atol=40 * 1.2e-7)
+    lines = engine.shade(points, tangents, SCENE, model=model).luminance
+    faces = engine.shade(points, None, SCENE, normals=normals, model=model).luminance
+    np.testing.assert_allclose(lit.luminance[kinds == 1], lines[kinds == 1], atol=1e-5)
+    on_face = (kinds == 2) & (np.arange(1000) != 7)
+    np.testing.assert_allclose(lit.luminance[on_face], faces[on_face], atol=1e-5)
+    eye = SCENE.view.position - points.astype(np.float64)
+    alone = engine.shade(points, None, SCENE, normals=eye, model=model).luminance
+    np.testing.assert_allclose(lit.luminance[kinds == 0], alone[kinds == 0], atol=1e-5)
+
+
 def test_arrays_among_the_options_are_lit_by_compiled_code(fast):
     ball = pv.Sphere()
     normals = np.array(ball["Normals"])

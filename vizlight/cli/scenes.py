@@ -147,8 +147,11 @@ def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | No
     ValueError
         If only others have, which the message lists.
     """
+    from vizlight.filters.streamlines import vectors_by_default
     from vizlight.mesh import steps
 
+    if vectors is None:
+        vectors = vectors_by_default(mesh)
     names = [vectors] if isinstance(vectors, str) else vectors or ()
     times = steps.of(mesh)
     if all(_moves(mesh, name) for name in names) or len(times) < 2:

@@ -294,7 +294,9 @@ def page_text(
     }  # fmt: skip
     text = string.Template(_web("page.html")).substitute(
         title=html.escape(title or "vizlight"),
-        heading=html.escape(title),
+        heading=html.escape(title or "Scene"),
+        # For readers of the screen alone.
+        unseen="" if title else ' class="unseen"',
         label=html.escape(title or "Scene", quote=True),
         policy="'self'" if script else "'unsafe-inline'",
         picture=_picture(plotter),

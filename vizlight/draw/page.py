@@ -200,6 +200,7 @@ class Page:
             "texts": texts,
             "numbers": constants,
             "surface": plan.surface,
+            "sky": plan.occluded,
             "free": any(key.startswith("free ") for key in texts),
             "material": {name: getattr(own.material, name) for name in _COEFFICIENTS},
             "ambientColor": [scene.ambient_intensity * c for c in scene.ambient_color or WHITE],
@@ -252,9 +253,12 @@ class Page:
             given = program.numbers(
                 lit, lamps, shown=program.Shown(), fur=plan.fur, tallest=painter.tallest, data=data
             )
+            if plan.occluded:
+                given.append(program.Uniform("vizSky", "float", (1.0,)))
             constants |= {n.name: list(n.value) for n in given if n.name in _CONSTANT}
             key = f"{'data ' if data else ''}{free}{i} {j}{' cue' if ended else ''}"
-            written = program.write(plan, turned=source.sided is not None, data=data)
+            turned = source.sided is not None
+            written = program.write(plan, turned=turned, data=data, sky=plan.occluded)
             text = [list(each) for each in dialects.VTK_JS.replacements(written, given)]
             if text not in self._texts:
                 self._texts.append(text)

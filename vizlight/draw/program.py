@@ -141,6 +141,7 @@ def write(
     toward: Literal["", "eye", "face"] = "",
     stroke: Stroke = Stroke(),  # noqa: B008
     data: bool = False,
+    sky: bool = False,
 ) -> Program:
     """Return the program of a plan.
 
@@ -158,6 +159,8 @@ def write(
         Width of lines; round ones have the plan of the surface of their cylinders.
     data : bool, default: False
         Whether the renderer's colours come from data, which light keeps readable.
+    sky : bool, default: False
+        Whether the number ``vizSky`` says how much the share of the ambient light counts.
 
     Returns
     -------
@@ -177,7 +180,8 @@ def write(
     if plan.occluded:
         past = f" - {2 * LENGTHS:.1f} + {LENGTHS:.1f} * {DIMENSION}" if mixed else ""
         names.append(Varying("vizS", "float", "{size} - 1.0" + past))
-        read += f"  float vizShare = {suffixed('vizS')};\n"
+        share = suffixed("vizS")
+        read += f"  float vizShare = {f'mix(1.0, {share}, vizSky)' if sky else share};\n"
     if mixed:
         names.append(Varying("vizK", "float", DIMENSION))
         read += f"  float vizDimension = {suffixed('vizK')};\n"

@@ -14,6 +14,7 @@ from vizlight.filters import relight
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import blocks, hull, records
+from vizlight.mesh.boxes import box
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.reading.normals import computed_normals
@@ -67,6 +68,8 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
     if given is not None:
         bare = mesh.copy(deep=False)
         bare.point_data.active_normals_name = None
+    if given is None and asked.feature_angle == "auto" and (sides := box(mesh)) is not None:
+        return sides
     surface = bare
     if isinstance(bare, pv.UnstructuredGrid) or bare.GetMaxSpatialDimension() == 3:
         surface = hull.outer_surface(bare)[0]

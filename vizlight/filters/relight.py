@@ -277,11 +277,13 @@ def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Sourc
     kept = {name: value for name, value in options.items() if name != "occluders" or value}
     made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
     arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
-    seen = _Seen()
+    seen, field = _Seen(), mesh.copy(deep=False)
+    # Colours of data, which tint() has put in the place of the light's.
+    field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
     with engine.observed(seen), warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
-        relief_shadow(mesh.copy(deep=False), scene, **arguments)
+        relief_shadow(field, scene, **arguments)
     inputs, light = seen.runs[-1]
     return Source(mesh, inputs, light, None)
 

@@ -453,13 +453,16 @@ def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
         )
 
 
+def vectors_by_default(mesh: pv.DataSet) -> str | None:
+    """Return the name of the active vectors of the points, or of the only ones that there are."""
+    there = [key for key in mesh.point_data if np.shape(mesh.point_data[key])[1:] == (3,)]
+    return mesh.point_data.active_vectors_name or (there[0] if len(there) == 1 else None)
+
+
 def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, bool]:
     """Return the names of what is traced, and whether it is tensors or a cross field."""
     if vectors is None:
-        vectors = mesh.point_data.active_vectors_name
-        there = [key for key in mesh.point_data if np.shape(mesh.point_data[key])[1:] == (3,)]
-        if vectors is None and len(there) == 1:
-            vectors = there[0]
+        vectors = vectors_by_default(mesh)
         if vectors is None:
             raise _no_vectors(mesh, None)
     pair = isinstance(vectors, tuple)

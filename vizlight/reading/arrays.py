@@ -46,8 +46,11 @@ class GridPoints:
 
     def __getitem__(self, rows: slice, /) -> Array:
         """Return a slice of the points; the first index varies fastest."""
-        flat = np.arange(*rows.indices(self.shape[0]))
-        ijk = np.stack(np.unravel_index(flat, self._dimensions, order="F"), axis=1)
+        return self.at(np.arange(*rows.indices(self.shape[0])))
+
+    def at(self, ids: Indices) -> Array:
+        """Return some of the points by their numbers."""
+        ijk = np.stack(np.unravel_index(ids, self._dimensions, order="F"), axis=1)
         return self._place(ijk)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 from pathlib import Path
 
@@ -38,7 +39,9 @@ def tool(script):
 
 def code_lines(script):
     """Return the number of lines of code: neither empty, nor a comment, nor the docstring."""
-    lines = [line.strip() for line in script.read_text(encoding="utf-8").splitlines()[1:]]
+    text = script.read_text(encoding="utf-8")
+    docstring = ast.parse(text).body[0].end_lineno
+    lines = [line.strip() for line in text.splitlines()[docstring:]]
     return sum(bool(line) and not line.startswith("#") for line in lines)
 
 

@@ -15,7 +15,7 @@ class App {
     Object.assign(this, { page, past: [], future: [], lamp: 0, set: 0, watchers: [], ratio: 1, programs: new Map() });
     this.first = {
       sets: page.lights, materials: page.meshes.map((mesh) => mesh.material), look: '', color: '', cmap: page.cmap, clim: null,
-      frame: page.frame, cut: { axis: -1, at: 0.5, far: false }, free: false, fade: page.fade, camera: page.camera, hidden: [], background: '',
+      frame: page.frame, cut: { axis: -1, at: 0.5, far: false }, free: false, sky: true, fade: page.fade, camera: page.camera, hidden: [], background: '',
     };
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
@@ -156,6 +156,7 @@ class App {
     const numbers = {
       vizAmbientGain: given.ambientColor.map((c) => c * material.ambient), vizDiffuseGain: [material.diffuse],
       vizSpecularGain: given.specularColor.map((c) => c * material.specular), vizShininess: [material.shininess],
+      vizSky: [Number(this.state.sky)],
     };
     ordered.forEach((l, i) => {
       if (l.position) {
@@ -191,11 +192,13 @@ class App {
     this.due ??= requestAnimationFrame(() => { this.due = null; this.draw(); });
   }
 
-  // Pixels of the canvas for each of the window; fewer while a slow picture moves.
-  sized(ratio) {
+  // Pixels of the canvas for each of the window, fewer while a slow picture moves; whether they have changed.
+  sized(ratio = window.devicePixelRatio || 1) {
     const { clientWidth, clientHeight } = this.canvas;
     const [width, height] = [clientWidth, clientHeight].map((x) => Math.max(1, Math.round(x * ratio)));
-    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    if (this.canvas.width === width && this.canvas.height === height) return false;
+    Object.assign(this.canvas, { width, height });
+    return true;
   }
 
   draw() {
@@ -222,9 +225,7 @@ class App {
     gl.depthMask(true);
     gl.disable(gl.BLEND);
     this.ontriad?.(view);
-    // The picture comes first; the balls follow it.
-    if (!this.drawn) setTimeout(() => this.drawBalls(viewOf(this.state.camera)));
-    else if (!this.moving || !this.slow) this.drawBalls(view);
+    if (!this.moving || !this.slow) this.drawBalls(view);
     if (!this.moving) return;
     // The time of a frame is known when a pixel of it is read.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -246,10 +247,10 @@ class App {
 
   // The ball of the lamps and the one of the key are drawn when their light changes.
   drawBalls(view) {
-    if (!this.leader) return;
+    const targets = [...document.querySelectorAll('canvas[data-ball]')];
+    if (!this.leader || !targets.length) return;
     const { gl } = this;
     const { given } = this.leader;
-    const targets = [...document.querySelectorAll('canvas[data-ball]')];
     const { numbers } = this.lightOf(this.leader, view);
     const lit = this.lightOfBall(numbers, view);
     const said = JSON.stringify([lit, this.leader.data, targets.length]);
@@ -258,7 +259,7 @@ class App {
     const flat = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
     const all = {
       ...lit.numbers, MCVCMatrix: flat, MCPCMatrix: flat.map((x, i) => (i === 10 ? -0.5 : x)), normalMatrix: [1, 0, 0, 0, 1, 0, 0, 0, 1],
-      vizEye: [0, 0, 1, 0], ownCut: [0, 0, 0, 0], ownSize: [BALL, BALL], ownOpacity: [1], ownWide: [1], ...given.numbers, vizNormalMCSize: [1], vizTangentMCSize: [1],
+      vizEye: [0, 0, 1, 0], ownCut: [0, 0, 0, 0], ownSize: [BALL, BALL], ownOpacity: [1], ownWide: [1], ...given.numbers, vizNormalMCSize: [1], vizTangentMCSize: [1], vizSky: [0],
     };
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.small);
     gl.viewport(0, 0, BALL, BALL);

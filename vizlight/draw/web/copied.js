@@ -58,7 +58,7 @@ function pythonOf(app) {
   lines.push('scene = Scene(', '    lights=[', ...lights, '    ],', `    material=Material(${words.join(', ')}),`);
   if (cue) lines.push(`    depth_cue=DepthCue(${ends}front_scale=${short(cue.scales[0], 6)}, back_scale=${short(cue.scales[1], 6)}),`);
   lines.push(')', `plotter = pv.Plotter(window_size=(${canvas.clientWidth}, ${canvas.clientHeight}))`, `plotter.background_color = ${quoted(app.background)}`);
-  const kept = Object.entries(recipe.options).filter(([name]) => name !== 'conditioned' || !state.free);
+  const kept = Object.entries(recipe.options).filter(([name]) => (name !== 'conditioned' || !state.free) && (name !== 'occlusion' || state.sky));
   const how = kept.map(([name, value]) => `, ${name}=${value}`).join('');
   const range = state.clim || arrays[state.color];
   const color = arrays[state.color] ? `, scalars=${quoted(state.color)}, cmap=${quoted(state.cmap)}, clim=${row(range)}` : state.color === '' ? recipe.color : '';
@@ -91,7 +91,7 @@ function commandOf(app) {
   const { cut } = app;
   const half = Math.tan((ANGLE * Math.PI) / 360);
   const words = [
-    'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command,
+    'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command.filter((w) => w !== '--sky' || state.sky),
     '--scene', `${stem}.scene.json`, '--view', `${stem}.view.json`,
     ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),
     ...(cut ? [`--clip=${cut.sign < 0 ? '' : '-'}${AXES[cut.axis]}:${short(-cut.sign * (cut.place + app.page.origin[cut.axis]), 9)}`] : []),

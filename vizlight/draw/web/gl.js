@@ -173,12 +173,12 @@ class Program {
       const shader = gl.createShader(gl[`${stage.toUpperCase()}_SHADER`]);
       gl.shaderSource(shader, source[stage].replaceAll('gl_FragData[0]', 'ownOut'));
       gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
       gl.attachShader(this.program, shader);
     });
     Object.entries(SLOTS).forEach(([name, at]) => ['A', 'B'].forEach((end, i) => gl.bindAttribLocation(this.program, at + i, name + end)));
     gl.linkProgram(this.program);
-    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
+    // One question at the end lets both shaders be compiled at once.
+    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error([gl.getProgramInfoLog(this.program), ...gl.getAttachedShaders(this.program).map((x) => gl.getShaderInfoLog(x))].join('\n'));
     this.uniforms = new Map();
   }
 

@@ -192,6 +192,10 @@ function materialControls(app) {
     slider('Sharpness', [0, Math.max(3, log(first())), 0.01], () => log(app.material), (x, done) => set('shininess')(Number(short(10 ** x)), done), () => log(first()), (x) => short(10 ** x, 2)),
   ];
   if (!app.meshes.some((mesh) => mesh.given.cue)) parts.push(slider('Depth fade', [0, 1, 0.01], () => app.state.fade, (fade, done) => app.change({ fade }, done), () => 0));
+  if (app.meshes.some((mesh) => mesh.given.sky)) {
+    const box = make('input', { type: 'checkbox', onchange: () => app.change({ sky: box.checked }) });
+    parts.push({ row: make('label', { className: 'check' }, box, span('Light of the sky in hollows')), show: () => { box.checked = app.state.sky; } });
+  }
   return { row: section('Material', innerHeight > 760, ...parts.map((part) => part.row)), show: () => parts.forEach((part) => part.show()) };
 }
 
@@ -397,13 +401,17 @@ async function start() {
   try {
     const app = new App(page);
     await app.load();
-    build(app);
-    steer(app);
-    new ResizeObserver(() => app.draw()).observe(app.canvas);
-    matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
-    addEventListener('beforeprint', () => app.draw());
     document.getElementById('picture')?.remove();
     app.draw();
+    // The picture is seen before the panel is made.
+    await new Promise((done) => { requestAnimationFrame(() => setTimeout(done)); });
+    build(app);
+    steer(app);
+    new ResizeObserver(() => { if (app.sized()) app.draw(); }).observe(app.canvas);
+    matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
+    addEventListener('beforeprint', () => app.draw());
+    app.ontriad(viewOf(app.state.camera));
+    setTimeout(() => app.drawBalls(viewOf(app.state.camera)));
     window.vizlight = app;
     document.body.dataset.ready = String(Math.round(performance.now()));
     dispatchEvent(new Event('vizlight-ready'));

@@ -1,0 +1,95 @@
+"""Contours of equal luminance on a ball, beside VTK's contours of the light of the same mesh.
+
+The contours of a matte ball under a far light are circles of latitude about the direction of the
+light. The error is the largest angle between a point of a contour and its circle. The filter lights
+the smooth normals of the triangles, or the solid itself; VTK's contour filter interpolates light
+that was computed at the points.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+import vizlight
+from studies import Row, Study, take_turns
+from vizlight import Light, Material, Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+#: Luminances of the contours, none of them at the border of the shadow.
+LEVELS = tuple(np.arange(1, 16) / 16)
+TOWARD = np.array([0.6, -0.48, 0.64])
+SCENE = Scene(
+    lights=Light(direction=TOWARD), material=Material(ambient=0.0, diffuse=1.0, specular=0.0)
+)
+
+
+def ball(side: int) -> pv.PolyData:
+    """Return a unit ball of triangles with exact normals."""
+    mesh: pv.PolyData = pv.Sphere(radius=1.0, theta_resolution=side, phi_resolution=side)
+    mesh.point_data["Normals"] = np.asarray(mesh.points)
+    return mesh
+
+
+def off(contours: pv.DataSet) -> float:
+    """Return the largest angle in degrees between points of contours and the nearest circle."""
+    points = np.asarray(contours.points, np.float64)
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    away = np.arctan2(np.linalg.norm(np.cross(points, TOWARD), axis=1), points @ TOWARD)
+    # The filter draws the border of the shadow too.
+    circles = np.arccos([0.0, *LEVELS])
+    nearest = np.abs(away[:, np.newaxis] - circles).min(axis=1)
+    return float(np.degrees(nearest.max()))
+
+
+def ours(mesh: pv.PolyData | vizlight.Sphere) -> pv.DataSet:
+    """Return the contours of the filter."""
+    made = vizlight.isoluminance(mesh, SCENE, levels=LEVELS)["contours"]
+    assert isinstance(made, pv.DataSet)
+    return made
+
+
+def theirs(mesh: pv.PolyData) -> pv.DataSet:
+    """Return VTK's contours of the light at the points."""
+    lit = vizlight.illuminate(mesh, SCENE)
+    made: pv.DataSet = lit.contour(list(LEVELS), scalars="luminance")
+    return made
+
+
+def measure(side: int, repeats: int) -> list[Row]:
+    """Return the rows of one mesh."""
+    mesh = ball(side)
+    ways: dict[str, Callable[[], pv.DataSet]] = {
+        "isoluminance(mesh)": partial(ours, mesh),
+        "contours of the light, VTK": partial(theirs, mesh),
+    }
+    seconds = take_turns(ways, repeats)
+    return [Row(way, side, off(work()), 1e3 * seconds[way]) for way, work in ways.items()]
+
+
+def of_solid(repeats: int) -> list[Row]:
+    """Return the row of the solid, whose contours are circles."""
+    solid = vizlight.Sphere(radius=1.0)
+    seconds = take_turns({"solid": partial(ours, solid)}, repeats)["solid"]
+    return [Row("isoluminance(Sphere)", "", off(ours(solid)), 1e3 * seconds)]
+
+
+def steps(quick: bool) -> Sequence[Callable[[], list[Row]]]:
+    """Return one function for each mesh, and one for the solid."""
+    sides = (16, 32, 64, 128) if quick else (16, 32, 64, 128, 256, 512)
+    return [*(partial(measure, side, 3) for side in sides), partial(of_solid, 3)]
+
+
+STUDY = Study(
+    approximates="contours of equal luminance of a ball",
+    reference="circles of latitude about the light",
+    parameter="points along a meridian",
+    error="largest error in degrees",
+    cost="processor time, ms",
+    steps=steps,
+)
