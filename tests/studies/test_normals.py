@@ -13,10 +13,7 @@ def test_normals_by_corners_are_closer_and_both_converge(function):
     coarse, fine = (normals.normal_errors(function, n, repeats=1) for n in (20, 40))
     for rows in (coarse, fine):
         vtk, own = rows
-        assert (vtk.way, own.way) == (
-            f"{function.__name__}, VTK",
-            f"{function.__name__}, by corners",
-        )
+        assert [row.way.split(", ")[1] for row in rows] == ["VTK", "by corners"]
         assert own.error < 0.75 * vtk.error
         assert own.error < own.more["99 %"]
     for before, after in zip(coarse, fine, strict=True):
