@@ -163,27 +163,6 @@ def test_the_rim_of_a_hole_has_normals(kind):
     assert found.any_open
 
 
-def test_normals_of_parts_are_those_of_the_whole(monkeypatch):
-    """A surface with split edges is worked on part by part, whatever the order of its faces."""
-    mesh = pv.Plane(i_resolution=40, j_resolution=40).triangulate()
-    mesh.points[:, 2] = 0.4 * np.abs(5 * mesh.points[:, 0] % 1 - 0.5)
-    faces = np.random.default_rng(1).permutation(mesh.regular_faces)
-    split = split_edges(pv.PolyData.from_regular_faces(mesh.points, faces), 30)
-    assert split.n_points > mesh.n_points
-    whole = normals.computed_normals(split)
-    sizes = []
-
-    def part_size(count):
-        sizes.append(count // 7)
-        return sizes[-1]
-
-    monkeypatch.setattr(normals, "part_size", part_size)
-    parts = normals.computed_normals(split)
-    assert sizes
-    np.testing.assert_array_equal(parts.vectors, whole.vectors)
-    np.testing.assert_array_equal(parts.lean, whole.lean)
-
-
 def rough_field(turn=0.0):
     """Return a rough height field, turned about x by degrees, and normals of its upper side."""
     random = np.random.default_rng(3)

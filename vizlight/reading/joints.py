@@ -13,6 +13,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.cells import connectivity
+from vizlight.reading.corners import corner_normals
 from vizlight.reading.edges import BLOCK
 from vizlight.reading.topology import components
 
@@ -97,23 +98,16 @@ def common_normals(
     Returns
     -------
     normals : ndarray, shape (n_points, 3)
-        With the direction of the sum of the unit normals of all triangles at joined points but
-        the slivers between these.
+        Of all triangles at joined points but the slivers between these.
     first : ndarray of int, shape (n_points,)
         First of the points that are joined and got one normal.
     """
     several = np.bincount(first, minlength=len(first))[first] > 1
     rows = triangles[several[triangles].any(axis=1)]
-    a, b, c = (points[corner].T.astype(np.float64) for corner in rows.T)
-    with np.errstate(invalid="ignore", over="ignore"):
-        face = kernels.unit(kernels.cross(b - a, c - a))[0].T
-    own = first[rows]
-    face[~np.isfinite(face).all(axis=1) | np.any(own == np.roll(own, 1, axis=1), axis=1)] = 0
-    total = np.zeros((len(first), 3))
-    for corner in rows.T:
-        # A triangle counts once at each place.
-        np.add.at(total, first[corner], face)
-    common = kernels.unit_rows(total)[first]
+    # Slivers have a direction by rounding alone.
+    rows = rows[np.all(first[rows] != first[np.roll(rows, 1, axis=1)], axis=1)]
+    common = corner_normals(points, [first[rows]])[first]
+    normals = np.where(several[:, np.newaxis], corner_normals(points, [rows]), normals)
     cosine = np.einsum("ij,ij->i", normals, common)
     apart = several & ~(cosine >= least) & np.any(normals, axis=1)
     kept = np.ones(len(first), dtype=np.bool_)

@@ -16,18 +16,17 @@ from vizlight.model import kernels
 from vizlight.reading import edges, grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
-    around,
     as_numpy,
     as_vtk,
     connectivity,
     faces_only,
     finite_faces,
     has_faces,
-    part_size,
     places,
     triangles,
     used,
 )
+from vizlight.reading.corners import surface_normals
 from vizlight.reading.hull import dimension, outer_surface, scattered
 from vizlight.reading.joints import common_normals, joined
 from vizlight.reading.orientation import (
@@ -376,7 +375,8 @@ def computed_normals(
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
-    VTK computes them in float32 and orients them consistently. They point outward on a closed
+    They are means by the corners of the faces around each point, see
+    :func:`~vizlight.reading.corners.corner_normals`, in float32. They point outward on a closed
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
     centroid of the piece. Points that slivers join, with a side of at most
@@ -487,8 +487,7 @@ def wound_normals(
             outer = finite_faces(surface, side == 0)
             surface = outer if has_faces(outer) else surface
     shape = Shape(surface, Owners(starts, origin), side)
-    vectors = _by_vtk(surface, shape, as_wound=as_wound)
-    vectors[~used(surface)] = 0
+    vectors = surface_normals(_wound(surface, shape, as_wound=as_wound))
     first = joined(shape.points, surface)
     if first is not None:
         least = float(np.cos(np.radians(SHARP)))
@@ -541,7 +540,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in grids.parts(mesh):
         surface, own = finite_faces(part.surface), part.side == 0
-        normals = _by_vtk(surface, as_wound=True)
+        normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         vectors[part.origin[own]] = normals[own]
         survey = shape.survey(normals)
@@ -569,48 +568,21 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     )
 
 
-def _by_vtk(surface: vtkPolyData, shape: Shape | None = None, *, as_wound: bool) -> Array:
-    """Return the normals of a surface that VTK computes.
+def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData:
+    """Return a surface whose faces are wound alike, by VTK where they are not.
 
-    Where the faces are not wound alike and ``as_wound`` is False, ``shape`` takes the faces as VTK
-    winds them.
+    ``shape`` takes the faces as VTK winds them.
     """
-    rewound = shape is not None and not (as_wound or shape.alike)
-    # Points at one place, as of split edges, need memory too: there VTK works part by part, which
-    # takes it twice as long.
-    if shape is not None and shape.same is not None and not rewound:
-        return _by_parts(surface)
-    found = _vtk_normals(surface, rewind=rewound)
-    if rewound and shape is not None and not _same_cells(surface, found):
+    if as_wound or shape.alike:
+        return surface
+    rewind = vtkPolyDataNormals()
+    rewind.SplittingOff()
+    rewind.NonManifoldTraversalOff()
+    rewind.SetInputData(surface)
+    rewind.Update()
+    found: vtkPolyData = rewind.GetOutput()
+    if not _same_cells(surface, found):
         shape.rewind(found)
-    return np.array(as_numpy(found.GetPointData().GetNormals()))
-
-
-def _by_parts(surface: vtkPolyData) -> Array:
-    """Return the normals of a surface as its faces are wound, made part by part if it is large."""
-    points = places(surface)
-    size = part_size(len(points))
-    if len(points) <= size or surface.GetNumberOfStrips():
-        return np.array(as_numpy(_vtk_normals(surface).GetPointData().GetNormals()))
-    vectors = np.zeros((len(points), 3), dtype=np.float32)
-    ids, ends = connectivity(surface.GetPolys())
-    for block, part in around(points, ids, ends, size):
-        found = as_numpy(_vtk_normals(part.surface).GetPointData().GetNormals())
-        own = (part.used >= block.start) & (part.used < block.stop)
-        vectors[part.used[own]] = found[own]
-    return vectors
-
-
-def _vtk_normals(surface: vtkPolyData, *, rewind: bool = False) -> vtkPolyData:
-    """Return a surface with normals by VTK."""
-    normals = vtkPolyDataNormals()
-    normals.SplittingOff()
-    normals.NonManifoldTraversalOff()
-    # It takes twice to six times as long, and changes nothing on faces that are wound alike.
-    normals.SetConsistency(rewind)
-    normals.SetInputData(surface)
-    normals.Update()
-    found: vtkPolyData = normals.GetOutput()
     return found
 
 

@@ -1,0 +1,117 @@
+"""Normals by the corners of faces: exact where they are known, and closer than VTK's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.reading import corners
+from vizlight.reading.corners import corner_normals, surface_normals
+
+
+def off(found, exact):
+    """Return the angles in degrees between normals, whatever their sides."""
+    exact = exact / np.linalg.norm(exact, axis=1, keepdims=True)
+    sine = np.linalg.norm(np.cross(found, exact), axis=1)
+    return np.degrees(np.arctan2(sine, np.abs(np.einsum("ij,ij->i", found, exact))))
+
+
+def by_vtk(surface):
+    bare = pv.PolyData(surface.points, surface.faces)
+    made = bare.compute_normals(cell_normals=False, split_vertices=False, consistent_normals=False)
+    return made.point_data["Normals"]
+
+
+def volume(n, function):
+    grid = pv.ImageData(dimensions=(n, n, n), spacing=3 * (4 / (n - 1),), origin=(-2, -2, -2))
+    grid["f"] = function(*grid.points.T)
+    return grid.contour([0.0], scalars="f", compute_normals=False)
+
+
+def ellipsoid(x, y, z):
+    return x * x + y * y + 0.5 * z * z - 1.5
+
+
+def gyroid(x, y, z):
+    return sum(np.sin(3 * a) * np.cos(3 * b) for a, b in ((x, y), (y, z), (z, x)))
+
+
+def gradient(function, points, step=1e-5):
+    p = np.asarray(points, dtype=float)
+    ends = [[p + s * step * np.eye(3)[i] for s in (1, -1)] for i in range(3)]
+    return np.stack([function(*a.T) - function(*b.T) for a, b in ends], axis=1)
+
+
+@pytest.mark.parametrize("function", [ellipsoid, gyroid])
+@pytest.mark.parametrize("n", [20, 41, 60])
+def test_isosurfaces_have_better_normals_than_those_of_vtk(function, n):
+    surface = volume(n, function)
+    exact = gradient(function, surface.points)
+    own, other = (off(each, exact) for each in (surface_normals(surface), by_vtk(surface)))
+    assert own.mean() < 0.75 * other.mean()
+    assert np.percentile(own, 99) < 1.05 * np.percentile(other, 99)
+
+
+def test_a_warped_grid_has_better_normals_than_those_of_vtk():
+    x, y = np.meshgrid(np.linspace(0, 3, 50), np.linspace(0, 3, 50))
+    field = pv.StructuredGrid(x, y, 0.5 * np.sin(2 * x) * np.cos(3 * y))
+    surface = field.extract_surface(algorithm="dataset_surface")
+    x, y, _ = np.asarray(surface.points, dtype=float).T
+    slopes = -np.cos(2 * x) * np.cos(3 * y), 1.5 * np.sin(2 * x) * np.sin(3 * y), 1 + 0 * x
+    exact = np.stack(slopes, axis=1)
+    own, other = (off(each, exact) for each in (surface_normals(surface), by_vtk(surface)))
+    assert own.mean() < 0.7 * other.mean()
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e-30, 1.0, 1e30, 1e150])
+def test_the_corners_of_a_box_do_not_depend_on_how_it_is_cut(scale, random):
+    """VTK's depend on it: a corner in two triangles of a side counts twice."""
+    box = pv.Box((-1, 1, -1, 1, -1, 1)).clean()
+    points = np.asarray(box.points, dtype=float) * scale
+    quads = box.regular_faces
+    whole = corner_normals(points, [quads])
+    for _ in range(4):
+        turned = np.stack([np.roll(quad, random.integers(4)) for quad in quads])
+        halves = np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
+        cut = corner_normals(points, [halves])
+        assert off(cut, points).max() < 4
+    assert off(whole, points).max() < 1e-4
+
+
+def test_a_plane_has_one_normal_however_it_is_cut(random):
+    """Also beside slivers, where corners lie on one line, and at inner corners of polygons."""
+    square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    points = np.concatenate([square, random.uniform(0, 1, (300, 2)), [[0.5, 0], [0.5, 1e-9]]])
+    flat = pv.PolyData(np.column_stack([points, 0 * points[:, 0]])).delaunay_2d()
+    letter = np.array([[0.0, 0], [3, 0], [3, 1], [2, 1], [1, 1], [1, 3], [0, 3]])
+    outline = corner_normals(np.column_stack([letter, 0 * letter[:, 0]]), [np.arange(7)[None]])
+    for found in (surface_normals(flat)[np.unique(flat.regular_faces)], outline):
+        np.testing.assert_array_equal(found, np.tile([0, 0, 1], (len(found), 1)))
+
+
+def test_faces_in_any_order_and_number_have_the_same_normals(monkeypatch, random):
+    surface = volume(20, gyroid)
+    faces = surface.regular_faces
+    whole = corner_normals(surface.points, [faces])
+    monkeypatch.setattr(corners, "BLOCK", 50)
+    for order in (slice(None), random.permutation(len(faces))):
+        found = corner_normals(surface.points, [faces[order]])
+        np.testing.assert_allclose(found, whole, atol=2e-7)
+
+
+def test_polygons_and_strips_are_read():
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    strips = surface_normals(ball.strip())
+    np.testing.assert_allclose(strips, surface_normals(ball), atol=1e-6)
+    mixed = pv.PolyData(ball.points, faces=[*ball.faces, 5, 0, 2, 3, 4, 5])
+    assert np.isfinite(surface_normals(mixed)).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_faces_without_area_and_points_without_faces_have_none():
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 0, 0], [5, 5, 5]])
+    faces = np.array([[0, 1, 2], [2, 3, 2], [0, 0, 1]])
+    assert not corner_normals(points, [faces]).any()
+    assert not corner_normals(1e200 * points, [faces]).any()
+    assert corner_normals(np.zeros((0, 3)), []).shape == (0, 3)

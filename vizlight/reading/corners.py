@@ -1,0 +1,114 @@
+"""Normals of a surface at its points, as means over the corners of the faces around each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _pool
+from vizlight.model import kernels
+from vizlight.reading.cells import connectivity, places, triangles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from vizlight._types import Array, Indices
+
+#: Height of a face, and of a corner, as a share of its longest side, below which its direction is
+#: little more than rounding: it counts the less.
+FLAT = 1e-3
+#: Number of corners that are worked on at once.
+BLOCK = 1 << 17
+
+
+def surface_normals(surface: vtkPolyData) -> Array:
+    """Return the normals of a surface as its faces are wound; see :func:`corner_normals`."""
+    points = places(surface)
+    if surface.GetNumberOfStrips():
+        return corner_normals(points, [triangles(surface)])
+    return corner_normals(points, _by_size(*connectivity(surface.GetPolys())))
+
+
+def _by_size(ids: Indices, ends: Indices) -> Iterator[Indices]:
+    """Yield the corners of the faces that have equally many, shape (m, s)."""
+    size = np.diff(ends)
+    for s in np.unique(size):
+        if len(ids) == s * len(size):
+            yield ids.reshape(-1, s)
+        elif s > 2:
+            yield ids[ends[:-1][size == s, np.newaxis] + np.arange(s)]
+
+
+def corner_normals(points: NDArray[np.generic], faces: Iterator[Indices] | list[Indices]) -> Array:
+    """Return the normals of points, by the corners of the faces around each.
+
+    Each corner has a normal, across both its sides, and counts by its angle over the square root of
+    the mean length of its sides. By angles alone (Thuermer and Wuethrich) the normals do not depend
+    on how a plane is cut into triangles. By lengths what is near counts more: Max's weights do so
+    far more, and are exact for points on a ball, but bend planes beside narrow strips.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+    faces : iterable of ndarray of int, shape (m, s)
+        Corners of faces with s corners each.
+
+    Returns
+    -------
+    ndarray of float32, shape (N, 3)
+        Unit normals, zero at points of no face, or of faces without area.
+    """
+    total = np.zeros((3, len(points)))
+    for corners in faces:
+        for block in _pool.blocks(len(corners), max(BLOCK // max(corners.shape[1], 1), 1)):
+            _add(total, points, corners[block])
+    return np.ascontiguousarray(kernels.unit(total)[0].T, dtype=np.float32)
+
+
+def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
+    """Add the weighted normals of all corners of some faces."""
+    s = corners.shape[1]
+    low, high = int(corners.min()), int(corners.max()) + 1
+    used = None
+    if high - low > 8 * corners.size:
+        # Of faces in no order each block may have points from end to end.
+        used, number = np.unique(corners, return_inverse=True)
+        low, high = 0, len(used)
+        corners = number.reshape(corners.shape)
+        points = points[used]
+    at = [np.ascontiguousarray(column) for column in corners.T]
+    with np.errstate(all="ignore"):
+        places = [points.take(column, axis=0).T.astype(np.float64) for column in at]
+        sides = [places[(i + 1) % s] - places[i] for i in range(s)]
+        squares = [kernels.dot(side, side) for side in sides]
+        longest = np.maximum.reduce(squares)
+        if s == 3:
+            across = kernels.cross(sides[0], sides[1])
+        else:
+            across = np.zeros_like(places[0])
+            for i in range(1, s - 1):
+                across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
+        face, area = kernels.unit(across)
+        height = np.minimum(area / (FLAT * longest), 1)
+        roots = [np.sqrt(np.sqrt(np.sqrt(square))) for square in squares]
+        for i in range(s):
+            ahead, behind = sides[i], -sides[i - 1]
+            normal, size = face, area
+            if s > 3:
+                corner, size = kernels.unit(kernels.cross(ahead, behind))
+                inward = kernels.dot(corner, face)
+                flat = size <= FLAT * np.maximum(squares[i], squares[i - 1])
+                normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
+            weight = np.arctan2(size, kernels.dot(ahead, behind))
+            weight *= height / (roots[i] * roots[i - 1])
+            weight[~np.isfinite(weight)] = 0
+            for k in range(3):
+                sums = np.bincount(at[i] - low, normal[k] * weight, high - low)
+                if used is None:
+                    total[k, low:high] += sums
+                else:
+                    total[k, used] += sums
