@@ -18,6 +18,7 @@ from lamps import SHINY, shiny
 import vizlight
 from vizlight import Light, Material, Scene, View
 from vizlight.files import FileError
+from vizlight.reading.corners import surface_normals
 
 FAR = Light(direction=(1, 0.9, 0.5))
 #: Folder with the npm package gltf-validator: that of the viewer's recipe, or of a variable.
@@ -143,7 +144,7 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
     scene = Scene(lights=light, view=View(direction=(1, 0.3, height)), material=SHINY)
     with pytest.warns(UserWarning, match="the lit side of open surfaces"):
         path = vizlight.save_gltf(hills, scene, tmp_path / "lit.glb")
-    normals = hills.compute_normals(cell_normals=False)["Normals"]
+    normals = surface_normals(hills)
     expected = 0.1 + 0.5 * np.abs(normals[:, 2])
     np.testing.assert_allclose(seen(content(path)[1][1])[:, 0], expected, atol=1 / 255)
 

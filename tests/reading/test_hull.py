@@ -8,6 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View
+from vizlight.reading import hull
 
 
 def test_control_points_are_not_lit():
@@ -52,3 +53,19 @@ def test_points_without_cells_are_lit_by_vectors_of_their_own(cloud):
         vizlight.isoluminance(cloud, scene)
     with pytest.raises(ValueError, match="mesh: expected faces or lines, got points alone"):
         vizlight.refine(cloud, scene, tangents=vectors)
+
+
+@pytest.mark.parametrize("kind", ["surface", "grid", "image"])
+def test_numbers_that_an_earlier_filter_left_are_not_taken_for_ours(kind):
+    """VTK leaves a point array of numbers on the surfaces and cells that it takes from a mesh."""
+    mesh = {
+        "surface": pv.Sphere(theta_resolution=8, phi_resolution=8),
+        "grid": pv.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid(),
+        "image": pv.ImageData(dimensions=(4, 4, 4)),
+    }[kind]
+    left = np.arange(mesh.n_points)[::-1].copy()
+    mesh["vtkOriginalPointIds"] = left
+    surface, origin = hull.outer_surface(mesh)
+    surface = pv.wrap(surface)
+    np.testing.assert_array_equal(surface.points, np.asarray(mesh.points)[origin])
+    np.testing.assert_array_equal(surface["vtkOriginalPointIds"], left[origin])

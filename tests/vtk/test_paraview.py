@@ -127,6 +127,10 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
                 np.testing.assert_allclose(found[part], mine[part], atol=1e-6)
         assert np.std(found["luminance"]) > 0.02, name
     surface = vizlight.load_example().contour([600], scalars="Temp")
+    # ParaView's contours have VTK's normals.
+    surface = surface.compute_normals(
+        cell_normals=False, split_vertices=False, consistent_normals=False
+    )
     places = re.findall(r"^camera (.*)$", said, re.M)
     assert len(places) == len(CAMERAS)
     for i, place in enumerate(places):

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 #: Name of a temporary point array, chosen not to clash with a user's array.
 NUMBERS = "vizlight numbers"
-_IDS = "vtkOriginalPointIds"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
 
@@ -58,12 +57,14 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         return bare, np.arange(mesh.GetNumberOfPoints())
     if not is_curved(mesh):
         plain = vtkGeometryFilter()
+        # VTK's own name may be that of an array of the mesh, whose surface was taken before.
+        plain.SetOriginalPointIdsName(NUMBERS)
         plain.PassThroughPointIdsOn()
         plain.SetInputData(mesh)
         plain.Update()
         surface = plain.GetOutput()
-        ids = as_numpy(surface.GetPointData().GetArray(_IDS))
-        surface.GetPointData().RemoveArray(_IDS)
+        ids = as_numpy(surface.GetPointData().GetArray(NUMBERS))
+        surface.GetPointData().RemoveArray(NUMBERS)
         return surface, ids.astype(np.intp, copy=False)
     # VTK's ids of the nodes of curved cells are those within the cell, so the points of the mesh
     # are numbered here.
