@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import inspect
 import operator
@@ -111,6 +112,19 @@ def test_import_of_the_package_loads_next_to_nothing():
     )
     assert bare == listed == set()
     assert "pyvista" not in light
+
+
+def test_what_types_cannot_say_is_named():
+    """``Any`` has a name that says why, and none of the mathematics needs one."""
+    found = set()
+    for path in sorted(ROOT.rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+        quoted = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+        if "Any" in names | quoted:
+            found.add(path.relative_to(ROOT).as_posix())
+        assert path.parent.name != "model" or not names & {"Foreign", "Given", "Keywords"}
+    assert found == {"_types.py", "shading/algebra.py"}
 
 
 def test_every_public_name_is_there():

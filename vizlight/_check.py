@@ -12,7 +12,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Color, Indices, Vector
+    from vizlight._types import Array, Color, Foreign, Indices, Vector
 
     P = ParamSpec("P")
     R = TypeVar("R")
@@ -71,7 +71,7 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
     raise TypeError(message(name, expected, describe(value)))
 
 
-def flags(frozen: Any) -> None:
+def flags(frozen: Foreign) -> None:
     """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
     for field in dataclasses.fields(frozen):
         if field.type == "bool":

@@ -8,7 +8,7 @@ gives them the names, the options and their documentation.
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeVar
 
 import pyvista as pv
 
@@ -16,6 +16,8 @@ import vizlight
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from vizlight._types import Foreign
 
 __all__ = ["Accessor"]
 
@@ -32,7 +34,7 @@ class _Method(Generic[Options, Result]):
         Function that returns the filter.
     """
 
-    def __init__(self, load: Callable[[], Callable[Concatenate[Any, Options], Result]]) -> None:
+    def __init__(self, load: Callable[[], Callable[Concatenate[Foreign, Options], Result]]) -> None:
         self._load = load
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -63,7 +65,7 @@ class Accessor:
 
     def __init__(self, mesh: pv.DataObject) -> None:
         # Each filter checks the kind of mesh that it takes.
-        self._mesh: Any = mesh
+        self._mesh: Foreign = mesh
 
     def __repr__(self) -> str:
         names = ", ".join(name for name in sorted(vars(Accessor)) if name[0] != "_")

@@ -13,7 +13,7 @@ import threading
 import time
 import uuid
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
+
+    from vizlight._types import Foreign
 
 __all__ = ["FileError", "read", "surface_of", "warped", "with_vectors", "write_mesh"]
 
@@ -172,7 +174,7 @@ def read(
     reading = _supervise.stage("read", path, seconds=limit)
     with reading, captured_errors() as errors:
         try:
-            found: Any = _found(path, time)
+            found: Foreign = _found(path, time)
             if lacking := short_files.contradiction(found, path):
                 raise FileError(lacking)
             mesh = _whole(found, path.suffix.lower(), overlays)
@@ -213,7 +215,7 @@ def _listed(overlay: object) -> list[object]:
     return [*overlay] if isinstance(overlay, list | tuple) else [overlay]
 
 
-def _whole(found: Any, suffix: str, overlays: Sequence[Path]) -> Any:
+def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
     """Return one upright mesh of what a file of a suffix holds, with the values over it."""
     mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
@@ -333,7 +335,7 @@ class _Messages:
                     vtkLogger.GetCurrentVerbosityCutoff(),
                 )
                 window = vtkStringOutputWindow()
-                heard: Any = self._note
+                heard: Foreign = self._note
                 for event in ("ErrorEvent", "WarningEvent"):
                     window.AddObserver(event, heard)  # type: ignore[arg-type]
                 vtkOutputWindow.SetInstance(window)

@@ -48,10 +48,12 @@ def surface(function: Function, n: int) -> pv.PolyData:
     if function is hills:
         x, y = np.meshgrid(np.linspace(-2, 2, n), np.linspace(-2, 2, n))
         field = pv.StructuredGrid(x, y, -hills(x, y, 0 * x))
-        return field.extract_surface(algorithm="dataset_surface")
+        grid: pv.PolyData = field.extract_surface(algorithm="dataset_surface")
+        return grid
     volume = pv.ImageData(dimensions=(n, n, n), spacing=3 * (4 / (n - 1),), origin=(-2, -2, -2))
     volume["f"] = function(*np.asarray(volume.points).T)
-    return volume.contour([0.0], scalars="f", compute_normals=False)
+    found: pv.PolyData = volume.contour([0.0], scalars="f", compute_normals=False)
+    return found
 
 
 def gradient(function: Function, points: Array, step: float = 1e-5) -> Array:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
+    from vizlight._types import Keywords
     from vizlight.cli.arguments import Output
     from vizlight.filters.fur import FurOptions
     from vizlight.scene import Light
@@ -119,7 +120,8 @@ def relief(
     # The shadow is cast by one light.
     look = scenes.Look(common, fill=False)
     # A shadow alone answers no question.
-    given = {"lit": lit or common.lights.question is not None} | options.keywords(how)
+    given: Keywords = {"lit": lit or common.lights.question is not None}
+    given |= options.keywords(how)
     given |= {"lit": True, "occlusion": "sky"} if sky else {}
     asked = ReliefOptions(**given)
 
@@ -237,7 +239,8 @@ def fur(
     scenes.check_target(shape)
     names = ("ambient", "diffuse", "specular")
     look = scenes.Look(common, material={name: getattr(MATERIAL, name) for name in names})
-    given = {"feature_angle": "auto"} | options.keywords(how)
+    given: Keywords = {"feature_angle": "auto"}
+    given |= options.keywords(how)
     asked = FurOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -271,7 +274,8 @@ def contours(
     scenes.check_target(shape)
     look = scenes.Look(common)
     # In a picture a crease is seen as one.
-    given = {"feature_angle": "auto"} | options.keywords(how)
+    given: Keywords = {"feature_angle": "auto"}
+    given |= options.keywords(how)
     asked = ContourOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, say
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from vizlight._types import Keywords
     from vizlight.cli.arguments import Color, Common, Output, Pieces, Target
     from vizlight.cli.scenes import Look
 
@@ -49,7 +50,7 @@ def _indices(out: Output) -> list[Path]:
 def light(
     files: Sequence[Path],
     target: Target,
-    given: dict[str, Any],
+    given: Keywords,
     common: Common,
     color: Color,
     pieces: Pieces,
@@ -70,9 +71,9 @@ def light(
         raise ValueError(message("output", expected, ", ".join(map(str, indices))))
     if indices[0].suffix == ".pvtp":
         given = {"feature_angle": "auto"} | given
-    runs: dict[str, Any] = _runs(pieces)
+    runs: Keywords = _runs(pieces)
     shown = {"progress_bar": True} if out.progress else {}
-    asked: dict[str, Any] = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
+    asked: Keywords = {"contour": target.contour, "level": target.level, "slab": pieces.slab}
     what = {key: value for key, value in asked.items() if value is not None}
     # The eye belongs to the lit whole, which no piece knows: it is found before the light.
     camera = look.camera(list(files), by="vizlight.pieces.camera_on", **what, **runs, **shown)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import shlex
 from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
+    from vizlight._types import Keywords
     from vizlight.shading.options import LightOptions
 
 
@@ -90,7 +91,7 @@ def light(
     return carry_out(files, build, common.out, "lit", target)
 
 
-def keywords(how: object, *, sky: bool) -> dict[str, Any]:
+def keywords(how: object, *, sky: bool) -> Keywords:
     """Return the options of light, with the ambient light of a sky where it is asked for."""
     return options.keywords(how) | ({"occlusion": "sky"} if sky else {})
 
@@ -207,7 +208,7 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
     return ""
 
 
-def _varying(arrays: dict[str, Any]) -> dict[str, bool]:
+def _varying(arrays: Keywords) -> dict[str, bool]:
     """Return the arrays of one number that varies, and whether it is an integer.
 
     Integers may number the nodes, as names with "Id" do.

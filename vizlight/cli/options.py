@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from dataclasses import field, fields, make_dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Union
+from typing import TYPE_CHECKING, Annotated, Union
 
 from cyclopts import Group, Parameter
 
@@ -16,6 +16,8 @@ from vizlight.cli.arguments import fraction, numbers
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from typing import ParamSpec
+
+    from vizlight._types import Foreign, Keywords
 
     P = ParamSpec("P")
 
@@ -95,7 +97,7 @@ READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {
 }
 
 
-def words(*parts: Any) -> list[str]:
+def words(*parts: Foreign) -> list[str]:
     """Return the words of a command that give options of dataclasses the values that they have."""
     found = []
     for part in parts:
@@ -155,12 +157,12 @@ def arguments_of(
     return kind
 
 
-def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> dict[str, Any]:
+def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> Keywords:
     """Return the options that differ from their defaults, by the filter's names."""
     if arguments is None:
         return {}
     names = {new: old for old, new in (renamed or {}).items()}
-    found: dict[str, Any] = {}
+    found: Keywords = {}
     for shown, parameter in inspect.signature(type(arguments)).parameters.items():
         name, value = names.get(shown, shown), getattr(arguments, shown)
         if value != parameter.default or type(value) is not type(parameter.default):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._words import message, one_of
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight._types import Vector
+    from vizlight._types import Foreign, Given, Vector
     from vizlight.cli.arguments import Color, Common, Lights, Part
     from vizlight.scene import Scene, View
 
@@ -274,7 +274,7 @@ class Look:
         )
 
     def camera(
-        self, mesh: object, *, is_map: bool = False, by: str = "render.camera_on", **more: Any
+        self, mesh: object, *, is_map: bool = False, by: str = "render.camera_on", **more: Given
     ) -> Step:
         """Return the step that sets the camera on a mesh by a function with options of its own."""
         eye = self._eye
@@ -439,7 +439,7 @@ def read_scene(path: Path) -> Scene:
         raise ValueError(f"--scene '{path}': {error}") from error
 
 
-def _json(option: str, path: Path) -> Any:
+def _json(option: str, path: Path) -> Foreign:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

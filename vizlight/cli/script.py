@@ -7,13 +7,15 @@ import importlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._words import message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from vizlight._types import Foreign
 
 #: First names of paths: modules in groups, and modules of vizlight.
 MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight",))
@@ -49,12 +51,12 @@ class Step:
         #: What a reader should know of what was decided by itself.
         self.note = ""
 
-    def run(self) -> Any:
+    def run(self) -> Foreign:
         """Return the result; the call is made once."""
         return self._result
 
     @functools.cached_property
-    def _result(self) -> Any:
+    def _result(self) -> Foreign:
         made = self._called()
         if self.asked[0] and not made.n_points:
             raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
@@ -64,8 +66,8 @@ class Step:
             made[key] = _run(value)
         return made
 
-    def _called(self) -> Any:
-        arguments: list[Any] = [_run(value) for value in self.arguments]
+    def _called(self) -> Foreign:
+        arguments: list[Foreign] = [_run(value) for value in self.arguments]
         keywords = {key: _run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
             return arguments[0][arguments[1]]
@@ -74,7 +76,9 @@ class Step:
         if self.path.startswith("."):
             return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
         head, *names = self.path.split(".")
-        function: Any = getattr(vizlight, head) if head in OWN else importlib.import_module(head)
+        function: Foreign = (
+            getattr(vizlight, head) if head in OWN else importlib.import_module(head)
+        )
         for name in names:
             function = getattr(function, name)
         return function(*arguments, **keywords)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, get_args
 
 import pyvista as pv
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import ColorLike
+    from vizlight._types import ColorLike, Foreign, Given, Keywords
     from vizlight.draw.corner import Corner
     from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
@@ -73,7 +73,7 @@ class Component:
         light: LightAt = "auto",
         scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
-        **options: Any,
+        **options: Given,
     ) -> pv.Actor | list[pv.Actor]:
         """Add a mesh whose light follows the camera.
 
@@ -161,7 +161,7 @@ class Component:
         if why is not None:
             if why:
                 _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
-            given: Any = scalars
+            given: Foreign = scalars
             unlit: pv.Actor = plotter.add_mesh(mesh, scalars=given, **drawing)
             return unlit
         if scalars is None and scene is None and not (own or relight.is_lit(mesh)):
@@ -213,7 +213,7 @@ class Component:
         corner: Corner = "auto",
         size: float = 0.2,
         color: ColorLike | None = None,
-        **options: Any,
+        **options: Given,
     ) -> pv.PolyData:
         """Draw the key of the light in a corner of the picture, with its words.
 
@@ -259,7 +259,8 @@ class Component:
         if scene is None:
             scene, own = self._first_light(plotter, question)
             options = own | options
-        made = key(scene, **({"question": question} | options))
+        asked: Keywords = {"question": question}
+        made = key(scene, **(asked | options))
         ink = _check.color("color", color)
         if ink is None:
             ink = ink_on(plotter.background_color)
@@ -268,13 +269,13 @@ class Component:
 
     def _first_light(
         self, plotter: pv.BasePlotter, question: Question | None
-    ) -> tuple[Scene, dict[str, Any]]:
+    ) -> tuple[Scene, Keywords]:
         """Return the scene of the first mesh with live light, and its options of a key."""
         for actor in items(plotter.renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
                 lit_by = live.scene_of(plotter.renderer, actor)
-                options: dict[str, Any] = {"exponent": live.source.options.exponent}
+                options: Keywords = {"exponent": live.source.options.exponent}
                 table = actor.GetMapper().GetLookupTable()
                 valued = live.scalars is not None and isinstance(table, pv.LookupTable)
                 # The default light is made for values; without values it tells the shape.
@@ -437,7 +438,7 @@ class Component:
         scene: Scene | None,
         light: LightAt,
         scalars: str | None,
-        drawing: dict[str, Any],
+        drawing: Keywords,
         *,
         follow: bool,
     ) -> pv.Actor:
@@ -576,7 +577,7 @@ def _address(thing: vtkObject) -> str:
 
 
 def _add_cloud(
-    plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: dict[str, Any]
+    plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: Keywords
 ) -> pv.Actor:
     """Add points that have nothing for light to fall on, in the colours that a lit mesh has."""
     if scalars is None:
@@ -589,7 +590,7 @@ def _add_cloud(
     return actor
 
 
-def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:
+def _stroke(source: Source, drawing: Keywords) -> Stroke:
     """Take from keywords how lines are drawn; a surface has none."""
     diameter = drawing.pop("line_diameter", None)
     if not has_lines_only(source.mesh):
@@ -598,7 +599,7 @@ def _stroke(source: Source, drawing: dict[str, Any]) -> Stroke:
     return Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
 
 
-def _reason(source: Source, drawing: dict[str, Any], stroke: Stroke) -> str:
+def _reason(source: Source, drawing: Keywords, stroke: Stroke) -> str:
     """Return why the light cannot be computed in each fragment, or an empty string."""
     if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
         return "VTK shades spheres and tubes by normals of their own"
@@ -606,7 +607,7 @@ def _reason(source: Source, drawing: dict[str, Any], stroke: Stroke) -> str:
 
 
 def add_recorded(
-    plotter: pv.BasePlotter, mesh: pv.DataSet, name: str, **drawing: Any
+    plotter: pv.BasePlotter, mesh: pv.DataSet, name: str, **drawing: Given
 ) -> pv.Actor | None:
     """Add a mesh with the light of its record, as its own view sees it, in each fragment.
 

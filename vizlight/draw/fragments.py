@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Keywords
     from vizlight.draw.live import Live
     from vizlight.draw.program import Uniform
     from vizlight.filters.relight import Source
@@ -178,7 +178,7 @@ class Fragments:
             point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
 
-    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+    def drawing(self, live: Live, drawing: Keywords) -> Keywords:
         """Return the keywords of ``plotter.add_mesh``."""
         drawing = drawing | {"lighting": True}
         if live.scalars is None:

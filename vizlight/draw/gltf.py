@@ -6,7 +6,7 @@ import dataclasses
 import json
 import struct
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import NDArray
 
-    from vizlight._types import Indices
+    from vizlight._types import Array, Given, Indices
     from vizlight.filters.relight import Source
     from vizlight.filters.tint import ColorMap
 
@@ -51,7 +51,7 @@ def save_gltf(
     scalars: str | None = None,
     cmap: ColorMap = None,
     clim: Sequence[float] | float | None = None,
-    **options: Any,
+    **options: Given,
 ) -> Path:
     """Write a glTF file (.glb) with the colours of a lit mesh, as any viewer shows them.
 
@@ -270,10 +270,10 @@ class _File:
         )  # fmt: skip
 
 
-def _linear(colors: NDArray[np.uint8]) -> NDArray[np.floating[Any]]:
+def _linear(colors: NDArray[np.uint8]) -> Array:
     """Return colours as glTF has them: linear, opacity as it is, in 16 bits."""
     shown = colors / 255.0
     rgb = shown[:, :3]
     decoded = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    found: NDArray[np.floating[Any]] = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
+    found: Array = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
     return found

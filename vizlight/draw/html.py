@@ -11,7 +11,7 @@ import string
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
@@ -34,7 +34,7 @@ from vizlight.shading.results import DEFAULT_NAME
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import ColorLike
+    from vizlight._types import ColorLike, Foreign, Given, Keywords
     from vizlight.draw.live import LightAt, Live
     from vizlight.draw.page import Shown
 
@@ -62,7 +62,7 @@ def live_html(
     frames: str = "frame",
     files: Literal[1, 2] = 1,
     source: Sequence[str] = (),
-    **options: Any,
+    **options: Given,
 ) -> Path:
     """Write one HTML file that shows a mesh, whose light follows the eye of the reader.
 
@@ -157,7 +157,7 @@ def live_html(
     if not steps:
         raise ValueError(_check.message("mesh", "one mesh or more", "an empty mapping"))
     values = [_check.number("mesh", value) for value in steps]
-    plotter: Any = pv.Plotter(off_screen=True, notebook=False)
+    plotter: Foreign = pv.Plotter(off_screen=True, notebook=False)
     try:
         chosen = _check.color("background", background)
         owners: list[int | None] = []
@@ -186,7 +186,7 @@ def live_html(
         plotter.close()
 
 
-def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> dict[str, Any]:
+def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> Keywords:
     """Return an option of light, its default, for points that PyVista alone would draw."""
     every = [*all_blocks(mesh)]
     clouds = [block for block in every if is_cloud(block, {})]
@@ -194,7 +194,7 @@ def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> dict[str, Any]:
     return {"facing": "auto"} if clouds and (alone or all(map(is_scan, clouds))) else {}
 
 
-def _look(plotter: Any, mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> None:
+def _look(plotter: Foreign, mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> None:
     """See all that is drawn from where the view of a scene, or of the mesh's record, is."""
     if scene is None and relight.is_lit(mesh):
         scene = Scene.from_dict(records.provenance(mesh, DEFAULT_NAME)["scene"])
@@ -217,7 +217,7 @@ def write_page(
     plotter: pv.BasePlotter,
     *,
     files: Literal[1, 2] = 1,
-    **content: Any,
+    **content: Given,
 ) -> Path:
     """Write the page of meshes with live light; see :func:`page_text`.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from vizlight._types import Keywords
     from vizlight.scene import Scene
 
 #: Options of light that a live light takes; an actor has a name of its own.
@@ -37,8 +38,8 @@ GIVEN, BYTES = "Data", "vizlight rgb"
 
 
 def sorted_out(
-    function: str, options: dict[str, Any], scene: Scene | None, more: Iterable[str] = ()
-) -> tuple[dict[str, Any], dict[str, Any]]:
+    function: str, options: Keywords, scene: Scene | None, more: Iterable[str] = ()
+) -> tuple[Keywords, Keywords]:
     """Return options of light, and keywords of ``pyvista.Plotter.add_mesh`` by their own names.
 
     Raises
@@ -63,7 +64,7 @@ def sorted_out(
     return own, drawing
 
 
-def shading_of(drawing: dict[str, Any]) -> FeatureAngle:
+def shading_of(drawing: Keywords) -> FeatureAngle:
     """Take from keywords how round a surface looks: the angle at which its points are split."""
     smooth, split = drawing.pop("smooth_shading", None), drawing.pop("split_sharp_edges", None)
     if smooth is False:
@@ -73,7 +74,7 @@ def shading_of(drawing: dict[str, Any]) -> FeatureAngle:
     return float(pv.global_theme.sharp_edges_feature_angle) if split else None
 
 
-def left_to_pyvista(drawing: dict[str, Any]) -> str | None:
+def left_to_pyvista(drawing: Keywords) -> str | None:
     """Return why PyVista draws a mesh with its own light: None if not, empty if that was asked."""
     if drawing.get("lighting") is False:
         return ""
@@ -84,7 +85,7 @@ def left_to_pyvista(drawing: dict[str, Any]) -> str | None:
     return None
 
 
-def is_cloud(mesh: pv.DataSet, own: dict[str, Any]) -> bool:
+def is_cloud(mesh: pv.DataSet, own: Keywords) -> bool:
     """Return whether a mesh is points alone, for which no light is asked and that have none."""
     asked = own.keys() & {"tangents", "normals", "facing"}
     if asked or mesh.point_data.active_normals is not None or relight.is_lit(mesh):
@@ -93,7 +94,7 @@ def is_cloud(mesh: pv.DataSet, own: dict[str, Any]) -> bool:
     return isinstance(mesh, kinds) and mesh.n_points > 0 and mesh.max_cell_dimensionality == 0
 
 
-def block_colors(drawing: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def block_colors(drawing: Keywords) -> Iterator[Keywords]:
     """Take ``multi_colors`` from keywords, and yield each block's after another."""
     if not drawing.pop("multi_colors", False):
         return itertools.repeat({})
@@ -117,7 +118,7 @@ def active_scalars(mesh: pv.DataSet | pv.MultiBlock) -> str | None:
 
 
 def colored(
-    mesh: pv.DataSet | pv.MultiBlock, scalars: str | ArrayLike | None, drawing: dict[str, Any]
+    mesh: pv.DataSet | pv.MultiBlock, scalars: str | ArrayLike | None, drawing: Keywords
 ) -> tuple[pv.DataSet | pv.MultiBlock, str | None]:
     """Return a mesh whose colours are an array by name, and the name.
 

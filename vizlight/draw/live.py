@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Literal, Protocol, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Bools, Indices, Vector
+    from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Vector
     from vizlight.shading.inputs import ShadingInputs
 
 Number = TypeVar("Number", bound=np.generic)
@@ -44,7 +44,7 @@ class Painter(Protocol):
     def attach(self, live: Live) -> None:
         """Give the drawn mesh the arrays that a new source needs."""
 
-    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+    def drawing(self, live: Live, drawing: Keywords) -> Keywords:
         """Return the keywords of ``plotter.add_mesh``."""
 
     def start(self, live: Live, actor: vtkActor) -> None:
@@ -330,7 +330,7 @@ def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
     return points
 
 
-def items(collection: vtkCollection) -> Iterator[Any]:
+def items(collection: vtkCollection) -> Iterator[Foreign]:
     """Yield what a collection of VTK holds."""
     for i in range(collection.GetNumberOfItems()):
         yield collection.GetItemAsObject(i)
@@ -338,8 +338,8 @@ def items(collection: vtkCollection) -> Iterator[Any]:
 
 def is_copy(actor: vtkActor) -> bool:
     """Return whether an actor draws what was made for a live light."""
-    mapper: Any = actor.GetMapper()
-    data: Any = None if mapper is None else mapper.GetInputDataObject(0, 0)
+    mapper: Foreign = actor.GetMapper()
+    data: Foreign = None if mapper is None else mapper.GetInputDataObject(0, 0)
     own = (NORMALS, TANGENTS, COLORS)
     if not hasattr(data, "GetPointData"):
         return False
@@ -348,7 +348,7 @@ def is_copy(actor: vtkActor) -> bool:
 
 def has_pass(renderer: vtkRenderer, kind: str) -> bool:
     """Return whether a renderer draws by a pass of a class of VTK, at any depth."""
-    waiting: list[Any] = [renderer.GetPass()]
+    waiting: list[Foreign] = [renderer.GetPass()]
     while waiting:
         step = waiting.pop()
         if step is None:

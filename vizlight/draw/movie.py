@@ -8,7 +8,7 @@ import os
 import warnings
 from collections.abc import Mapping, Sized
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import VectorLike
+    from vizlight._types import Foreign, Given, VectorLike
     from vizlight.filters.project import LightWhen
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, Facing, Model, Precision
@@ -97,7 +97,7 @@ def save(
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     writer = _writer(path, fps, drawing["size"])
     known = len(frames) if isinstance(frames, Sized) else 0
-    rest: Iterator[Any] = iter(frames)
+    rest: Iterator[Foreign] = iter(frames)
     first = next(rest, None)
     if first is None:
         raise ValueError(_check.message("frames", "one mesh, Panel or picture or more", "none"))
@@ -230,7 +230,7 @@ def turn(
     before = options.pop("rotation", None)
     notes: list[str] = []
 
-    def steps(settings: Mapping[str, Any], scene: Scene | None) -> Iterator[Mesh]:
+    def steps(settings: Mapping[str, Given], scene: Scene | None) -> Iterator[Mesh]:
         for i in range(count):
             turned = (plane, whole * i / count)
             rotation = turned if before is None else [before, turned]

@@ -6,7 +6,7 @@ import html
 import importlib.util
 import sys
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pyvista as pv
 
@@ -14,6 +14,8 @@ from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from vizlight._types import Foreign
 
     #: Takes a plotter and the options of the backend, returns what the notebook displays.
     Handler = Callable[..., object]
@@ -174,7 +176,7 @@ def guard_exports(plotter: pv.BasePlotter) -> None:
         vars(plotter).setdefault(TRAME, _Component(plotter))
 
 
-def _guard(plotter: pv.BasePlotter, owner: Any) -> None:
+def _guard(plotter: pv.BasePlotter, owner: Foreign) -> None:
     for name in EXPORTS:
         if callable(getattr(owner, name, None)) and name not in vars(owner):
             setattr(owner, name, _Export(plotter, owner, name))

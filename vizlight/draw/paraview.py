@@ -7,7 +7,7 @@ import json
 import string
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import ArrayLike
 
+    from vizlight._types import Given
     from vizlight.draw.program import Program
     from vizlight.shading.options import Exponent, Facing, Model
     from vizlight.shading.plan import Plan
@@ -223,7 +224,7 @@ def save(
     path: str | Path,
     *,
     scalars: str | None = None,
-    **options: Any,
+    **options: Given,
 ) -> Path:
     """Write a script that shows a mesh in ParaView with light in each fragment, and the mesh.
 

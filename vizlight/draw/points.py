@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
+    from vizlight._types import Keywords
     from vizlight.draw.live import Live
     from vizlight.scene import Scene
 
@@ -57,7 +58,7 @@ class Points:
             live.attach(NORMALS, polylines.line_tangents(live.source.mesh).astype(np.float32))
             live.drawn.GetPointData().SetActiveNormals(NORMALS)
 
-    def drawing(self, live: Live, drawing: dict[str, Any]) -> dict[str, Any]:
+    def drawing(self, live: Live, drawing: Keywords) -> Keywords:
         """Return the keywords of ``plotter.add_mesh``."""
         if live.scalars is not None:
             return drawing | {"lighting": False}

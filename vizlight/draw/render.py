@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args
+from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
-    from vizlight._types import ColorLike
+    from vizlight._types import Array, ColorLike, Foreign, Keywords
 
 __all__ = [
     "Backend",
@@ -268,7 +268,7 @@ def _check_panels(
     panels: Mesh | Panel | Sequence[Mesh | Panel], scalars: str | None
 ) -> list[Panel]:
     """Return the panels to draw, each with the array that colours it."""
-    items: Sequence[Any] = panels if isinstance(panels, list | tuple) else [panels]
+    items: Sequence[Foreign] = panels if isinstance(panels, list | tuple) else [panels]
     shown = [
         item
         if isinstance(item, Panel)
@@ -419,8 +419,8 @@ def pixels_of(size: object) -> list[int]:
 
 
 def _draw(
-    plotter: pv.Plotter, panel: Panel, cmap: Any, clim: tuple[float, float],
-    width: dict[str, Any], camera: pv.Camera, *, fragments: bool,
+    plotter: pv.Plotter, panel: Panel, cmap: Foreign, clim: tuple[float, float],
+    width: Keywords, camera: pv.Camera, *, fragments: bool,
 ) -> None:  # fmt: skip
     blocks = [mesh for mesh in all_blocks(panel.mesh) if mesh.n_points]
     of_lines = [has_lines_only(mesh) for mesh in blocks]
@@ -465,9 +465,7 @@ def _draw(
             actor.mapper.lookup_table, actor.mapper.scalar_range = table, table.scalar_range
 
 
-def _add_in_fragments(
-    plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: dict[str, Any]
-) -> bool:
+def _add_in_fragments(plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: Keywords) -> bool:
     """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
     drawing = width | {"show_scalar_bar": False}
     flat = drawing | {"render_lines_as_tubes": False}
@@ -476,7 +474,7 @@ def _add_in_fragments(
     return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
 
 
-def _lifted(points: NDArray[np.floating[Any]], camera: pv.Camera, by: float) -> Any:
+def _lifted(points: Array, camera: pv.Camera, by: float) -> Foreign:
     """Return points that are nearer to the eye and stay at the same pixels."""
     eye = np.array(camera.position)
     toward = eye - np.asarray(points, dtype=np.float64)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pyvista as pv
 
@@ -16,6 +16,7 @@ from vizlight.filters.sky import SKY
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from vizlight._types import Foreign, Given
     from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
@@ -46,7 +47,7 @@ def plot(
     screenshot: str | Path | bool | None = None,
     jupyter_backend: str | None = None,
     sky: bool = False,
-    **options: Any,
+    **options: Given,
 ) -> object:
     """Show a mesh whose light follows the camera.
 
@@ -105,7 +106,7 @@ def plot(
             _check.boolean(name, given[name])
     window = {name: given.pop(name) for name in _WINDOW if name in given}
     size = None if window_size is None else list(window_size)
-    plotter: Any = pv.Plotter(window_size=size, **window)
+    plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
         if given.pop("volume", False):
             _check.warn("volume=True: PyVista draws the volume with its own light")
@@ -133,17 +134,17 @@ def _size(window_size: object) -> tuple[int, int]:
 
 
 def _furnish(
-    plotter: Any,
+    plotter: Foreign,
     *,
-    background: Any = None,
+    background: Foreign = None,
     text: str = "",
     show_axes: bool | None = None,
     show_bounds: bool = False,
     show_grid: bool = False,
-    cpos: Any = None,
+    cpos: Foreign = None,
     zoom: float | str | None = None,
     parallel_projection: bool = False,
-    anti_aliasing: Any = None,
+    anti_aliasing: Foreign = None,
     eye_dome_lighting: bool = False,
     edl: bool = False,
     ssao: bool = False,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -23,6 +23,7 @@ from vizlight.reading.parts import uses_normals
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
+    from vizlight._types import Keywords
     from vizlight.filters.relight import Source
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 def sources_of(
     mesh: pv.DataSet | pv.MultiBlock,
     scene: Scene | None,
-    options: dict[str, Any],
+    options: Keywords,
     angle: FeatureAngle = "auto",
 ) -> tuple[list[Source], Scene | None]:
     """Return what is lit: by the record of the mesh, or by options.
@@ -40,7 +41,8 @@ def sources_of(
     """
     if not options and relight.is_lit(mesh):
         return relight.from_record(mesh, scene)
-    asked = LightOptions(**({"feature_angle": angle} | options))
+    given: Keywords = {"feature_angle": angle}
+    asked = LightOptions(**(given | options))
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
@@ -91,7 +93,7 @@ def _fit_no_face(split: pv.PolyData, given: str) -> bool:
     return bool(np.mean(apart) > MANY_SHARP >= np.mean(~known))
 
 
-def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, dict[str, Any]]:
+def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, Keywords]:
     """Return the array and the colours of a mesh that tint returned.
 
     With ``warn`` a warning is given where the mesh has no such array.

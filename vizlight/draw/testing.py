@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -23,7 +23,7 @@ from vizlight.files import check_output, replace_file
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, ColorLike
+    from vizlight._types import Array, ColorLike, Foreign
 
     Pixels: TypeAlias = NDArray[np.uint8]
     Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
@@ -241,7 +241,7 @@ def _pixels(name: str, picture: Picture) -> Pixels:
                 return np.array(image.convert("RGB"))
         except OSError as error:
             raise ValueError(_check.message(name, "a picture", f"{str(picture)!r}")) from error
-    array: Any = picture
+    array: Foreign = picture
     try:
         array = np.asarray(array)
     except ValueError:  # rows of unequal length

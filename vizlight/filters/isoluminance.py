@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import time
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Keywords
     from vizlight.geometry.contours.banding import Bands, Laminae
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
@@ -244,7 +244,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
         (lamp,) = (light.seen_from(scene.view) for light in scene.lights)
-        source: dict[str, Any] = {
+        source: Keywords = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
             "diffuse": scene.material.diffuse * lamp.intensity,
             "attenuation": lamp.attenuation, "levels": asked.levels,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign
     from vizlight.scene import Scene
     from vizlight.shading.options import Bundle, Exponent, Facing, Model, Precision
 
@@ -71,7 +71,7 @@ class PathlineOptions(LightOptions):
 
 @named
 def pathlines(
-    series: Sequence[pv.DataSet] | Any,
+    series: Sequence[pv.DataSet] | Foreign,
     /,
     scene: Scene | None = None,
     *,

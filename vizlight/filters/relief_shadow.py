@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Keywords
     from vizlight.geometry.relief.height_field import Border
     from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
@@ -194,7 +194,7 @@ def relief_shadow(
     asked = ReliefOptions.of(locals())
     inplace = _check.boolean("inplace", inplace)
     if isinstance(mesh, pv.MultiBlock):
-        given: dict[str, Any] = asked.changed()
+        given: Keywords = asked.changed()
         given |= {"sun": sun, "progress_bar": progress_bar}
         return blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -23,6 +23,7 @@ from vizlight.shading.results import DEFAULT_NAME, part_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from vizlight._types import Given, Keywords
     from vizlight.reading.normals import Sided
     from vizlight.scene import View
     from vizlight.shading.inputs import ShadingInputs
@@ -203,7 +204,7 @@ def _read_record(
     return found, used
 
 
-def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Scene) -> Source:
+def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: Scene) -> Source:
     made, options = str(record["filter"]), dict(record["options"])
     if made == "streamlines":
         # Where lines start has no part in their light.
@@ -211,7 +212,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Any], scene: Sce
     _refuse_described(made, options)
     if made == "relief_shadow":
         return _of_relief(mesh, options, scene)
-    readers: dict[str, Callable[[pv.DataSet, dict[str, Any]], LightOptions]] = {
+    readers: dict[str, Callable[[pv.DataSet, Keywords], LightOptions]] = {
         "illuminate": lambda _, options: LightOptions(**options),
         "refine": lambda _, options: LightOptions(**_own(LightOptions, options)),
         "streamlines": _of_lines,
@@ -237,12 +238,12 @@ def _refuse_described(made: str, options: Mapping[str, object]) -> None:
             raise ValueError(_check.message("mesh", expected, value, remedy))
 
 
-def _own(kind: type, options: Mapping[str, Any]) -> dict[str, Any]:
+def _own(kind: type, options: Mapping[str, Given]) -> Keywords:
     names = {field.name for field in dataclasses.fields(kind)}
     return {name: value for name, value in options.items() if name in names}
 
 
-def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
+def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
     """Return the options of streamlines: beside a surface their normals condition the light."""
     from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 
@@ -259,7 +260,7 @@ def _of_lines(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:
     return LightOptions(**light)
 
 
-def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  # noqa: ARG001
+def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa: ARG001
     """Return the options of light in n-space before a projection, or in 3-space after it."""
     from vizlight.filters.project import ProjectOptions
 
@@ -270,7 +271,7 @@ def _of_projection(mesh: pv.DataSet, options: dict[str, Any]) -> LightOptions:  
     return asked.by(frame, asked.positions if before else None)
 
 
-def _of_relief(mesh: pv.DataSet, options: dict[str, Any], scene: Scene) -> Source:
+def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
     from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 
@@ -301,7 +302,7 @@ class _Seen:
 
 
 def _of_fur(
-    mesh: pv.DataSet | pv.MultiBlock, options: Mapping[str, Any], scene: Scene
+    mesh: pv.DataSet | pv.MultiBlock, options: Mapping[str, Given], scene: Scene
 ) -> list[Source]:
     """Return the sources of fibres and skin, which grow again."""
     from vizlight.filters.fur import FurOptions, fur

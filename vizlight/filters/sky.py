@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vizlight._types import Given
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.sky import Sky
     from vizlight.shading.options import FeatureAngle
@@ -261,7 +262,7 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
 
 
 def _found_finer(
-    meshes: Sequence[pv.DataSet], asked: SkyOptions, *, finer: bool, **how: Any
+    meshes: Sequence[pv.DataSet], asked: SkyOptions, *, finer: bool, **how: Given
 ) -> tuple[list[pv.DataSet], list[Sky]]:
     """Return meshes and their skies, with ``finer`` by smaller triangles where these are needed."""
     found = _found(meshes, asked, **how)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Array, Bools, ColorLike
+    from vizlight._types import Array, Bools, ColorLike, Foreign, Keywords
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.display import Bytes
     from vizlight.shading.results import Record
 
-    ColorMap = Any
+    ColorMap = Foreign
 
 RGB = "rgb"
 #: Largest number of colours of a table.
@@ -253,7 +253,7 @@ def color_table(
     if not isinstance(categories, bool):
         categories = _check.integer("categories", categories, low=0, high=MOST_COLORS)
     colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}
-    known: dict[str, Any] = {name: _known_color(name, color) for name, color in colors.items()}
+    known: Keywords = {name: _known_color(name, color) for name, color in colors.items()}
     # PyVista looks at values to count categories alone.
     sample: NDArray[np.generic] = np.zeros(1)
     if categories is True and any(len(part) for part in values):

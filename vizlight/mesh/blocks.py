@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -15,7 +15,7 @@ from vizlight.reading.cells import check_whole, has_faces
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vizlight._types import Array, Indices, Vector
+    from vizlight._types import Array, Foreign, Indices, Vector
 
 #: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
@@ -69,7 +69,7 @@ def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
     if len(set(dimensions)) > 1:
         keep = kinds[dimensions == dimensions.max()]
-        cells: Any = np.flatnonzero(np.isin(grid.celltypes, keep))
+        cells: Foreign = np.flatnonzero(np.isin(grid.celltypes, keep))
         grid = grid.extract_cells(cells, pass_point_ids=False, pass_cell_ids=False)
     for key in mesh.field_data:
         grid.field_data[key] = np.array(mesh.field_data[key])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -13,7 +13,7 @@ import pyvista as pv
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from vizlight._types import AnyArray, Foreign
 
 __all__ = ["SURFACES", "is_freesurfer", "overlay", "read", "tracks_of_tt"]
 
@@ -56,7 +56,7 @@ def read(path: Path) -> pv.PolyData:
     import nibabel
 
     name = path.name.lower()
-    arrays: dict[str, NDArray[Any]] = {}
+    arrays: dict[str, AnyArray] = {}
     if name.endswith(".mz3"):
         arrays = _mz3(path)
         points, faces = arrays.pop("points", None), arrays.pop("faces", None)
@@ -77,7 +77,7 @@ def read(path: Path) -> pv.PolyData:
     return mesh
 
 
-def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
+def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     """Return the arrays of a file for the points of a surface, by the name of the file.
 
     Parameters
@@ -102,7 +102,7 @@ def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
     elif name.endswith(".annot"):
         found = {"values": nibabel.freesurfer.read_annot(path)[0]}
     elif name.endswith((".mgh", ".mgz")):
-        volume: Any = nibabel.load(path)
+        volume: Foreign = nibabel.load(path)
         found = {"values": np.asarray(volume.dataobj).reshape(-1)}
     else:
         found = {"values": nibabel.freesurfer.read_morph_data(path)}
@@ -115,13 +115,13 @@ def overlay(path: Path, count: int) -> dict[str, NDArray[Any]]:
     return {f"{own}_{key}": rows for key, rows in found.items()}
 
 
-def _gifti(path: Path) -> tuple[Any, Any, dict[str, NDArray[Any]]]:
+def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray]]:
     """Return points, triangles and other arrays of a GIFTI file."""
     import nibabel
 
-    image: Any = nibabel.load(path)
-    parts: dict[int, Any] = {}
-    arrays: dict[str, NDArray[Any]] = {}
+    image: Foreign = nibabel.load(path)
+    parts: dict[int, Foreign] = {}
+    arrays: dict[str, AnyArray] = {}
     for i, part in enumerate(image.darrays):
         if part.intent in (_POINTS, _TRIANGLES):
             parts[part.intent] = np.asarray(part.data)
@@ -135,7 +135,7 @@ def _gifti(path: Path) -> tuple[Any, Any, dict[str, NDArray[Any]]]:
     return points, parts.get(_TRIANGLES), arrays
 
 
-def _mz3(path: Path) -> dict[str, NDArray[Any]]:
+def _mz3(path: Path) -> dict[str, AnyArray]:
     """Return the parts of a .mz3 file. No package for Python reads it.
 
     Raises
@@ -165,7 +165,7 @@ def _mz3(path: Path) -> dict[str, NDArray[Any]]:
     return found
 
 
-def tracks_of_tt(path: Path) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
     """Return the points of tracts of DSI Studio, where each begins, and their numbers of points.
 
     The file is one of MATLAB 4; a tract is its number of coordinates, its first point in 32nds of
@@ -179,7 +179,7 @@ def tracks_of_tt(path: Path) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     from scipy.io import loadmat
 
     data = path.read_bytes()
-    whole: Any = io.BytesIO(gzip.decompress(data) if path.suffix.lower() == ".gz" else data)
+    whole: Foreign = io.BytesIO(gzip.decompress(data) if path.suffix.lower() == ".gz" else data)
     parts = loadmat(whole)
     blob = np.ascontiguousarray(parts["track"]).tobytes()
     lines, at = [], 0

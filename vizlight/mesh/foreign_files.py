@@ -8,7 +8,7 @@ import tempfile
 import threading
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 import pyvista as pv
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign, Indices, Keywords
 
 #: Package that reads the files of a suffix, and the extra that installs it.
 PACKAGES = {
@@ -180,7 +180,7 @@ def _refuse_narrow(path: Path) -> None:
 def _tracts(path: Path) -> pv.PolyData:
     import nibabel
 
-    tracts: Any = nibabel.streamlines.load(path).tractogram
+    tracts: Foreign = nibabel.streamlines.load(path).tractogram
     lines = tracts.streamlines
     if path.suffix.lower() == ".trk":
         # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
@@ -225,7 +225,7 @@ def _tracts_of_trx(path: Path) -> pv.PolyData:
 _SIDE = ("dps", "dpv", "dpg", "groups")
 
 
-def _of_trx(tracts: Any) -> pv.PolyData:
+def _of_trx(tracts: Foreign) -> pv.PolyData:
     """Return the lines of a .trx file, and close it."""
     try:
         lines = tracts.streamlines
@@ -245,8 +245,8 @@ def _of_trx(tracts: Any) -> pv.PolyData:
 
 def _polylines(
     points: Array,
-    starts: NDArray[np.integer[Any]],
-    lengths: NDArray[np.integer[Any]],
+    starts: Indices,
+    lengths: Indices,
     of_points: Mapping[str, NDArray[np.generic]],
     of_lines: Mapping[str, NDArray[np.generic]],
 ) -> pv.PolyData:
@@ -294,7 +294,7 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
 
     # With all coordinates, corners of cells are none of the variables.
     with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
-        fields: dict[str, Any] = {}
+        fields: Keywords = {}
         clocks = [dim for dim in file.sizes if _is_time(file, dim)]
         clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
         step, ticking = 0, [0.0]
@@ -337,13 +337,13 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
 _EARTH = (("degree_n", "degrees_n", "lat"), ("degree_e", "degrees_e", "lon"))
 
 
-def _is_degrees(file: Any, dim: object, words: tuple[str, ...]) -> bool:
+def _is_degrees(file: Foreign, dim: object, words: tuple[str, ...]) -> bool:
     """Return whether an axis is of latitude or longitude, by its unit or by its name."""
     units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
     return any(text.lower().startswith(words) for text in (units, str(dim)))
 
 
-def _is_time(file: Any, dim: object) -> bool:
+def _is_time(file: Foreign, dim: object) -> bool:
     """Return whether an axis is the time: by its name, or by a unit such as days since a date."""
     units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
     return str(dim).lower() in ("time", "t") or " since " in units

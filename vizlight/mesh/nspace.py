@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -19,9 +19,7 @@ from vizlight.shading.results import plain
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight._types import AnyArray, Array, Bools, Indices, VectorLike
     from vizlight.shading.results import Record
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
@@ -194,7 +192,7 @@ class Turning:
         done.add(mesh.n_points)
         return out
 
-    def _points(self, position: Array) -> tuple[NDArray[Any], Bools]:
+    def _points(self, position: Array) -> tuple[AnyArray, Bools]:
         """Return points in 3-space, and a mask of those that are visible.
 
         Visible points are finite and before the eye's hyperplane by more than rounding.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -13,7 +13,7 @@ from vizlight.geometry.lines.columns import Columns
 from vizlight.mesh import point_arrays, polylines
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign
 
 #: Name of the array that is probed: the vectors at both ends of an interval.
 BOTH = "vizlight vectors"
@@ -96,7 +96,7 @@ class Carrier:
         if len(inside):
             self._probe.SetInputData(pv.PolyData(places[inside]))
             self._probe.Update()
-            found: Any = pv.wrap(self._probe.GetOutput())
+            found: Foreign = pv.wrap(self._probe.GetOutput())
             valid = np.asarray(found.point_data["vtkValidPointMask"], dtype=bool)
             both[inside[valid]] = np.asarray(found.point_data[BOTH])[valid]
         return both

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -13,6 +13,8 @@ from vizlight.reading.cells import as_vtk, cell_data, point_data
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from vizlight._types import Foreign
 
 DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 #: Number of values below which an array is sooner copied than shared.
@@ -68,7 +70,7 @@ def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None
         point_data(mesh).AddArray(own)
     elif array.dtype == np.bool_:
         # Without the search for active scalars that assignment adds.
-        mesh.point_data.set_array(cast("Any", array), name)
+        mesh.point_data.set_array(cast("Foreign", array), name)
     else:
         mesh.point_data[name] = array
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -13,8 +13,6 @@ from vizlight.reading.polylines import has_lines_only, line_tangents
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    from numpy.typing import NDArray
 
     from vizlight._types import Array, Indices
 
@@ -94,7 +92,7 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     return out
 
 
-def polydata(points: NDArray[np.floating[Any]], ends: Indices, /) -> pv.PolyData:
+def polydata(points: Array, ends: Indices, /) -> pv.PolyData:
     """Return a mesh of polylines.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign
 
 __all__ = ["SUFFIXES", "read"]
 
@@ -74,7 +74,7 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     return grid
 
 
-def _bands(file: Any) -> dict[str, NDArray[np.generic]]:
+def _bands(file: Foreign) -> dict[str, NDArray[np.generic]]:
     """Return the bands by name, each with the shape (rows, columns) or (rows, columns, 3)."""
     count = file.count
     found = {}
@@ -93,7 +93,7 @@ def _bands(file: Any) -> dict[str, NDArray[np.generic]]:
     return found
 
 
-def _band(file: Any, i: int) -> NDArray[np.generic]:
+def _band(file: Foreign, i: int) -> NDArray[np.generic]:
     """Return the values of a band in the file's unit, NaN where they are missing."""
     rows = file.read(i + 1, masked=True)
     scale, offset = file.scales[i], file.offsets[i]
@@ -107,7 +107,7 @@ def _band(file: Any, i: int) -> NDArray[np.generic]:
     return np.asarray(values)
 
 
-def _grid(file: Any) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[slice, slice]]:
+def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[slice, slice]]:
     """Return the grid of a raster, and the order of rows and columns along which x and y rise."""
     a, b, c, d, e, f = tuple(file.transform)[:6]
     if file.transform.is_identity:

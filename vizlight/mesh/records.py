@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vizlight._types import Keywords
     from vizlight.shading.results import Record
 
 
@@ -71,7 +72,7 @@ def write(
     field_data(mesh).AddArray(attached)
 
 
-def read(mesh: pv.DataSet, name: str) -> dict[str, Any] | None:
+def read(mesh: pv.DataSet, name: str) -> Keywords | None:
     """Return the record of an array, or None if the mesh has none that vizlight can have written.
 
     The record may come from a file of unknown origin: its form is checked, and nothing in it is
@@ -173,7 +174,7 @@ def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> No
     write(mesh, name, record, made(mesh, name))
 
 
-def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> dict[str, Any]:
+def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> Keywords:
     """Return the record of a point array: filter, scene, options, terms, precision, version.
 
     Parameters

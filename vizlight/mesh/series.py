@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -13,6 +13,11 @@ from vizlight import _check
 from vizlight.mesh import blocks, steps
 from vizlight.mesh.steps import TIME
 from vizlight.reading.arrays import vectors_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight._types import Foreign
 
 __all__ = ["Series"]
 
@@ -34,8 +39,8 @@ class Series:
     """
 
     def __init__(self, source: object, times: object = None) -> None:
-        self._meshes: Sequence[Any] | None = None
-        self._reader: Any = None
+        self._meshes: Sequence[Foreign] | None = None
+        self._reader: Foreign = None
         if isinstance(source, str | Path):
             path = _check.path("series", source)
             try:
@@ -98,7 +103,7 @@ class Series:
             raise ValueError(_check.message(name, expected, got, remedy))
         return mesh
 
-    def vectors(self, step: int, array: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    def vectors(self, step: int, array: str) -> NDArray[np.float64]:
         """Return the vectors of a step, zero where they are not finite.
 
         Raises
@@ -119,7 +124,7 @@ class Series:
         return f"series[{step}] (time {self.times[step]:g})"
 
 
-def _own_times(meshes: Sequence[Any]) -> list[float]:
+def _own_times(meshes: Sequence[Foreign]) -> list[float]:
     missing = [i for i, mesh in enumerate(meshes) if TIME not in getattr(mesh, "field_data", {})]
     if missing:
         expected = f"times=, or meshes with the field array {TIME!r}"

@@ -9,7 +9,7 @@ are not right enough yet.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from vtkmodules.vtkCommonCore import mutable
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from embreex.rtcore_scene import EmbreeScene
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Foreign, Indices
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6
@@ -134,7 +134,7 @@ class _Locator:
     def first(self, start: Array, way: Array) -> Indices:
         t, part, cell = mutable(0.0), mutable(0), mutable(0)
         place, weights = [0.0] * 3, [0.0] * 3
-        find: Any = self._tree.IntersectWithLine
+        find: Foreign = self._tree.IntersectWithLine
         found = np.full(len(start), -1)
         ends = start + 2 * way
         for row, (a, b) in enumerate(zip(start.tolist(), ends.tolist(), strict=True)):

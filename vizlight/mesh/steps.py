@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -15,6 +15,8 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+
+    from vizlight._types import Foreign
 
 __all__ = [
     "STEPS",
@@ -91,7 +93,7 @@ def listed(times: Sequence[float]) -> str:
     return ", ".join(words)
 
 
-def marked(mesh: Any, times: Sequence[float], index: int) -> Any:
+def marked(mesh: Foreign, times: Sequence[float], index: int) -> Foreign:
     """Attach the time of a step, and the times of all steps of the file.
 
     Parameters
@@ -131,7 +133,7 @@ def note(mesh: pv.DataSet) -> str:
     return f"{last}; --time takes another, --times all of them one by one"
 
 
-def reader_of(path: Path) -> Any:
+def reader_of(path: Path) -> Foreign:
     """Return PyVista's reader of a file, None where meshio or another package reads it.
 
     Parameters
@@ -146,7 +148,7 @@ def reader_of(path: Path) -> Any:
         decomposed.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
         return _OfVtk(decomposed, path)
     try:
-        reader: Any = pv.get_reader(path)  # type: ignore[no-untyped-call]
+        reader: Foreign = pv.get_reader(path)  # type: ignore[no-untyped-call]
     except ValueError:
         return None
     except TypeError:
@@ -158,17 +160,17 @@ def reader_of(path: Path) -> Any:
 class _OfVtk:
     """Reader of VTK that has not PyVista's wrapper."""
 
-    def __init__(self, reader: Any, path: Path) -> None:
+    def __init__(self, reader: Foreign, path: Path) -> None:
         self.reader = reader
         self.reader.SetFileName(str(path))
 
-    def read(self) -> Any:
+    def read(self) -> Foreign:
         """Return the blocks of the step that was asked for."""
         self.reader.Update()
         return pv.wrap(self.reader.GetOutputDataObject(0))
 
 
-def times_of(reader: Any) -> list[float]:
+def times_of(reader: Foreign) -> list[float]:
     """Return the times of the steps of a reader, none where its file has no time.
 
     Parameters
@@ -178,7 +180,7 @@ def times_of(reader: Any) -> list[float]:
     """
     if hasattr(reader, "time_values"):
         return [float(time) for time in reader.time_values]
-    inner: Any = getattr(reader, "reader", None)
+    inner: Foreign = getattr(reader, "reader", None)
     if not hasattr(inner, "GetOutputInformation"):
         return []
     inner.UpdateInformation()
@@ -186,7 +188,7 @@ def times_of(reader: Any) -> list[float]:
     return [float(time) for time in times or ()]
 
 
-def at(reader: Any, time: float) -> Any:
+def at(reader: Foreign, time: float) -> Foreign:
     """Return the mesh of a reader at a time.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -12,7 +12,7 @@ from vizlight.model import kernels
 from vizlight.reading.cells import faces_only
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign
     from vizlight.scene import View
     from vizlight.shading.options import FeatureAngle
 
@@ -52,7 +52,7 @@ def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
     """Return the closest points on a mesh of triangles, and its interpolated normals there."""
     if not len(points):
         return np.empty((0, 3)), np.empty((0, 3))
-    nearest: Any = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+    nearest: Foreign = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
     corners = surface.regular_faces[np.atleast_1d(nearest[0])]
     places: Array = np.atleast_2d(nearest[1])
     a, b, c = (np.asarray(surface.points, dtype=np.float64)[corners[:, i]] for i in range(3))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -21,7 +21,7 @@ from vizlight.model import kernels, line_fields
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign
 
 #: Name of the array that is traced, or of the two of a cross field.
 Vectors = str | tuple[str, str]
@@ -80,7 +80,7 @@ def in_space(
     tracer.SetComputeVorticity(False)
     tracer.AddObserver(vtkCommand.ProgressEvent, lambda *_: report(int(100 * tracer.GetProgress())))
     tracer.Update()
-    lines: Any = pv.wrap(tracer.GetOutput())
+    lines: Foreign = pv.wrap(tracer.GetOutput())
     return polylines.joined_at_seeds(polylines.before_turning_back(lines))
 
 
@@ -129,7 +129,7 @@ class CellTracer:
         On two sheets there are two for each point, one after the other.
         """
         if isinstance(self.mesh, pv.PolyData):
-            found: Any = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+            found: Foreign = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
             cell, points = np.atleast_1d(found[0]), np.atleast_2d(found[1])
         else:
             cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]

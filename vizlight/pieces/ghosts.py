@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -14,7 +14,7 @@ from vizlight.reading.edges import place_numbers
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Foreign, Indices
 
 #: Name of the cell array that is 1 on the cells of other pieces.
 GHOST = "vizlight_ghost"
@@ -35,7 +35,7 @@ def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
     if isinstance(mesh, pv.PolyData):
         if not which.any():
             return pv.PolyData()
-        rest: Any = np.flatnonzero(~which)
+        rest: Foreign = np.flatnonzero(~which)
         found: pv.PolyData = mesh.remove_cells(rest)
         for data, name in (
             (found.point_data, "vtkOriginalPointIds"),
@@ -44,7 +44,7 @@ def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
             if name in data and name not in (*mesh.point_data, *mesh.cell_data):
                 del data[name]
         return found
-    ids: Any = np.flatnonzero(which)
+    ids: Foreign = np.flatnonzero(which)
     part: pv.DataSet = mesh.extract_cells(ids, pass_point_ids=False, pass_cell_ids=False)
     return part
 
@@ -109,7 +109,7 @@ class _Places:
         return found
 
 
-def _cell_arrays(mesh: Any) -> list[Any]:
+def _cell_arrays(mesh: Foreign) -> list[Foreign]:
     """Return the arrays of cells of a mesh, whose entries are indices of points."""
     if isinstance(mesh, pv.PolyData):
         return [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
@@ -117,7 +117,7 @@ def _cell_arrays(mesh: Any) -> list[Any]:
     return [mesh.GetCells(), *([faces] if faces is not None else [])]
 
 
-def _touched(mesh: pv.DataSet, touching: Any) -> Any:
+def _touched(mesh: pv.DataSet, touching: Foreign) -> Foreign:
     """Return a mask of the cells that have one of some points."""
     masks = []
     for cells in _cell_arrays(mesh)[: 4 if isinstance(mesh, pv.PolyData) else 1]:
@@ -131,7 +131,7 @@ def _touched(mesh: pv.DataSet, touching: Any) -> Any:
 def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     """Return a mesh and layers around it that share the points at the same places."""
     kind = vtkAppendPolyData if isinstance(mesh, pv.PolyData) else vtkAppendFilter
-    together: Any = kind()
+    together: Foreign = kind()
     for part in (mesh, *layers):
         together.AddInputData(part)
     together.Update()

@@ -8,7 +8,7 @@ import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, VectorLike
+    from vizlight._types import Array, Foreign, VectorLike
 
     Extent = tuple[int, ...]
 
@@ -150,7 +150,7 @@ class GridPiece(Piece):
     extent: Extent
     whole: Extent
 
-    def nodes(self, extent: Extent) -> Any:
+    def nodes(self, extent: Extent) -> Foreign:
         """Return a box of nodes."""
         raise NotImplementedError
 
@@ -168,13 +168,13 @@ class GridPiece(Piece):
         mesh.cell_data[GHOST] = outside.ravel()
         return mesh  # type: ignore[no-any-return]
 
-    def own(self, mesh: Any) -> pv.DataSet:
+    def own(self, mesh: Foreign) -> pv.DataSet:
         """See :class:`Piece`."""
         if not hasattr(mesh, "GetExtent"):
             return own_cells(mesh)
         if tuple(mesh.GetExtent()) != self.extent:
             kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
-            cutter: Any = kinds.get(type(mesh), vtkExtractGrid)()
+            cutter: Foreign = kinds.get(type(mesh), vtkExtractGrid)()
             cutter.SetInputDataObject(mesh)
             cutter.SetVOI(self.extent)
             cutter.Update()
@@ -198,7 +198,7 @@ class BoxPiece(GridPiece):
 
     path: Path
 
-    def nodes(self, extent: Extent) -> Any:
+    def nodes(self, extent: Extent) -> Foreign:
         """See :class:`GridPiece`."""
         reader = structured(self.path)
         reader.UpdateExtent(extent)
@@ -292,16 +292,16 @@ class _Mapped:
     """A memory-mapped array by the place of its data in a file; other arrays are kept."""
 
     shape: tuple[int, ...]
-    dtype: Any
-    kept: Any = None
+    dtype: Foreign
+    kept: Foreign = None
     path: str = ""
     offset: int = 0
 
     @classmethod
-    def of(cls, array: Any) -> _Mapped:
+    def of(cls, array: Foreign) -> _Mapped:
         shape = tuple(int(size) for size in array.shape)
         if isinstance(array, np.memmap) and array.filename and array.flags.c_contiguous:
-            base: Any = array
+            base: Foreign = array
             while isinstance(base.base, np.memmap):
                 base = base.base
             # A view begins later in the file than the array that it is a view of.
@@ -309,7 +309,7 @@ class _Mapped:
             return cls(shape, array.dtype, None, str(array.filename), base.offset + first)
         return cls(shape, array.dtype, array)
 
-    def box(self, low: int, high: int, first: int, last: int) -> Any:
+    def box(self, low: int, high: int, first: int, last: int) -> Foreign:
         """Return rows from ``first`` up to ``last`` of the slices from ``low`` up to ``high``."""
         if self.kept is None:
             each = math.prod(self.shape[1:]) * np.dtype(self.dtype).itemsize
@@ -377,7 +377,7 @@ def index_files(path: Path) -> list[Path]:
     return found
 
 
-def structured(path: Path) -> Any:
+def structured(path: Path) -> Foreign:
     """Return a reader of a structured grid that knows the grid's extent.
 
     A thread keeps the last one: to find what a file holds a reader may have to go through all of
@@ -392,14 +392,14 @@ def structured(path: Path) -> Any:
     return _LAST.reader
 
 
-def hdf(path: Path) -> Any:
+def hdf(path: Path) -> Foreign:
     """Return a reader of a VTKHDF file that knows what is in it."""
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
     return _informed(vtkHDFReader(), path)
 
 
-def _informed(reader: Any, path: Path) -> Any:
+def _informed(reader: Foreign, path: Path) -> Foreign:
     """Return a reader that has read what a file holds, but no data."""
     reader.SetFileName(str(path))
     with files.captured_errors() as errors:

@@ -11,7 +11,7 @@ import shutil
 import uuid
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vizlight import _check, _compiled, _pool, files
 from vizlight.mesh import normals
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Done, Job
     from vizlight.pieces.workers import Map
@@ -91,7 +92,7 @@ def light(
     retries: int = RETRIES,
     slab: float = 64.0,
     progress_bar: bool = False,
-    **options: Any,
+    **options: Given,
 ) -> Lit:
     """Light data in pieces, each read, lit and written by itself, as the whole would be lit.
 
@@ -230,14 +231,14 @@ def light(
 
 
 def _common_options(
-    filter_name: str, options: dict[str, Any], contour: str | None, ghost: int
-) -> dict[str, Any]:
+    filter_name: str, options: Keywords, contour: str | None, ghost: int
+) -> Keywords:
     """Return the options of a filter that give a piece no opinion of its own."""
     _check.choice("filter", filter_name, tuple(task.FILTERS))
     for name, remedy in WHOLE.items():
         if options.get(name):
             raise ValueError(_check.message(name, "no such option for pieces", "one", remedy))
-    function: Any = task.FILTERS[filter_name]
+    function: Foreign = task.FILTERS[filter_name]
     known = [*inspect.signature(function).parameters]
     for name in options:
         if name not in known or name in ("inplace", "progress_bar"):

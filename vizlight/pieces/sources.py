@@ -7,7 +7,7 @@ import itertools
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
@@ -29,6 +29,7 @@ from vizlight.pieces.kinds import (
 )  # fmt: skip
 
 if TYPE_CHECKING:
+    from vizlight._types import Foreign
     from vizlight.pieces.kinds import Extent
 
 
@@ -120,7 +121,7 @@ def _boxes(path: Path, slab: float) -> list[Piece]:
     reader = structured(path)
     pipeline = vtkStreamingDemandDrivenPipeline
     info = reader.GetOutputInformation(0)
-    whole: Any = info.Get(pipeline.WHOLE_EXTENT()) if info.Has(pipeline.WHOLE_EXTENT()) else ()
+    whole: Foreign = info.Get(pipeline.WHOLE_EXTENT()) if info.Has(pipeline.WHOLE_EXTENT()) else ()
     if len(whole) != 6 or any(whole[2 * i + 1] < whole[2 * i] for i in range(3)):
         raise PieceError(_check.message("sources", "a grid with nodes", f"'{path}'"))
     nodes = math.prod(whole[2 * i + 1] - whole[2 * i] + 1 for i in range(3))
@@ -131,7 +132,7 @@ def _boxes(path: Path, slab: float) -> list[Piece]:
     ]
 
 
-def _uncompressed(path: Path, reader: Any, nodes: int) -> float:
+def _uncompressed(path: Path, reader: Foreign, nodes: int) -> float:
     """Return the memory in bytes that the arrays of a grid take."""
     # A corner of the grid tells the types of the arrays and their components.
     info = reader.GetOutputInformation(0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -20,6 +20,7 @@ from vizlight.scene import Scene
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.pieces.kinds import Piece
     from vizlight.pieces.task import Job, Survey
     from vizlight.pieces.workers import Map
@@ -62,7 +63,7 @@ def camera_on(
         As for :func:`light`.
     """
     job = job_of(contour, level)
-    options: dict[str, Any] = {"up": up, "parallel": parallel, "zoom": zoom, "aspect": aspect}
+    options: Keywords = {"up": up, "parallel": parallel, "zoom": zoom, "aspect": aspect}
     cameras.camera_on((0, 1) * 3, direction, **options)  # checks them before anything is read
     parts = pieces_of(sources, _check.positive("slab", slab))
     work = Work(checked(map), RETRIES, progress_bar)
@@ -77,11 +78,11 @@ def camera_on(
     return cameras.camera_on(pv.PolyData(points), direction, **options)
 
 
-def job_of(contour: object, level: object, **more: Any) -> Job:
+def job_of(contour: object, level: object, **more: Given) -> Job:
     """Return a job of an isosurface, or of whole pieces."""
     if level is not None and contour is None:
         raise ValueError(_check.message("level", "contour= beside it", level))
-    facts: dict[str, Any] = {"scene": Scene(), "filter": "illuminate", "options": {}}
+    facts: Keywords = {"scene": Scene(), "filter": "illuminate", "options": {}}
     return task.Job(
         contour=contour if contour is None else _name("contour", contour),
         level=None if level is None else _check.number("level", level),
@@ -162,9 +163,7 @@ def _middle(found: Sequence[Survey], job: Job) -> float:
     return (low + high) / 2
 
 
-def check_alike(
-    piece: Piece, found: dict[str, Any], first: Piece, expected: dict[str, Any]
-) -> None:
+def check_alike(piece: Piece, found: Keywords, first: Piece, expected: Keywords) -> None:
     """Check that a piece has the arrays of the first, and that both are boxes of one grid."""
     for name in expected | found:
         here, there = found.get(name), expected.get(name)
@@ -176,7 +175,7 @@ def check_alike(
             raise PieceError(f"piece {piece.name}: {text}")
 
 
-def _neighbours(parts: list[Piece], boxes: Any, ghost: int) -> list[Piece]:
+def _neighbours(parts: list[Piece], boxes: Foreign, ghost: int) -> list[Piece]:
     """Return the pieces; pieces of files come with the pieces whose boxes touch theirs."""
     if not ghost:
         return parts

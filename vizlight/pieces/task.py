@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Foreign, Given
     from vizlight.reading.normals import Told
     from vizlight.scene import Scene
 
@@ -48,7 +48,7 @@ class Job:
 
     scene: Scene
     filter: str
-    options: Mapping[str, Any]
+    options: Mapping[str, Given]
     contour: str | None
     level: float | None
     ghost: int
@@ -98,7 +98,7 @@ class Done:
     extent: list[int] = field(default_factory=list)
     grid: dict[str, list[float]] = field(default_factory=dict)
     ranges: dict[str, list[float]] = field(default_factory=dict)
-    arrays: dict[str, list[Any]] = field(default_factory=dict)
+    arrays: dict[str, list[Foreign]] = field(default_factory=dict)
     invalid: int = 0
     sharp: float | None = None
     notes: list[str] = field(default_factory=list)
@@ -131,7 +131,7 @@ def survey(piece: Piece, contour: str | None) -> Survey:
     return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values, has_lines_only(mesh))
 
 
-def outermost(piece: Piece, job: Job, *view: Any) -> Array:
+def outermost(piece: Piece, job: Job, *view: Foreign) -> Array:
     """Return the points of a piece, or of its isosurface, on which a camera depends."""
     if job.contour is None:
         found = _tried(piece, piece.places)
@@ -227,11 +227,13 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Don
     return done
 
 
-def _lit(mesh: pv.DataSet, piece: Piece, job: Job, told: Told | None) -> tuple[Any, float | None]:
+def _lit(
+    mesh: pv.DataSet, piece: Piece, job: Job, told: Told | None
+) -> tuple[Foreign, float | None]:
     """Return the own part of a piece, lit, and its share of sharp edges where that is known."""
     if not mesh.n_points:
         return mesh, None
-    lit: Any
+    lit: Foreign
     if job.filter == "illuminate":
         if told is not None and isinstance(mesh, pv.UnstructuredGrid) and hull.dimension(mesh) == 3:
             told = told._replace(side=sides.side_of(_others(mesh)))
@@ -280,7 +282,7 @@ def isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
     return found
 
 
-def _described(lit: Any, job: Job) -> Done:
+def _described(lit: Foreign, job: Job) -> Done:
     """Return what is in a lit piece."""
     inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
     done = Done(points=lit.n_points, cells=lit.n_cells)

@@ -10,7 +10,7 @@ import sys
 from concurrent.futures import CancelledError, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from vizlight import _check, _progress, _supervise
 from vizlight.pieces.kinds import PieceError
@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from concurrent.futures import Future
 
+    from vizlight._types import Foreign
+
     #: ``map``, the ``map`` of an executor, an executor, or a client of Dask.
-    Map = Any
+    Map = Foreign
 
 T = TypeVar("T")
 
@@ -44,7 +46,7 @@ class Call(Generic[T]):
     function: Callable[..., T]
     retries: int
 
-    def __call__(self, arguments: tuple[Any, ...]) -> T:
+    def __call__(self, arguments: tuple[Foreign, ...]) -> T:
         """Call the function with a tuple of arguments."""
         for _ in range(self.retries):
             try:
@@ -77,11 +79,11 @@ class Work:
     show: bool
 
     def each(
-        self, function: Callable[..., T], calls: Sequence[tuple[Any, ...]], what: str
+        self, function: Callable[..., T], calls: Sequence[tuple[Foreign, ...]], what: str
     ) -> list[T]:
         """Return the results of calls in their order; the error of a worker names its piece."""
         found: list[T] = []
-        results: Iterator[Any] = iter(())
+        results: Iterator[Foreign] = iter(())
         with _progress.progress(what, len(calls), show=self.show) as report:
             try:
                 for number, arguments in enumerate(calls):
@@ -97,12 +99,12 @@ class Work:
                         self.map.cancel([*results], force=True)
         return found
 
-    def _started(self, call: Call[T], calls: Sequence[tuple[Any, ...]]) -> Iterable[Any]:
+    def _started(self, call: Call[T], calls: Sequence[tuple[Foreign, ...]]) -> Iterable[Foreign]:
         """Return the results of calls, or their futures."""
         # Dask takes calls of the same arguments for one.
         more = {"pure": False} if hasattr(self.map, "gather") else {}
-        start: Any = getattr(self.map, "map", self.map)
-        made: Iterable[Any] = start(call, calls, **more)
+        start: Foreign = getattr(self.map, "map", self.map)
+        made: Iterable[Foreign] = start(call, calls, **more)
         return made
 
 
@@ -166,7 +168,7 @@ class Processes:
         self.count = _check.integer("count", count, low=1)
         self._pool: ProcessPoolExecutor | None = None
 
-    def __call__(self, function: Callable[[Any], T], calls: Iterable[Any]) -> Iterator[T]:
+    def __call__(self, function: Callable[[Foreign], T], calls: Iterable[Foreign]) -> Iterator[T]:
         """Yield the results of calls in their order.
 
         Parameters
@@ -194,7 +196,9 @@ class Processes:
                 for future in futures:
                     future.cancel()
 
-    def _submitted(self, function: Callable[[Any], T], calls: Iterable[Any]) -> list[Future[T]]:
+    def _submitted(
+        self, function: Callable[[Foreign], T], calls: Iterable[Foreign]
+    ) -> list[Future[T]]:
         if self._pool is None:
             self._pool = ProcessPoolExecutor(
                 self.count, multiprocessing.get_context("spawn"), _begin, (os.getpid(),)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid
@@ -15,10 +15,9 @@ from vizlight.reading.cells import as_numpy, as_vtk, places
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-    from vizlight._types import Array, Dataset, Indices
+    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices
     from vizlight.shading.inputs import ArraySource
 
 
@@ -63,7 +62,7 @@ def points_of(mesh: Dataset, positions: str | None) -> ArraySource:
     return places(mesh)
 
 
-def named(data: vtkDataSetAttributes, name: str) -> NDArray[Any] | None:
+def named(data: vtkDataSetAttributes, name: str) -> AnyArray | None:
     """Return an array of the points or the cells of a dataset, None if there is none."""
     array = data.GetAbstractArray(name)
     return None if array is None else as_numpy(array)
@@ -168,7 +167,7 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
     assert of_cells is not None
     rows = _real_rows(argument, of_cells, f"{value!r} with ")
     k = _checked_tangents(argument, value, rows, n).shape[1] // n
-    only: Any = mesh.NewInstance()
+    only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
     outer = line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n)
     only.GetCellData().AddArray(as_vtk(outer, value))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from vtkmodules.util import numpy_support
@@ -32,26 +32,26 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkAbstractArray
     from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
-    from vizlight._types import Bools, Indices
+    from vizlight._types import AnyArray, Bools, Foreign, Indices
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
-point_data: Callable[[Any], vtkPointData] = vtkDataSet.GetPointData
-cell_data: Callable[[Any], vtkCellData] = vtkDataSet.GetCellData
-field_data: Callable[[Any], vtkFieldData] = vtkDataObject.GetFieldData
-grid_cells: Callable[[Any], vtkCellArray] = vtkUnstructuredGrid.GetCells
-point_count: Callable[[Any], int] = vtkPointSet.GetNumberOfPoints
-vtk_points: Callable[[Any], vtkPoints] = vtkPointSet.GetPoints
+point_data: Callable[[Foreign], vtkPointData] = vtkDataSet.GetPointData
+cell_data: Callable[[Foreign], vtkCellData] = vtkDataSet.GetCellData
+field_data: Callable[[Foreign], vtkFieldData] = vtkDataObject.GetFieldData
+grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
+point_count: Callable[[Foreign], int] = vtkPointSet.GetNumberOfPoints
+vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
-_SUPPORT: Any = numpy_support
+_SUPPORT: Foreign = numpy_support
 
 
-def as_numpy(array: vtkAbstractArray) -> NDArray[Any]:
+def as_numpy(array: vtkAbstractArray) -> AnyArray:
     """Return the values of an array of VTK, without a copy where its memory has their order."""
     if isinstance(array, vtkStringArray):
         return np.array([array.GetValue(i) for i in range(array.GetNumberOfValues())], dtype=str)
-    own: Any = array
+    own: Foreign = array
     if not isinstance(array, vtkDataArray):
         return np.empty((array.GetNumberOfTuples(), array.GetNumberOfComponents()), dtype=object)
     if array.IsA("vtkBitArray"):
@@ -60,27 +60,27 @@ def as_numpy(array: vtkAbstractArray) -> NDArray[Any]:
     elif not array.HasStandardMemoryLayout():
         own = vtkDataArray.CreateDataArray(array.GetDataType())
         own.DeepCopy(array)
-    found: NDArray[Any] = _SUPPORT.vtk_to_numpy(own)
+    found: AnyArray = _SUPPORT.vtk_to_numpy(own)
     return found
 
 
-def as_vtk(rows: NDArray[Any], name: str = "") -> vtkDataArray:
+def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:
     """Return an array of VTK with a copy of some values."""
     own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
     kind = own.dtype.newbyteorder("=")
     # Twice as fast as VTK's own way, which counts where there are many small meshes.
-    array: Any = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
+    array: Foreign = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
     array.SetName(name)
     array.SetNumberOfComponents(1 if own.ndim == 1 else own.shape[1])
     array.SetNumberOfTuples(len(own))
     if own.size:
-        values: NDArray[Any] = np.frombuffer(array, dtype=kind)
+        values: AnyArray = np.frombuffer(array, dtype=kind)
         values.reshape(own.shape)[...] = own
     made: vtkDataArray = array
     return made
 
 
-def places(mesh: Any) -> NDArray[Any]:
+def places(mesh: Foreign) -> AnyArray:
     """Return the points that a dataset stores."""
     points = mesh.GetPoints()
     return np.zeros((0, 3), np.float32) if points is None else as_numpy(points.GetData())
@@ -129,7 +129,7 @@ def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
     VTK would take such a corner, as of a hole in a terrain, into the normals of its neighbours.
     With ``own``, a mask of points, only the polygons that have one of them are left.
     """
-    known = np.isfinite(places(surface)).all(axis=1)
+    known: Bools = np.all(np.isfinite(places(surface)), axis=1)
     polys = surface.GetPolys()
     if (known.all() and own is None) or not polys.GetNumberOfCells():
         return surface
@@ -184,7 +184,7 @@ class Around(NamedTuple):
 
 
 def around(
-    points: NDArray[Any], ids: Indices, ends: Indices, size: int
+    points: AnyArray, ids: Indices, ends: Indices, size: int
 ) -> Iterator[tuple[slice, Around]]:
     """Yield ranges of ``size`` points with the faces around them, where there are any.
 
@@ -203,7 +203,7 @@ def around(
             yield block, _faces(points, ids, ends, face[np.diff(face, prepend=-1) > 0])
 
 
-def _faces(points: NDArray[Any], ids: Indices, ends: Indices, face: Indices) -> Around:
+def _faces(points: AnyArray, ids: Indices, ends: Indices, face: Indices) -> Around:
     """Return some faces and their points."""
     size = ends[face + 1] - ends[face]
     starts = np.concatenate([[0], np.cumsum(size)])
@@ -319,7 +319,7 @@ _QUAD = 4
 
 
 #: Number of each kind of cells of a vtkPolyData, and those cells.
-POLYDATA: tuple[tuple[Callable[[Any], int], Callable[[Any], vtkCellArray]], ...] = (
+POLYDATA: tuple[tuple[Callable[[Foreign], int], Callable[[Foreign], vtkCellArray]], ...] = (
     (vtkPolyData.GetNumberOfVerts, vtkPolyData.GetVerts),
     (vtkPolyData.GetNumberOfLines, vtkPolyData.GetLines),
     (vtkPolyData.GetNumberOfPolys, vtkPolyData.GetPolys),

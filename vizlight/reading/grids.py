@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Bools, Dataset, Indices
+    from vizlight._types import Bools, Dataset, Foreign, Indices
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -91,9 +91,9 @@ def parts(mesh: Grid) -> Iterator[Part]:
         yield Part(surface, np.ravel_multi_index(index, size, order="F"), side)
 
 
-def _layers(mesh: Grid, axis: int, low: int, high: int) -> Any:
+def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
     """Return some layers of a grid across an axis as a grid."""
-    found: Any = mesh.NewInstance()
+    found: Foreign = mesh.NewInstance()
     extent = list(mesh.GetExtent())
     extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
     own = slice(low, high)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -13,7 +13,7 @@ from vizlight.reading.arrays import points_of
 from vizlight.reading.cells import as_numpy, as_vtk, places
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Dataset, Indices
+    from vizlight._types import Array, Dataset, Foreign, Indices
 
 #: Name of a temporary point array, chosen not to clash with a user's array.
 NUMBERS = "vizlight numbers"
@@ -68,7 +68,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         return surface, ids.astype(np.intp, copy=False)
     # VTK's ids of the nodes of curved cells are those within the cell, so the points of the mesh
     # are numbered here.
-    numbered: Any = mesh.NewInstance()
+    numbered: Foreign = mesh.NewInstance()
     numbered.ShallowCopy(mesh)
     numbers = np.arange(mesh.GetNumberOfPoints(), dtype=np.float64)
     numbered.GetPointData().AddArray(as_vtk(numbers, NUMBERS))

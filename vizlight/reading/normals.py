@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Indices
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices
     from vizlight.reading.grids import Grid
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
@@ -245,7 +245,7 @@ def sided_normals(
     n: int,
     facing: Facing,
     *,
-    kept: Callable[[Any], Sided | None] | None = None,
+    kept: Callable[[Foreign], Sided | None] | None = None,
     starts: Indices | None = None,
     told: Told | None = None,
 ) -> Sided:

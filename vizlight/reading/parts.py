@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from vizlight.shading.inputs import ShadingInputs, Sides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Dataset, Indices
+    from vizlight._types import Array, Dataset, Foreign, Indices
     from vizlight.scene import Scene, View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing, LightOptions
@@ -35,8 +35,8 @@ class Part(NamedTuple):
 class Kept(NamedTuple):
     """Functions of a mesh that return what an earlier result kept of it, or None."""
 
-    normals: Callable[[Any], Sided | None]
-    tangents: Callable[[Any], Array | None]
+    normals: Callable[[Foreign], Sided | None]
+    tangents: Callable[[Foreign], Array | None]
 
 
 def uses_normals(mesh: Dataset, options: LightOptions) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from typing_extensions import Unpack
 
-    from vizlight._types import Color, ColorLike, VectorLike
+    from vizlight._types import Color, ColorLike, Keywords, VectorLike
 
 __all__ = ["Scene"]
 
@@ -295,7 +295,7 @@ def _fields(
     name: str,
     values: object,
     kind: type[Scene] | type[Light] | type[Material] | type[View] | type[DepthCue],
-) -> dict[str, Any]:
+) -> Keywords:
     """Return the keyword arguments of a class, which validates their values, from a dict."""
     known = [field.name for field in dataclasses.fields(kind)]
     expected = f"a dict of {', '.join(known)}"

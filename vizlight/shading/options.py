@@ -8,7 +8,7 @@ import functools
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
     from typing_extensions import Self
+
+    from vizlight._types import Given, Keywords
 
     P = ParamSpec("P")
     R = TypeVar("R")
@@ -119,12 +121,12 @@ class Options:
     DECIDED: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
-    def of(cls, given: Mapping[str, Any]) -> Self:
+    def of(cls, given: Mapping[str, Given]) -> Self:
         """Return the options among the values of a function's parameters, ``locals()``."""
         fields = dataclasses.fields(cls)  # type: ignore[arg-type]
         return cls(**{field.name: given[field.name] for field in fields if field.name in given})
 
-    def changed(self) -> dict[str, Any]:
+    def changed(self) -> Keywords:
         """Return the options that differ from their defaults."""
         found = {}
         for field in dataclasses.fields(self):  # type: ignore[arg-type]

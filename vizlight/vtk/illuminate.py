@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -25,6 +25,7 @@ from vizlight.shading.results import arrays_of, digest, of_light, record_key, un
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from vizlight._types import Foreign, Keywords
     from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 __all__ = ["Illuminate"]
@@ -49,7 +50,7 @@ class _Option:
         setattr(owner, f"Get{words}", lambda own: getattr(own, name))
         setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
 
-    def __get__(self, own: Illuminate | None, owner: type) -> Any:
+    def __get__(self, own: Illuminate | None, owner: type) -> Foreign:
         return self if own is None else getattr(own.options, self.name)
 
     def __set__(self, own: Illuminate, value: object) -> None:
@@ -57,7 +58,7 @@ class _Option:
             _check.text(self.name, value, expected="the name of a point array")
         if self.name == "name":
             _check.array_name("name", value)
-        changes: dict[str, Any] = {self.name: value}
+        changes: Keywords = {self.name: value}
         own._change("_options", dataclasses.replace(own.options, **changes))
 
 
@@ -197,7 +198,7 @@ class Illuminate(VTKPythonAlgorithmBase):
             setattr(self, name, value)
             self.Modified()
 
-    def RequestDataObject(self, _request: Any, given: Any, out: Any) -> int:
+    def RequestDataObject(self, _request: Foreign, given: Foreign, out: Foreign) -> int:
         """Make an output of the type of the input."""
         data: vtkDataSet | None = vtkDataSet.GetData(given[0])
         made: vtkDataSet | None = vtkDataSet.GetData(out)
@@ -213,7 +214,7 @@ class Illuminate(VTKPythonAlgorithmBase):
             information.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance())
         return 1
 
-    def RequestData(self, _request: Any, given: Any, out: Any) -> int:
+    def RequestData(self, _request: Foreign, given: Foreign, out: Foreign) -> int:
         """Light the input."""
         data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
         asked = out.GetInformationObject(0)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from vizlight.model import kernels
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices, VectorLike
+    from vizlight._types import Array, Foreign, Indices, VectorLike
     from vizlight.geometry.contours.refinement import Luminance
     from vizlight.geometry.contours.spacing import Levels, Steps
 
@@ -46,7 +46,7 @@ def truncus(
     segments: int | None = None,
     form: Form = "bands",
     method: Method | None = None,
-) -> Any:
+) -> Foreign:
     """Return the isoluminance contours of a frustum: rulings of its side, and its two ends.
 
     Parameters

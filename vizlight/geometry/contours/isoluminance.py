@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from vizlight.geometry.contours.frustum import truncus
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, VectorLike
+    from vizlight._types import Array, Foreign, VectorLike
     from vizlight.geometry.contours.spacing import Levels, Steps
 
 __all__ = ["Bands", "Laminae", "sphere", "truncus", "virtual_light"]
@@ -38,7 +38,7 @@ def sphere(
     levels: Levels = 16,
     segments: int | None = None,
     form: Form = "bands",
-) -> Any:
+) -> Foreign:
     """Return the isoluminance contours of a sphere: circles of latitude about the light.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Indices
+    from vizlight._types import Foreign, Indices
 
 
 #: Corners of a segment, a quadrilateral and a hexahedron, in VTK's order.
@@ -35,7 +35,7 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
         If the value is not one integer or k of them, or one is less than 3 in a closed direction
         or less than 2 in an open one.
     """
-    given: Any = value
+    given: Foreign = value
     several = isinstance(given, list | tuple) or np.ndim(given) == 1
     if several and len(given) != k:
         raise ValueError(_check.message("resolution", f"1 or {k} integers", len(given)))

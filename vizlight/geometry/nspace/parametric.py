@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from vizlight.model.frames import orthonormalize
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices, Numbers
+    from vizlight._types import AnyArray, Array, Indices, Numbers
 
     Function = Callable[..., Iterable[ArrayLike]]
     TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
@@ -308,7 +308,7 @@ def _exact(tangents: TangentFunction, u: Sequence[Array], n: int) -> Array:
 
 def _rows(
     function: Function, u: Sequence[Numbers], n: int, name: str = "function"
-) -> list[NDArray[Any]]:
+) -> list[AnyArray]:
     """Return n coordinates in the parameters' shape, each of its own type.
 
     They may be complex only where a parameter is.
@@ -328,9 +328,7 @@ def _rows(
     return rows
 
 
-def _values(
-    function: Function, u: Sequence[Numbers], n: int, name: str = "function"
-) -> NDArray[Any]:
+def _values(function: Function, u: Sequence[Numbers], n: int, name: str = "function") -> AnyArray:
     """Return n finite coordinates per point, (N, n), complex where a parameter is."""
     points = np.stack(_rows(function, u, n, name), axis=1).astype(np.result_type(np.float64, *u))
     finite = np.all(np.isfinite(points), axis=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
@@ -12,9 +12,9 @@ from vizlight.model import layout
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import AnyArray, Array, Indices
 
 __all__ = ["cut", "mean_frame", "slice_frame"]
 
@@ -42,7 +42,7 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
     return cases
 
 
-def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDArray[Any]]:
+def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, AnyArray]:
     """Return the zero set of a function that is linear on each simplex.
 
     Parameters
@@ -107,7 +107,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, NDA
     return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
 
 
-def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array[np.floating, Any], /) -> Array:
+def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
     """Return tangent frames at new points as weighted means of the tangent spaces at given points.
 
     A frame represents the space that it spans, and any basis of that space is equivalent:
