@@ -65,7 +65,8 @@ def test_nothing_listens_and_nothing_is_open_to_others(name, tmp_path):
         | {"XDG_CACHE_HOME": str(home / "cache"), "VIZLIGHT_FAST": "0"},
     )
     assert (seen.code, "Traceback" in seen.err) == (0, False), seen.err
-    assert seen.processes > ("in processes" in name) + 1
+    # The second process of ``paraview`` may end between two looks.
+    assert seen.processes > (name != "paraview") + ("in processes" in name)
     assert (seen.sockets, seen.files) == (set(), {})
     assert sorted({path.name for path in work.iterdir()} - given) == made
     assert [*temporary.iterdir()] == []
