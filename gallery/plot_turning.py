@@ -10,7 +10,6 @@ lightness with that slope is -1.00 all the way; of tubes in PyVista's light, whi
 4-space, it is -0.2 to -0.4. Colours of one lightness tell the tori apart.
 """
 
-from pathlib import Path
 from tempfile import mkdtemp
 
 import numpy as np
@@ -29,9 +28,10 @@ scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9
 
 plotter = pv.Plotter(off_screen=True, window_size=(360, 340))
 plotter.background_color = "#101a2a"
-plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.52)
+plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.45)
 plotter.enable_anti_aliasing("ssaa")
-plotter.open_gif(Path(mkdtemp()) / "turning.gif", fps=9)
+plotter.vizlight.add_key(scene, question="slope", size=0.2)
+plotter.open_gif(mkdtemp() + "/turning.gif", fps=9)
 for angle in np.linspace(0, np.pi, 24, endpoint=False):
     turned = {"rotation": ("xw", angle), "distance": 1.3, "light": "before"}
     lit = vizlight.project(fibres, scene=scene, **turned)
