@@ -244,3 +244,22 @@ def test_each_connected_piece_has_a_number():
     left = np.asarray(both.points)[:, 0] < 1.5
     assert len(np.unique(numbers[left])) == len(np.unique(numbers[~left])) == 1
     assert len(np.unique(numbers)) == 2
+
+
+def test_given_normals_of_a_surface_without_an_outer_side_face_the_eye(random):
+    """Boy's surface as PyVista makes it; a ball keeps its side, however its faces are wound."""
+    scene = Scene(lights=Light.headlight(), view=View(direction=(1, 1, 1)))
+    boy = pv.ParametricBoy()
+    assert boy.point_data.active_normals_name == "Normals"
+    lit = vizlight.illuminate(boy, scene)["luminance"]
+    bare = vizlight.illuminate(pv.PolyData(boy.points, boy.faces), scene)["luminance"]
+    assert np.mean(np.abs(lit - bare) < 0.1) > 0.95
+    assert np.mean(lit <= scene.material.ambient) < 0.01
+    ball = pv.Sphere()
+    expected = vizlight.illuminate(ball, scene)["luminance"]
+    faces = [face[:: random.choice([-1, 1])] for face in ball.regular_faces]
+    mixed = pv.PolyData.from_regular_faces(ball.points, faces)
+    mixed.point_data.active_normals = ball.point_normals
+    both = vizlight.illuminate(pv.MultiBlock([mixed, boy]), scene)
+    np.testing.assert_allclose(both[0]["luminance"], expected, atol=1e-6)
+    np.testing.assert_array_equal(both[1]["luminance"], lit)

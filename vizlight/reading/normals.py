@@ -281,7 +281,9 @@ def sided_normals(
     size = [len(given)] if starts is None else np.diff(starts)
     mesh_of = np.repeat(np.arange(owners.count), size)
     if told is None:
-        closed = is_closed(surface, owners)
+        closed, alike = is_closed(surface, owners)
+        if np.any(closed & ~alike):
+            closed &= ~_inside_out(surface, owners)
         inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
     else:
         inward = told.sign < 0
@@ -584,6 +586,14 @@ def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData
     if not _same_cells(surface, found):
         shape.rewind(found)
     return found
+
+
+def _inside_out(surface: vtkPolyData, owners: Owners) -> Bools:
+    """Return of each mesh whether it has a piece without an outer side, such as a Klein bottle."""
+    shape = Shape(surface, owners)
+    _wound(surface, shape, as_wound=False)
+    points = np.flatnonzero(shape.inside_out[shape.piece])
+    return owners.counts(points) > 0
 
 
 def piece_numbers(mesh: Dataset) -> Indices:

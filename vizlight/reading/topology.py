@@ -289,19 +289,23 @@ def coincident(points: NDArray[np.generic], owners: Owners) -> Indices | None:
     return same
 
 
-def is_closed(surface: vtkPolyData, owners: Owners) -> Bools:
-    """Return of each mesh whether each of its edges has an even number of faces.
+def is_closed(surface: vtkPolyData, owners: Owners) -> tuple[Bools, Bools]:
+    """Return of each mesh whether all its edges have an even number of faces, all wound alike.
 
-    Places make an edge. The numbers of the edges, made from the coordinates of their ends,
-    cancel by pairs.
+    Places make an edge. The numbers of the edges, made from the coordinates of their ends, cancel
+    by pairs, and with a sign where the two faces are wound alike.
     """
     rows, number = triangles(surface), place_numbers(places(surface))
-    odd = np.zeros(owners.count, np.uint64)
+    odd, sums = np.zeros((2, owners.count), np.uint64)
     for block in _pool.blocks(len(rows), BLOCK):
         a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
         edges = edge_numbers(a, b)
+        signed = np.where(a < b, edges, ~edges + np.uint64(1))
         if owners.of is None:
             odd ^= np.bitwise_xor.reduce(edges)
+            sums += np.add.reduce(signed)
         else:
-            np.bitwise_xor.at(odd, np.repeat(owners.of[rows[block][:, 0]], 3), edges)
-    return np.asarray(odd == 0)
+            own = np.repeat(owners.of[rows[block][:, 0]], 3)
+            np.bitwise_xor.at(odd, own, edges)
+            np.add.at(sums, own, signed)
+    return np.asarray(odd == 0), np.asarray(sums == 0)
