@@ -682,3 +682,18 @@ def test_a_bar_of_whole_data_has_no_such_name():
     (bar,) = plotter.scalar_bars.values()
     assert not bar.GetDrawNanAnnotation()
     plotter.close()
+
+
+def test_colours_of_a_solid_have_the_range_of_all_its_values():
+    """On the surface of a ball cut from a volume the distance is one number, and rounding."""
+    box = pv.ImageData(dimensions=(16, 16, 16), origin=(-7.5, -7.5, -7.5))
+    box["distance"] = np.linalg.norm(box.points, axis=1)
+    ball = box.clip_scalar(scalars="distance", value=6.0)
+    ranges = []
+    for mesh, options in ((ball, {}), (box, {}), (ball, {"clim": (1, 2)})):
+        plotter = pv.Plotter(off_screen=True)
+        actor = plotter.vizlight.add_mesh(mesh, scalars="distance", **options)
+        ranges.append(actor.mapper.scalar_range)
+        plotter.close()
+    expected = [[f(m["distance"]) for f in (np.min, np.max)] for m in (ball, box)] + [(1, 2)]
+    np.testing.assert_allclose(ranges, expected, rtol=1e-6)

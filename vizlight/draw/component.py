@@ -195,6 +195,7 @@ class Component:
                 continue
             shown, tints = (here, {}) if here is not None else tinted(source.mesh)
             keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
+            keywords_of |= keywords.whole_range(block, here, keywords_of)
             actor = self._add(plotter, source, used, light, shown, keywords_of, follow=True)
             live = self._live_of(actor)
             assert live is not None

@@ -154,6 +154,22 @@ def colored(
     return blocks.like(mesh, made), name
 
 
+def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywords:
+    """Return the limits of the colours of a grid, of which its surface alone is drawn.
+
+    They are those of all its values, as in PyVista, unless limits are given.
+    """
+    if name is None or isinstance(mesh, pv.PolyData) or drawing.get("clim") is not None:
+        return {}
+    values = _array(mesh, name, of_cells=False)
+    if values is None or values.ndim != 1:
+        return {}
+    known = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    if drawing.get("log_scale") or values.dtype.kind not in "iuf" or not known.size:
+        return {}
+    return {"clim": (float(known.min()), float(known.max()))}
+
+
 def _array(mesh: pv.DataSet, name: str, *, of_cells: bool) -> NDArray[np.generic] | None:
     """Return an array of a mesh, of its points or of its cells."""
     places = (mesh.cell_data, mesh.point_data) if of_cells else (mesh.point_data, mesh.cell_data)
