@@ -151,7 +151,7 @@ def isoluminance(
     terminator is not restricted to corners, and triangles are split where the luminance is not
     linear. With tangents the luminance itself is interpolated. An empty mesh has no bands. A
     sphere or a frustum under one light without a highlight has closed forms. The memory that is
-    taken, with the result, is at most three times that of mesh and result.
+    taken, with the result, is at most three times that of mesh and result, and some 20 MB.
     Source: Isoluminance.
     """
     asked = ContourOptions.of(locals())
