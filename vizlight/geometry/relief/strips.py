@@ -79,6 +79,8 @@ def in_cell(
         enter = max(min((low - side[k]) * inverse, width), begin[k])
         leave = max(min((high - side[k]) * inverse, width), enter)
         u, v = enter * per_column, (side[k] + slope * enter - low) * per_row
+        # In the level frame of the ray, height less level is a quadratic along the way in the
+        # cell.
         f0 = (z - level[k] - rise * enter) + u * a + v * (b + u * c)
         f1 = per_column * (a + v * c) + dv * (b + u * c) - rise
         length[k] += positive(f0, f1, f2, leave - enter)
@@ -106,6 +108,8 @@ def fill(now: int, before: int, place: float, begin: Array, since: Array, length
 
     Rays that begin later are left as they are: their ``since`` is at or after their ``begin``.
     """
+    # Levels are sorted, so the rays inside a column are the first ones: only the change is
+    # handled.
     for k in range(before, now):
         since[k] = max(place, begin[k])
     for k in range(now, before):
@@ -132,6 +136,7 @@ def cross(
     for n in range(count):
         k = own_index[n]
         # Near its start a ray is known best from there.
+        # LANES rays at once, without branches: the compiler makes vector instructions of it.
         aside = side[k] + slope * (place - begin[k])
         low, high = min(low, aside), max(high, aside)
         own_side[n], own_level[n] = aside, height[k] + rise * (place - begin[k])
@@ -143,6 +148,7 @@ def cross(
     for n in range(padded):
         own_length[n] = 0.0
     end = len(rows) - 2
+    # Rows that any of the rays meets in this column.
     while row < end and rows[row + 1] <= low:
         row += 1
     while row <= end and rows[row] <= high + slope * width:
@@ -175,6 +181,7 @@ def follow(
     last, inner = len(columns) - 1, corners.shape[1] - 1
     first = last
     for k in range(len(level)):
+        # The first column that a ray of the strip begins in.
         while first > 0 and columns[first] > begin[k]:
             first -= 1
     inside, from_row, to_row, row = 0, 0, 0, 0
@@ -185,6 +192,7 @@ def follow(
             aside[0] + slope * columns[max(c - 1, 0)],
             aside[1] + slope * columns[min(c + 1, last)], rows, from_row, to_row,
         )  # fmt: skip
+        # Highest and lowest node that the strip covers here, in the frame in which rays are level.
         up, down = -math.inf, math.inf
         for r in range(from_row, to_row + 1):
             height = corners[r, min(c, inner)]
@@ -193,6 +201,8 @@ def follow(
         if c > first:
             # The column between this line of nodes and the one before it.
             place, node = columns[c - 1], min(c - 1, inner)
+            # Below all nodes by more than rounding: inside. Above all: outside. Between: cells are
+            # crossed.
             now = below(level, ends, rate, min(down, low) - slack)
             to = below(level, ends, rate, max(up, high) + slack)
             fill(now, inside, place, begin, since, length)
@@ -204,6 +214,8 @@ def follow(
                     corners, column, rows, per_row, min(row, from_row), way, (now, to), rays, own,
                     own_index,
                 )  # fmt: skip
+            # Beyond the last node heights change no more: once the lowest ray is above them all
+            # are out.
             if c >= inner - 1 and ahead[from_row] - rise * columns[c] + slack <= level[0]:
                 last = c
                 break
@@ -224,6 +236,8 @@ def lengths(
     x, y, z = start[0], start[1], start[2]
     least, largest = math.inf, -math.inf
     for k in range(len(rays)):
+        # A ray's offset across the light's direction tells its strip; it is the same all along the
+        # ray.
         aside = y[k] - slope * x[k]
         least, largest = min(least, aside), max(largest, aside)
     strip: Indices = np.empty(len(rays), np.int32)
@@ -252,7 +266,9 @@ def lengths(
             continue
         for k in range(count):
             i = order[at + k]
+            # The level of a ray where the columns begin: with the rise taken off it is constant.
             keys[k] = z[i] - rise * x[i]
+        # Buckets make the search for a level one step for the usual, even spread.
         rate = sort(keys[:count], level[:count], index, buckets)
         low, high = math.inf, -math.inf
         for k in range(count):
@@ -315,6 +331,8 @@ class Strips:
         self.slope = abs(float(way[self.side])) * self.per_step
         self.rise = float(way[2]) * self.per_step
         corners = field.corners if self.main == 0 else field.corners.T
+        # Mirrored so that the light goes toward rising columns and rows: one case in place of
+        # eight.
         corners = np.ascontiguousarray(corners[:: int(self.signs[1]), :: int(self.signs[0])])
         columns = np.sort(self.signs[0] * nodes[self.main])
         rows = np.sort(self.signs[1] * field.edges[self.side])
@@ -334,6 +352,7 @@ class Strips:
         self.count = int((most - self.first) / self.spacing) + 2
         # Levels are rounded, so bounds are a little wider.
         reach = float(np.abs(self.columns).max())
+        # 16 eps of the largest number that enters a level.
         self.slack = 16 * np.finfo(float).eps * float(field.top + self.rise * reach)
 
     def _beyond(

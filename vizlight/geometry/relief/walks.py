@@ -64,6 +64,8 @@ def in_cell(corners: Array, i: int, j: int, place: Triple, rate: Triple, length:
     ``place`` holds the relative position (u, v) in the cell and the height at its entry, ``rate``
     their changes per unit of length.
     """
+    # Bilinear height minus the ray's: with u, v and z linear in the way s, a quadratic f0 + f1 s +
+    # f2 s^2, positive where the ray is inside.
     z00, z10 = corners[j, i], corners[j + 1, i]
     a, b = corners[j, i + 1] - z00, z10 - z00
     c = (corners[j + 1, i + 1] - z10) - a
@@ -133,21 +135,27 @@ def walk(
     for ray in range(len(out)):
         px, py, pz = start[0, ray], start[1, ray], start[2, ray]
         wx, wy, wz = way[0, ray], way[1, ray], way[2, ray]
+        # Above the highest node there is nothing to meet.
         s, end = below_top(top, pz, wz, reach[ray])
+        # A ray begins in its own cell and climbs to larger squares as it goes.
         i, j, level, length = locate(x, px + s * wx), locate(y, py + s * wy), 0, 0.0
         before_x = 1 if walls and wx == 0 and px == x[i] else 0
         before_y = columns[0] if walls and wy == 0 and py == y[j] else 0
         # A ray in a plane of nodes goes from cell to cell.
         highest = len(offset) - 1 if before_x + before_y == 0 else 0
         while s < end:
+            # The nearer of the two edges of the square is where the ray leaves it.
             cross_x, cross_y = crossing(x, i, level, px, wx), crossing(y, j, level, py, wy)
             leave = min(max(min(cross_x, cross_y), s), end)
             z, last = pz + s * wz, pz + leave * wz
             at = offset[level] + j * columns[level] + i
             back_x, back_y = beside(largest, at, before_x, before_y)
             at -= back_x + back_y * columns[0]
+            # Wholly below the square: all of the way is inside, without a look at its cells.
             if max(z, last) <= least[at]:
                 length += leave - s
+            # Neither below nor above: into the quarter that contains the ray, down to a single
+            # cell.
             elif min(z, last) < largest[at]:
                 if level > 0:
                     level -= 1
@@ -170,6 +178,7 @@ def walk(
                 rise = (j ^ int(wy < 0)) & 1 == 0
             if rise and level < highest:
                 i, j, level = i >> 1, j >> 1, level + 1
+        # A way that has grown to FAR has never left the solid.
         out[ray] = length if length < 0.5 * FAR else math.inf
 
 
