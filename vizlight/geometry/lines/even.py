@@ -112,6 +112,7 @@ class Growth:
         #: Whether only wide gaps are still filled.
         self.last_gaps = False
         nowhere = Places(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
+        # Every curve has two ends that grow, one along the field and one against it.
         self.walkers = Walkers.at(flow, nowhere, nowhere.cell)
         #: Of each end: step at which it came back beside its own curve, or -1; length at its last
         #: sample.
@@ -138,10 +139,12 @@ class Growth:
         """
         points = self.flow.mesh.positions(seeds)
         embedded = self.embedded(seeds, points)
+        # Too many at once would grow into each other; too few waste the vectorised step.
         room = CROWD - len(self.growing)
         taken: Bools = ~self.flow.directions(seeds, None, np.ones(len(seeds.cell)))[1]
         moving = np.flatnonzero(~taken)
         chosen = moving[_apart(embedded[moving], self.apart * self.asked.spacing, room)]
+        # Seeds start farther apart at first; where few of them fit, nearer.
         wide = len(chosen) >= room // 4
         self.apart = min(APART, 1.5 * self.apart) if wide else max(NEAR, self.apart / 1.5)
         taken[chosen] = True
@@ -162,6 +165,7 @@ class Growth:
         """Let all ends make one step."""
         walkers, mesh = self.walkers, self.flow.mesh
         sample = self.asked.spacing / SAMPLES
+        # A step is at most the distance of samples, by which curves keep apart.
         size = np.minimum(self.asked.step * mesh.sizes(walkers.places), sample)
         places, along, made, inside = self.flow.advance(
             walkers.places, walkers.along, walkers.sign, size
@@ -177,11 +181,14 @@ class Growth:
         lost = np.isin(ahead.curve, losers)
         made &= ~blocked & ~lost
         self.trail.append(ahead[made])
+        # Samples are set at even lengths; 0.999 absorbs the rounding of summed steps.
         due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
         self.samples.add(ahead[due], points[due], embedded[due])
         self.sampled = np.where(due, ahead.length, self.sampled)
         for row in np.flatnonzero(made & (reached >= 0)).tolist():
             self._close(ahead, row, int(reached[row]))
+        # An end stops at a boundary, at its longest, after its last step, or where its curve is
+        # closed.
         going = made & inside & (ahead.length < self.asked.max_length)
         going &= (ahead.number < self.asked.max_steps) & ~np.isin(ahead.curve, [*self.closed])
         began = np.where(self.returning < 0, walkers.number, self.returning)
@@ -209,6 +216,8 @@ class Growth:
         distance, row = samples.near(embedded, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
+        # The way along the curve between an end and a sample of its own: near ones are no
+        # obstacle.
         between = np.abs(
             samples.sign[row] * samples.length[row] - sign * ahead.length[:, np.newaxis]
         )
@@ -217,6 +226,7 @@ class Growth:
         later = samples.curve[row] > ahead.curve[:, np.newaxis]
         losers = np.unique(samples.curve[row[hit & later]])
         hit &= ~later
+        # Split along and across the end's direction: what lies abreast is beside, not ahead.
         toward = samples.points[row] - points[:, np.newaxis]
         along = np.einsum("nkj,nj->nk", toward, ahead.along)
         lateral = np.linalg.norm(
@@ -253,6 +263,7 @@ class Growth:
         if self.growing[curve]:
             return
         del self.growing[curve]
+        # A curve that two others have cut short is dropped if it is too short to be read.
         cut = self.cut.get(curve, 0)
         # In a gap there is room for half the length on either side of the seed.
         share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
@@ -266,9 +277,11 @@ class Growth:
         """Queue places a spacing beside a curve."""
         places, along = self.samples.of(curve)
         if self.normals is not None:
+            # On a surface the places beside a curve are to its left and right, across the normal.
             u: Array = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
             sides = [u, -u]
         else:
+            # In a volume: four directions around it, turned at random.
             u = np.cross(along, self.random.normal(size=along.shape))
             v: Array = np.cross(along, u)
             sides = [u, -u, v, -v]
@@ -283,6 +296,7 @@ class Growth:
         spacing = self.asked.spacing
         while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
             first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
+            # 0.95: rounding on the way beside a curve must not count as crowded.
             first = first[self.distances(first, 0.95 * spacing) >= 0.95 * spacing]
             if len(first.cell):
                 self.beside = first[~self.start(first)].joined(rest)
@@ -345,6 +359,7 @@ def evenly_spaced(
     growing at the same time.
     """
     random = np.random.default_rng(seed)
+    # Random places all over find what is a spacing from all curves wherever no neighbour does.
     pool = places_of(flow, asked.spacing, random)
     # Parts that are too small for a random place have one of their own.
     pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
@@ -363,6 +378,7 @@ def evenly_spaced(
             kept = growth.count - len(growth.dropped)
             if kept == before:
                 break
+            # Last, with denser places, the gaps that are wide but too small for a whole spacing.
             before, growth.last_gaps = kept, True
             pool = growth.widest(places_of(flow, asked.spacing, random, DENSER**flow.mesh.k))
     report(total)
@@ -389,6 +405,7 @@ def _apart(embedded: Array, distance: float, most: int) -> Indices:
     left = np.arange(len(embedded))
     while len(left) and len(chosen) < most:
         chosen.append(int(left[0]))
+        # Greedy, in order: each row that is kept removes those near to it.
         gap = embedded[left] - embedded[left[0]]
         left = left[np.einsum("ij,ij->i", gap, gap) >= distance**2]
         if left.size and left[0] == chosen[-1]:

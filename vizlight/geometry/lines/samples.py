@@ -53,6 +53,7 @@ class Samples:
         for name, rows in new.items():
             known = getattr(self, name)
             if not size or total > len(known):
+                # Capacity doubles, so that adding is cheap on the whole.
                 known = np.zeros((max(4096, 2 * total), *rows.shape[1:]), rows.dtype)
                 if size:
                     known[:size] = getattr(self, name)[:size]
@@ -84,6 +85,7 @@ class Samples:
             count += CROSSING
         if self._size - self._whole > RECENT or self._stale > RECENT:
             self._rows = np.flatnonzero(self.used[: self._size])
+            # A balanced tree would cost more to make than its queries save.
             self._old = scipy.spatial.cKDTree(self.embedded[self._rows], balanced_tree=False)
             self._whole, self._seen, self._stale = self._size, -1, 0
             self._recent, self._new = self._rows[:0], None

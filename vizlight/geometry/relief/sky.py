@@ -282,7 +282,7 @@ class _Scan:
         """Add what the nodes see toward an azimuth to one of two sums."""
         _, x, y = self.fields[False]
         steps = [np.ptp(axis) / (len(axis) - 1) for axis in (x, y)]
-        # The axis along which the azimuth runs faster has the columns; else the field is transposed.
+        # Columns lie along the axis on which the azimuth runs faster; else the field is transposed.
         swap = bool(abs(dy) * steps[0] > abs(dx) * steps[1])
         if swap:
             dx, dy = dy, dx
