@@ -67,6 +67,7 @@ def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     grid = joined(mesh)
     kinds, first = np.unique(grid.celltypes, return_index=True)
     dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
+    # OpenFOAM and Exodus have side sets beside the volume that they bound.
     if len(set(dimensions)) > 1:
         keep = kinds[dimensions == dimensions.max()]
         cells: Foreign = np.flatnonzero(np.isin(grid.celltypes, keep))
