@@ -94,19 +94,24 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
                 across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
         face, area = kernels.unit(across)
         height = np.minimum(area / (FLAT * longest), 1)
+        # Fourth root of each length: the product of two is the square root of their geometric
+        # mean.
         roots = [np.sqrt(np.sqrt(np.sqrt(square))) for square in squares]
         for i in range(s):
             ahead, behind = sides[i], -sides[i - 1]
             normal, size = face, area
             if s > 3:
+                # A polygon that is not plane has another normal at each corner.
                 corner, size = kernels.unit(kernels.cross(ahead, behind))
                 inward = kernels.dot(corner, face)
                 flat = size <= FLAT * np.maximum(squares[i], squares[i - 1])
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
+            # The angle of the corner, exact for sharp and for blunt ones.
             weight = np.arctan2(size, kernels.dot(ahead, behind))
             weight *= height / (roots[i] * roots[i - 1])
             weight[~np.isfinite(weight)] = 0
             for k in range(3):
+                # Faster than np.add.at, as long as a block has points near each other.
                 sums = np.bincount(at[i] - low, normal[k] * weight, high - low)
                 if used is None:
                     total[k, low:high] += sums

@@ -66,6 +66,7 @@ def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
     lower, upper, longest = lower[apart], upper[apart], longest[apart]
     if not len(lower):
         return None
+    # Chains of slivers have one first point; whether they stay near is tested below.
     first = components(lower, upper, len(points))
     reach = np.zeros(len(points))
     np.maximum.at(reach, first[lower], NEAR * np.sqrt(longest))
@@ -73,6 +74,7 @@ def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
     low, high = np.full((2, len(points), 3), np.inf)
     places = points[ends].astype(np.float64)
     np.minimum.at(low, first[ends], places)
+    # The upper bound as the least of the negative: both arrays start from infinity.
     np.minimum.at(high, first[ends], -places)
     with np.errstate(invalid="ignore"):
         together = (-high - low).max(axis=1) <= reach

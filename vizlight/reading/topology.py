@@ -118,6 +118,8 @@ def sorted_edges(
     same : ndarray of int, optional
         Point that stands for each point.
     """
+    # Sorted in ranges of their lower ends: a sort of all edges at once would take memory beyond
+    # the bound of a filter.
     parts = min(-(-3 * len(corners) // EDGES), PARTS)
     blocks = _pool.blocks(len(corners), BLOCK)
     ranges = []
