@@ -12,7 +12,7 @@ from vizlight.draw import dialects, glsl, program, strokes
 from vizlight.draw.live import NORMALS, TANGENTS
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
-from vizlight.mesh import hull, point_arrays
+from vizlight.mesh import blocks, point_arrays
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
@@ -107,7 +107,7 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     """Return the points at both ends of consecutive corners of the cells that are drawn."""
     surface = mesh if isinstance(mesh, pv.PolyData) else None
     if surface is None:
-        shell, ids = hull.outer_surface(mesh)
+        shell, ids = blocks.outer_surface(mesh)
         starts, ends = (ids[corners] for corners in _edges(shell))
         inside = (starts >= 0) & (ends >= 0)
         return starts[inside], ends[inside]

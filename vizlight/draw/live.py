@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import are_colors, values_of
-from vizlight.mesh import hull, point_arrays
+from vizlight.mesh import blocks, point_arrays
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.light import default_lights
 from vizlight.scene.vtk import is_light_kit, lights_of
@@ -112,7 +112,7 @@ class Live:
         """Draw the mesh as it is now."""
         mesh = self.source.mesh
         if self._by_surface:
-            mesh, self._shown = hull.outer_surface(mesh)
+            mesh, self._shown = blocks.outer_surface(mesh)
         self.drawn.shallow_copy(mesh)
 
     def picked(self, rows: NDArray[Number]) -> NDArray[Number]:

@@ -18,7 +18,7 @@ from vizlight.draw.fragments import Fragments, exact_plan, without_highlight
 from vizlight.draw.live import NORMALS, TANGENTS, items
 from vizlight.filters.key import TEXTS
 from vizlight.filters.tint import map_colors
-from vizlight.mesh import hull, records
+from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.light import WHITE
 from vizlight.scene.vtk import lights_of
@@ -452,7 +452,7 @@ def _surface(live: Live) -> tuple[pv.PolyData, Indices]:
     """Return what is drawn as cells of PolyData, and the index of each of its points."""
     if isinstance(live.drawn, pv.PolyData):
         return live.drawn, np.arange(live.drawn.n_points)
-    return hull.outer_surface(live.drawn)
+    return blocks.outer_surface(live.drawn)
 
 
 def _ended(cue: DepthCue | None) -> DepthCue | None:

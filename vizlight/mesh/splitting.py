@@ -10,7 +10,7 @@ import scipy
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.mesh import blocks, normals, point_arrays, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.reading.cells import connectivity, has_faces
@@ -51,7 +51,7 @@ def simplices(mesh: pv.DataSet) -> Indices:
     if isinstance(mesh, pv.PolyData):
         surface, origin = mesh, None
     else:
-        surface, origin = hull.outer_surface(mesh)
+        surface, origin = blocks.outer_surface(mesh)
     if has_faces(surface):
         found, _ = triangles(surface)
     else:
@@ -78,7 +78,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
     if isinstance(mesh, pv.PolyData):
         found = mesh
     else:
-        surface, origin = hull.outer_surface(mesh)
+        surface, origin = blocks.outer_surface(mesh)
         if (origin < 0).any():
             remedy = "take the mesh's extract_surface()"
             raise ValueError(_check.message("mesh", "flat cells", "curved cells", remedy))

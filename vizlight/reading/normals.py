@@ -13,7 +13,7 @@ from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
-from vizlight.reading import edges, grids
+from vizlight.reading import grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
     as_numpy,
@@ -26,9 +26,8 @@ from vizlight.reading.cells import (
     triangles,
     used,
 )
-from vizlight.reading.corners import surface_normals
+from vizlight.reading.corners import common_normals, joined, surface_normals
 from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.joints import common_normals, joined
 from vizlight.reading.orientation import (
     MOST_LEAN,
     SHARP,
@@ -38,7 +37,15 @@ from vizlight.reading.orientation import (
     crease_share,
     sides_of,
 )
-from vizlight.reading.topology import Owners, is_closed, topology
+from vizlight.reading.topology import (
+    Owners,
+    edge_numbers,
+    inner_edges,
+    is_closed,
+    place_numbers,
+    single_edges,
+    topology,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -333,7 +340,7 @@ def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bool
 def _sided_grid(mesh: Grid, given: Array) -> Sided:
     """Return normals of a grid with their sides, found part by part."""
     # Edges that are not on the border of a sheet have two faces.
-    found = [edges.edge_numbers(x[:-1], x[1:]) for x in map(edges.place_numbers, grids.rim(mesh))]
+    found = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, grids.rim(mesh))]
     if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
         side = int(sides_of(given, None, np.ones(1, dtype=np.bool_))[0])
         if side < 2:
@@ -390,7 +397,7 @@ def computed_normals(
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
     centroid of the piece. Points that slivers join, with a side of at most
-    :data:`~vizlight.reading.joints.NEAR` of the longest, as isosurfaces through nodes of a grid
+    :data:`~vizlight.reading.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
     have them, have one normal, where their own are within
     :data:`~vizlight.reading.orientation.SHARP` degrees of it.
 
@@ -549,9 +556,9 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         total, size = total + points.sum(axis=0), size + len(points)
     middle = total / max(size, 1)
     scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
-    lines = [edges.place_numbers(line) for line in grids.rim(mesh)]
+    lines = [place_numbers(line) for line in grids.rim(mesh)]
     # Edges of the rim that one part has alone are a border, unless another part has them too.
-    single, ends = edges.single_edges(lines)
+    single, ends = single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in grids.parts(mesh):
         surface, own = finite_faces(part.surface), part.side == 0
@@ -564,7 +571,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
             lean[part.origin[own]] = survey.lean[own]
             counts += shape.edge_counts(survey.faces, survey.full)
         if len(single):
-            single = np.setdiff1d(single, edges.inner_edges(shape.points, shape.triangles, ends))
+            single = np.setdiff1d(single, inner_edges(shape.points, shape.triangles, ends))
     border = np.array([len(single) > 0])
     whole = Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
     if not as_wound and whole.turned(border)[0]:

@@ -10,9 +10,9 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.reading.edges import BLOCK, place_numbers
 from vizlight.reading.normals import Told, facing_of, given_normals, wound_normals
 from vizlight.reading.orientation import crease_share, middles, sides_of
+from vizlight.reading.topology import BLOCK, place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,15 +10,37 @@ import numpy as np
 import scipy
 
 from vizlight import _compiled
-from vizlight.geometry.lines.columns import Columns
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
     from vizlight._types import Array, Bools, Indices
 
 #: Largest number of cells that one step crosses.
 MOST_CROSSINGS = 300
 #: Seconds that compiled code saves per walk, and per place of it.
 SAVED = 4e-4, 4e-6
+
+
+@dataclass
+class Columns:
+    """Base class of rows whose fields are arrays, or such rows themselves."""
+
+    def __getitem__(self, rows: Indices | Bools | slice) -> Self:
+        """Return some of the rows."""
+        return type(self)(*(column[rows] for column in vars(self).values()))
+
+    def joined(self, *others: Self) -> Self:
+        """Return these rows and then others."""
+        columns = zip(*(vars(part).values() for part in (self, *others)), strict=True)
+        return type(self)(
+            *(
+                first.joined(*rest)
+                if isinstance(first, Columns)
+                else np.concatenate([first, *rest])
+                for first, *rest in columns
+            )
+        )
 
 
 @dataclass

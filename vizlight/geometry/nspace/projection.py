@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import layout
+from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -367,7 +367,7 @@ def push_frame(
     For orthonormal tangents the space that the rows span is known to 4 eps divided by the smallest
     singular value that is counted.
     """
-    rows = orthonormalize(layout.as_rows("frame", frame, full=True))[0]
+    rows = orthonormalize(frames.as_rows("frame", frame, full=True))[0]
     k, n = rows.shape[-2:]
     points = _check.floats("points", points)
     if points.shape != (*rows.shape[:-2], n):

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from vizlight import _check
-from vizlight.model import layout
+from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
     is known to 2 eps divided by the cosine of the largest angle between the spaces. Between two
     points of a smooth manifold the error of the mean grows with the square of their distance.
     """
-    rows, _ = orthonormalize(layout.as_rows("frame", frame, full=True))
+    rows, _ = orthonormalize(frames.as_rows("frame", frame, full=True))
     if rows.ndim != 3:
         raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
     count, k, n = rows.shape
@@ -207,7 +207,7 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     space that the rows span is known to 2 eps divided by the sine of the angle between manifold and
     hyperplane.
     """
-    rows, rank = orthonormalize(layout.as_rows("frame", frame, full=True))
+    rows, rank = orthonormalize(frames.as_rows("frame", frame, full=True))
     k, n = rows.shape[-2:]
     if k < 2:
         raise ValueError(_check.message("frame", "2 tangents or more", k))

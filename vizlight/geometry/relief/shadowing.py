@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import height_field, marching, strips, sweeping, walks
+from vizlight.geometry.relief import height_field, strips, sweeping, walks
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -203,13 +203,13 @@ class Ray:
         """Return unit directions (3, N) and lengths (N,) of the rays from positions (3, N)."""
         if self.direction is not None:
             way = np.repeat(self.direction[:, np.newaxis], start.shape[1], axis=1)
-            return way, np.full(start.shape[1], marching.FAR)
+            return way, np.full(start.shape[1], walks.FAR)
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
         size = kernels.length(way)
         unit = way / np.where(size > 0, size, 1)
         unit[np.abs(unit) < ROUNDING] = 0
-        return unit, np.minimum(size, marching.FAR)
+        return unit, np.minimum(size, walks.FAR)
 
 
 def toward(
@@ -348,7 +348,7 @@ def _lengths(
         places = start(np.arange(rows.start, rows.stop))
         way, reach = ray.from_places(places)
         if bounds is None:
-            length[rows] = marching.march(field, places, way, reach, coarse=True)
+            length[rows] = walks.march(field, places, way, reach, coarse=True)
         else:
             walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
