@@ -78,3 +78,8 @@ def test_what_is_asked_for_stays():
 def test_no_data_is_named():
     _, bar = inked((900, 600), holed)
     assert bars.NO_DATA_NAME in bar.GetNanAnnotation()
+
+
+def test_words_of_a_truth_value_stand_alone():
+    _, bar = inked((400, 300), lambda heights: heights > 0, "up")
+    assert not bar.GetDrawTickLabels()

@@ -53,7 +53,7 @@ def fitted(plotter: pv.BasePlotter, title: str, asked: Keywords) -> Keywords:
     place = theme.colorbar_vertical if upright else theme.colorbar_horizontal
     letters = int(max(min(theme.font.label_size, high / LETTERS_HIGH), LEAST))
     number = LONGEST * LETTER * letters
-    left, right, labels = place.position_x * wide, (place.position_x + place.width) * wide, 5
+    left, right = place.position_x * wide, (place.position_x + place.width) * wide
     fonts = {"label_font_size": letters, "title_font_size": letters}
     made: Keywords = {"unconstrained_font_size": True} | fonts
     if upright:
@@ -61,11 +61,9 @@ def fitted(plotter: pv.BasePlotter, title: str, asked: Keywords) -> Keywords:
         left = max(min(left, wide - number - 2.5 * letters), 0)
     else:
         right = max(min(right, wide - 0.5 * number - 4), left + 1)
-        labels = int(np.clip((right - left) / number, 2, labels))
         lines = len(_lines(str(asked["title"]), left, right, wide, letters))
         made["height"] = max(place.height, (lines + 2) * LINE * letters / high)
-    made |= {"n_labels": labels, "position_x": left / wide, "width": (right - left) / wide}
-    return made | asked
+    return made | {"position_x": left / wide, "width": (right - left) / wide} | asked
 
 
 def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
@@ -84,6 +82,8 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
         # VTK puts the title of a bar that lies so near to the numbers that they touch.
         bar.GetTitleTextProperty().SetLineOffset(-0.4 * letters)
         bar.SetBarRatio(letters / (bar.GetHeight() * high))
+        room = bar.GetWidth() * wide / (LONGEST * LETTER * letters)
+        bar.SetNumberOfLabels(min(bar.GetNumberOfLabels(), max(int(room), 2)))
     if not plotter.theme.font.fmt:
         low, top = bar.GetLookupTable().GetRange()
         ticks = np.linspace(low, top, bar.GetNumberOfLabels())
