@@ -115,3 +115,12 @@ def test_faces_without_area_and_points_without_faces_have_none():
     assert not corner_normals(points, [faces]).any()
     assert not corner_normals(1e200 * points, [faces]).any()
     assert corner_normals(np.zeros((0, 3)), []).shape == (0, 3)
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_a_point_that_a_face_names_twice_is_one_corner(turn):
+    points = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0.5], [1, -1, 2]], dtype=np.float64)
+    whole = np.array([[0, 1, 2], [0, 3, 1]])
+    twice = np.roll([[0, 1, 1, 2], [0, 3, 3, 1]], turn, axis=1)
+    found = corners.corner_normals(points, [twice])
+    np.testing.assert_allclose(found, corners.corner_normals(points, [whole]), atol=1e-6)
