@@ -246,12 +246,18 @@ def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
         )
 
 
+#: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
+_MESHERS = (".mesh", ".meshb", ".msh")
+
+
 def _found(path: Path, time: object) -> pv.DataObject:
     """Return what the first reader that knows a file makes of it."""
     found: pv.DataObject | None = foreign_files.read(path, time)
     if found is None:
         found = steps.read(path, time)
     found = _by_vtk(path) if found is None else found
+    if path.suffix.lower() in _MESHERS:
+        found = pv.MultiBlock({"cells of lower dimension": found})
     if isinstance(found, pv.PartitionedDataSet):
         data, found = found.field_data, pv.MultiBlock(list(found))
         found.field_data.update(data)

@@ -169,8 +169,19 @@ def test_a_mesh_of_gmsh(tmp_path):
     path = tmp_path / "part.msh"
     path.write_text(GMSH)
     mesh = vizlight.read(path)
-    assert mesh.celltypes.tolist() == [pv.CellType.LINE, pv.CellType.TRIANGLE]
+    # The edge of the shape, on which the triangle has a side, is none of the mesh.
+    assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+
+
+def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [3, 0, 0]], dtype=float)
+    path = tmp_path / "part.mesh"
+    meshio.Mesh(points, [("triangle", [[0, 1, 2]]), ("line", [[1, 3]])]).write(path)
+    with pytest.warns(UserWarning, match="left out: cells of lower dimension"):
+        mesh = vizlight.read(path)
+    assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
 def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
