@@ -257,6 +257,27 @@ def test_corners_of_cells_are_no_variable(tmp_path):
         vizlight.read(path)
 
 
+def test_depths_are_below_the_surface(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    warmth = np.arange(24.0).reshape(4, 3, 2)
+    axis = ("depth", np.array([5.0, 10.0, 30.0, 90.0]), {"positive": "down"})
+    sea = xarray.Dataset({"warmth": (("depth", "y", "x"), warmth)}, coords={"depth": axis})
+    sea.to_netcdf(tmp_path / "sea.nc", engine="scipy")
+    grid = vizlight.read(tmp_path / "sea.nc")
+    assert (grid.bounds.z_min, grid.bounds.z_max) == (-90, -5)
+    assert grid["warmth"][np.argmax(grid.points[:, 2])] == 0
+
+
+def test_a_mesh_of_ugrid_is_no_grid(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    topology = ((), 0, {"cf_role": "mesh_topology"})
+    corners = (("face", "corner"), np.arange(12.0).reshape(3, 4))
+    mesh = xarray.Dataset({"mesh": topology, "corners": corners})
+    mesh.to_netcdf(tmp_path / "mesh.nc", engine="scipy")
+    with pytest.raises(files.FileError, match=r"a mesh of UGRID, not a grid; convert it to \.vtu"):
+        vizlight.read(tmp_path / "mesh.nc")
+
+
 def test_a_file_of_no_grid(tmp_path):
     with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
         grid_file(tmp_path / "a.nc", [1, 2, 3], series=np.ones(3))
