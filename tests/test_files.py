@@ -65,10 +65,13 @@ def test_the_reason_of_a_damaged_file_is_told(tmp_path):
         files.read(path)
 
 
-@pytest.mark.parametrize("suffix", [".las", ".dae", ".step"])
-def test_files_that_no_reader_takes_tell_what_to_convert_them_to(suffix, tmp_path):
+@pytest.mark.parametrize(
+    ("suffix", "way"),
+    [(".las", "convert it to"), (".dae", "convert it to"), (".gz", "unpack it first")],
+)
+def test_files_that_no_reader_takes_tell_what_to_do_with_them(suffix, way, tmp_path):
     (tmp_path / f"a{suffix}").write_text("x")
-    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; convert it to"):
+    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; {way}"):
         files.read(tmp_path / f"a{suffix}")
 
 

@@ -246,6 +246,8 @@ def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
         )
 
 
+#: Names of packed files end so.
+_PACKED = (".bz2", ".gz", ".xz", ".zip")
 #: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
 _MESHERS = (".mesh", ".meshb", ".msh")
 
@@ -301,10 +303,11 @@ def _by_vtk(path: Path) -> pv.DataObject:
     except OSError as error:
         if reader is not None:
             raise
-        raise FileError(
-            f"no reader takes '{path.suffix}' files; convert it to .ply, .obj, .stl, .vtu or .glb, "
-            "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        ) from error
+        way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
+        way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
+        if path.suffix.lower() in _PACKED:
+            way = "unpack it first"
+        raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
     return found
 
 
