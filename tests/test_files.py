@@ -65,10 +65,13 @@ def test_the_reason_of_a_damaged_file_is_told(tmp_path):
         files.read(path)
 
 
-@pytest.mark.parametrize("suffix", [".las", ".dae", ".step"])
-def test_files_that_no_reader_takes_tell_what_to_convert_them_to(suffix, tmp_path):
+@pytest.mark.parametrize(
+    ("suffix", "way"),
+    [(".las", "convert it to"), (".dae", "convert it to"), (".gz", "unpack it first")],
+)
+def test_files_that_no_reader_takes_tell_what_to_do_with_them(suffix, way, tmp_path):
     (tmp_path / f"a{suffix}").write_text("x")
-    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; convert it to"):
+    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; {way}"):
         files.read(tmp_path / f"a{suffix}")
 
 
@@ -130,7 +133,6 @@ def test_warp():
         (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
         (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
         (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
-        (lambda g: files.warped(g, "V", 1.0), "warp: expected an array of one component"),
         (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
     ],
 )
@@ -685,3 +687,18 @@ def test_xdmf_without_times_is_read(tmp_path):
         </Grid></Domain></Xdmf>"""
     )
     assert vizlight.read(path).volume == pytest.approx(1 / 6)
+
+
+def test_points_are_displaced_by_vectors():
+    solid = pv.ImageData(dimensions=(4, 3, 2)).cast_to_unstructured_grid()
+    for mesh in (pv.ImageData(dimensions=(4, 3, 2)), solid, pv.Sphere()):
+        mesh["move"] = np.random.default_rng(0).normal(size=(mesh.n_points, 3))
+        before = np.array(mesh.points)
+        moved = files.warped(mesh, "move", 2.0)
+        np.testing.assert_allclose(moved.points, before + 2 * mesh["move"], rtol=1e-6)
+        np.testing.assert_array_equal(mesh.points, before)
+        mesh["move"][0, 1] = np.nan
+        assert files.warped(mesh, "move", 2.0).n_points < mesh.n_points
+    mesh["colours"] = np.zeros((mesh.n_points, 3), np.uint8)
+    with pytest.raises(ValueError, match="warp: expected an array of one component"):
+        files.warped(mesh, "colours", 1.0)

@@ -245,12 +245,20 @@ def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
         )
 
 
+#: Names of packed files end so.
+_PACKED = (".bz2", ".gz", ".xz", ".zip")
+#: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
+_MESHERS = (".mesh", ".meshb", ".msh")
+
+
 def _found(path: Path, time: object) -> pv.DataObject:
     """Return what the first reader that knows a file makes of it."""
     found: pv.DataObject | None = foreign_files.read(path, time)
     if found is None:
         found = series.read(path, time)
     found = _by_vtk(path) if found is None else found
+    if path.suffix.lower() in _MESHERS:
+        found = pv.MultiBlock({"cells of lower dimension": found})
     if isinstance(found, pv.PartitionedDataSet):
         data, found = found.field_data, pv.MultiBlock(list(found))
         found.field_data.update(data)
@@ -294,10 +302,11 @@ def _by_vtk(path: Path) -> pv.DataObject:
     except OSError as error:
         if reader is not None:
             raise
-        raise FileError(
-            f"no reader takes '{path.suffix}' files; convert it to .ply, .obj, .stl, .vtu or .glb, "
-            "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        ) from error
+        way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
+        way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
+        if path.suffix.lower() in _PACKED:
+            way = "unpack it first"
+        raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
     return found
 
 
@@ -458,16 +467,17 @@ def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
 
 
 def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
-    """Return a mesh whose points are displaced by a point array of one component.
+    """Return a mesh whose points are raised by heights, or displaced by vectors.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh, which is not changed. A map in degrees becomes one in metres about its centre.
     name : str
-        Name of the array of heights. Cells at heights that are not finite are left out.
+        Name of the array of heights, or of three components in floating point. Cells at values
+        that are not finite are left out.
     factor : float
-        Length in the unit of the mesh that corresponds to one unit of height.
+        Length in the unit of the mesh that corresponds to one unit of the array.
 
     Returns
     -------
@@ -480,20 +490,25 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     """
     _dataset(mesh)
     mesh = point_arrays.averaged(mesh, name)
-    holes = ~np.isfinite(_scalars(mesh, "warp", name))
+    rows = np.asarray(mesh.point_data[name]) if name in mesh.point_data else np.empty(0)
+    if rows.dtype.kind != "f" or rows.shape[1:] != (3,):
+        rows = np.asarray(_scalars(mesh, "warp", name))[:, np.newaxis]
+    holes = ~np.isfinite(rows).all(axis=1)
     factor = _check.number("exaggeration", factor)
     mesh = georeference.in_metres(mesh)
     if holes.all():
         raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
-    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
+    is_grid = isinstance(mesh, pv.ImageData | pv.RectilinearGrid)
+    if is_grid or rows.shape[1] == 3:
         # VTK raises grids to float32, which is coarse far from the origin.
         points = np.array(mesh.points, dtype=np.float64)
-        points[:, 2] += factor * mesh.point_data[name]
-        moved: pv.DataSet = mesh.cast_to_structured_grid()
-        moved.points = points
+        points[:, -rows.shape[1] :] += factor * rows
+        moved: Foreign = mesh.cast_to_structured_grid() if is_grid else mesh.copy(deep=False)
+        moved.SetPoints(pv.vtk_points(points))
     else:
         moved = mesh.warp_by_scalar(name, factor=factor)
-    return moved.extract_points(~holes, adjacent_cells=False) if holes.any() else moved
+    found: pv.DataSet = moved
+    return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
 
 
 def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:

@@ -697,3 +697,12 @@ def test_colours_of_a_solid_have_the_range_of_all_its_values():
         plotter.close()
     expected = [[f(m["distance"]) for f in (np.min, np.max)] for m in (ball, box)] + [(1, 2)]
     np.testing.assert_allclose(ranges, expected, rtol=1e-6)
+
+
+def test_an_infinite_value_leaves_the_colours_to_the_others(plotter):
+    mesh = ball()
+    mesh["height"] = mesh.points[:, 2].copy()
+    known = mesh["height"][1:]
+    mesh["height"][0] = np.inf
+    actor = plotter.vizlight.add_mesh(mesh, scalars="height")
+    assert actor.mapper.scalar_range == pytest.approx((known.min(), known.max()))

@@ -789,6 +789,14 @@ def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
     bars = scene_in(path)[2]["bars"]
     assert [bar["title"] for bar in bars] == ["height", "no data"]
     assert bars[1]["colors"] == ["#808080"] * 2
+    page, _ = opened(browser, path, bare=False, viewport={"width": 400, "height": 300})
+    (_, top, _, _), (_, other, wide, _) = page.evaluate(
+        "[...document.querySelectorAll('.bar .strip')].map((one) => one.getBoundingClientRect())"
+        ".map(({ left, top, width, height }) => [left, top, width, height])"
+    )
+    page.close()
+    assert abs(top - other) < 2
+    assert wide < 80  # beside the bar also on a telephone
 
 
 def test_a_page_has_the_key_of_its_light(tmp_path):

@@ -312,3 +312,10 @@ def test_cells_have_one_colour_each_under_smooth_light(strips):
     place = lit.copy(deep=False)
     tint(place, "rank", cmap="viridis", inplace=True)
     assert np.array_equal(place["rgb"], colored["rgb"])
+
+
+def test_the_remedy_for_complex_values_is_their_size():
+    ball = pv.Sphere()
+    ball["wave"] = np.exp(1j * ball.points[:, 0])
+    with pytest.raises(TypeError, match=r"real numbers.*attach numbers, such as np\.abs\(values\)"):
+        vizlight.tint(vizlight.illuminate(ball), "wave")

@@ -89,3 +89,10 @@ def test_a_field_of_heights_in_cells_casts_shadows():
         vizlight.relief_shadow(of_cells, SCENE, elevation="h")["t"],
         vizlight.relief_shadow(means, SCENE, elevation="h")["t"],
     )
+
+
+def test_the_remedy_for_a_partitioned_dataset_helps():
+    parts = pv.PartitionedDataSet([pv.Sphere(), pv.Cube()])
+    with pytest.raises(TypeError, match=r"pyvista\.MultiBlock\(list\(mesh\)\)"):
+        vizlight.illuminate(parts)
+    assert vizlight.illuminate(pv.MultiBlock(list(parts))).n_blocks == 2

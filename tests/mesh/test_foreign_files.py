@@ -169,8 +169,19 @@ def test_a_mesh_of_gmsh(tmp_path):
     path = tmp_path / "part.msh"
     path.write_text(GMSH)
     mesh = vizlight.read(path)
-    assert mesh.celltypes.tolist() == [pv.CellType.LINE, pv.CellType.TRIANGLE]
+    # The edge of the shape, on which the triangle has a side, is none of the mesh.
+    assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+
+
+def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [3, 0, 0]], dtype=float)
+    path = tmp_path / "part.mesh"
+    meshio.Mesh(points, [("triangle", [[0, 1, 2]]), ("line", [[1, 3]])]).write(path)
+    with pytest.warns(UserWarning, match="left out: cells of lower dimension"):
+        mesh = vizlight.read(path)
+    assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
 def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
@@ -244,6 +255,27 @@ def test_corners_of_cells_are_no_variable(tmp_path):
     ).to_netcdf(path, engine="scipy")
     with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
         vizlight.read(path)
+
+
+def test_depths_are_below_the_surface(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    warmth = np.arange(24.0).reshape(4, 3, 2)
+    axis = ("depth", np.array([5.0, 10.0, 30.0, 90.0]), {"positive": "down"})
+    sea = xarray.Dataset({"warmth": (("depth", "y", "x"), warmth)}, coords={"depth": axis})
+    sea.to_netcdf(tmp_path / "sea.nc", engine="scipy")
+    grid = vizlight.read(tmp_path / "sea.nc")
+    assert (grid.bounds.z_min, grid.bounds.z_max) == (-90, -5)
+    assert grid["warmth"][np.argmax(grid.points[:, 2])] == 0
+
+
+def test_a_mesh_of_ugrid_is_no_grid(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    topology = ((), 0, {"cf_role": "mesh_topology"})
+    corners = (("face", "corner"), np.arange(12.0).reshape(3, 4))
+    mesh = xarray.Dataset({"mesh": topology, "corners": corners})
+    mesh.to_netcdf(tmp_path / "mesh.nc", engine="scipy")
+    with pytest.raises(files.FileError, match=r"a mesh of UGRID, not a grid; convert it to \.vtu"):
+        vizlight.read(tmp_path / "mesh.nc")
 
 
 def test_a_file_of_no_grid(tmp_path):

@@ -59,6 +59,16 @@ def test_light_of_a_map_in_degrees_is_that_of_the_map_in_metres():
     assert abs(vizlight.relief_shadow(plain, scene)["t"] - t).mean() > 0.1
 
 
+def test_a_relief_that_nobody_sees_is_told_with_its_remedy():
+    grid = chart()
+    grid["height"] *= 1e-4
+    scene = vizlight.Scene(lights=vizlight.Light(direction=(-1, 1, 0.6)))
+    with pytest.warns(UserWarning, match=r"range over 5e-06 of its side.*pass exaggeration=10000"):
+        flat = vizlight.relief_shadow(grid, scene, lit=True)["luminance"]
+    raised = vizlight.relief_shadow(grid, scene, exaggeration=1e4, lit=True)["luminance"]
+    assert np.ptp(flat) < 1e-3 < 0.1 < np.ptp(raised)
+
+
 def test_a_raised_map_is_in_metres_without_its_holes():
     grid = chart()
     grid["height"][:7] = np.nan

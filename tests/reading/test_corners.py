@@ -243,3 +243,12 @@ def test_the_tip_of_a_cone_keeps_the_normals_of_its_sides():
     lit = np.any(found, axis=1)
     assert lit.sum() >= 24
     np.testing.assert_allclose(np.abs(found[lit, 2]), 0.5**0.5, atol=0.05)
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_a_point_that_a_face_names_twice_is_one_corner(turn):
+    points = np.array([[0, 0, 0], [2, 0, 0], [0, 1, 0.5], [1, -1, 2]], dtype=np.float64)
+    whole = np.array([[0, 1, 2], [0, 3, 1]])
+    twice = np.roll([[0, 1, 1, 2], [0, 3, 3, 1]], turn, axis=1)
+    found = corners.corner_normals(points, [twice])
+    np.testing.assert_allclose(found, corners.corner_normals(points, [whole]), atol=1e-6)

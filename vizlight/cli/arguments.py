@@ -77,7 +77,7 @@ class Shape(Part):
     slice
         Plane NORMAL:OFFSET whose section is taken.
     warp
-        Point array, such as heights, by which points are raised.
+        Point array by which points are moved: heights, or vectors.
     exaggeration
         Factor of heights. Default: one that shows them, which is printed.
     """

@@ -9,6 +9,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
+from vizlight.draw.bars import fitted, name_no_data, settle
 from vizlight.draw.corner import PLACES, CornerKey, ink_on
 from vizlight.draw.fragments import Fragments, unfit
 from vizlight.draw.html import write_page
@@ -24,7 +25,7 @@ from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_colo
 from vizlight.mesh import blocks, records
 from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Material, Scene
-from vizlight.shading.display import NO_DATA_NAME, titled
+from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
     from vtkmodules.vtkCommonCore import vtkObject
-    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike, Foreign, Given, Keywords
@@ -460,6 +460,7 @@ class Component:
         if light == "fragments" and reason:
             _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
         rendered = drawing.pop("render", True)
+        asked = drawing.get("scalar_bar_args") or {}
         if scalars is not None:
             live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
             drawing["scalars"] = live.scalars
@@ -468,8 +469,7 @@ class Component:
             else:
                 drawing["cmap"] = default_map(drawing.get("cmap"))
                 drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
-                bar = {"title": scalars, **(drawing.get("scalar_bar_args") or {})}
-                drawing["scalar_bar_args"] = bar
+                drawing["scalar_bar_args"] = fitted(plotter, scalars, asked)
         painter: Points | Fragments = (
             Points(reason, stroke.diameter) if reason else Fragments(stroke)
         )
@@ -503,9 +503,10 @@ class Component:
         invalid = live.invalid()
         if invalid and follow:
             _check.warn(unlit(invalid, source.inputs.count))
-        if scalars is not None and (invalid or live.lacks_values()):
-            for bar in plotter.scalar_bars.values():
-                if bar.GetLookupTable() is actor.mapper.lookup_table:
+        for bar in plotter.scalar_bars.values() if scalars is not None else ():
+            if bar.GetLookupTable() is actor.mapper.lookup_table:
+                settle(plotter, bar, asked)
+                if invalid or live.lacks_values():
                     name_no_data(bar)
         self._keep(plotter, live, actor)
         if rendered:
@@ -572,12 +573,6 @@ class Component:
     def __plotter_deep_clean__(self) -> None:
         """Let go of everything when the plotter is cleaned."""
         self.__plotter_close__()
-
-
-def name_no_data(bar: vtkScalarBarActor) -> None:
-    """Let a scalar bar name the colour of what is not data."""
-    bar.SetDrawNanAnnotation(True)
-    bar.SetNanAnnotation(NO_DATA_NAME)
 
 
 class _Holder:

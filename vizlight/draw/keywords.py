@@ -157,14 +157,18 @@ def colored(
 def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywords:
     """Return the limits of the colours of a grid, of which its surface alone is drawn.
 
-    They are those of all its values, as in PyVista, unless limits are given.
+    They are those of all its values, as in PyVista, unless limits are given. Infinite values, which
+    leave no colour to the others, are none of them, also on a surface.
     """
-    if name is None or isinstance(mesh, pv.PolyData) or drawing.get("clim") is not None:
+    if name is None or drawing.get("clim") is not None:
         return {}
     values = _array(mesh, name, of_cells=False)
     if values is None or values.ndim != 1:
         return {}
-    known = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    real = values.dtype.kind == "f"
+    if isinstance(mesh, pv.PolyData) and not (real and np.isinf(values).any()):
+        return {}
+    known = values[np.isfinite(values)] if real else values
     if drawing.get("log_scale") or values.dtype.kind not in "iuf" or not known.size:
         return {}
     return {"clim": (float(known.min()), float(known.max()))}

@@ -19,6 +19,7 @@ from vizlight.draw.backends import (
     probe,
     window_class,
 )
+from vizlight.draw.bars import name_no_data
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.corner import CornerKey, ink_on
 from vizlight.draw.program import Stroke
@@ -247,8 +248,6 @@ def make_plotter(
                 position_x=0.82, position_y=0.12,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
-                from vizlight.draw.component import name_no_data
-
                 name_no_data(made)
     except BaseException:
         plotter.close()

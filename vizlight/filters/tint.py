@@ -222,7 +222,12 @@ def values_of(
             )
         return array[:, column]
     if array.dtype.kind not in "iubf":
-        remedy = "attach numbers, such as np.unique(words, return_inverse=True)[1]"
+        way = (
+            "np.abs(values)"
+            if array.dtype.kind == "c"
+            else "np.unique(words, return_inverse=True)[1]"
+        )
+        remedy = f"attach numbers, such as {way}"
         raise TypeError(_check.message("scalars", "real numbers", _check.describe(array), remedy))
     return array
 

@@ -26,8 +26,7 @@ _NAME = vtkCompositeDataSet.NAME()
 def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
     """Return the datasets with their paths; raise TypeError for anything else."""
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        remedy = "read files by pyvista.read, wrap VTK objects by pyvista.wrap"
-        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, remedy))
+        raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__, _way(mesh)))
     named = list(named_blocks(mesh))
     for block, path in named:
         check_whole(block, "mesh", f"block {path}: " if path else "")
@@ -53,14 +52,20 @@ def surface(mesh: object, name: str) -> pv.PolyData:
     if isinstance(mesh, pv.MultiBlock):
         mesh = one_grid(mesh)
     if not isinstance(mesh, pv.DataSet):
-        remedy = "read files by vizlight.read, wrap VTK objects by pyvista.wrap"
-        raise TypeError(_check.message(name, "a PyVista surface", type(mesh).__name__, remedy))
+        raise TypeError(_check.message(name, "a PyVista surface", type(mesh).__name__, _way(mesh)))
     check_whole(mesh, name)
     found = mesh if isinstance(mesh, pv.PolyData) else outer_surface(mesh)[0]
     if not has_faces(found):
         got = f"a {type(mesh).__name__} mesh without faces"
         raise ValueError(_check.message(name, "a surface with faces", got))
     return found
+
+
+def _way(mesh: object) -> str:
+    """Return how what is no mesh becomes one."""
+    if isinstance(mesh, pv.PartitionedDataSet):
+        return "pass pyvista.MultiBlock(list(mesh))"
+    return "read files by vizlight.read, wrap VTK objects by pyvista.wrap"
 
 
 def each(mesh: pv.MultiBlock, make: Callable[[pv.DataSet], pv.DataSet]) -> pv.MultiBlock:

@@ -33,6 +33,8 @@ DEPTH = 0.01
 #: Largest distance of a light in sizes of the surface: a light farther away is moved there, so that
 #: squares do not overflow.
 FAR = 1e100
+#: Range of heights, as a share of the side of a map, below which its slopes are not seen.
+UNSEEN = 1e-4
 #: Options that only height fields have.
 FIELD_ALONE = ("elevation", "exaggeration", "border", "method", "raster")
 
@@ -135,6 +137,12 @@ class _FieldCaster:
         # The oracle follows single rays; it knows fields as they are, not resampled ones.
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
+        if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * size:
+            wanted = georeference.ENOUGH[0] * size / field.top * options.exaggeration
+            _check.warn(
+                f"the heights of the map range over {field.top / size:.1g} of its side, a relief "
+                f"that nobody sees; pass exaggeration={10 ** round(np.log10(wanted)):g}"
+            )
         exact = not sampled and self.depth > shadowing.LEAST_DEPTH * size
         self.effort = sum(self._field.heights.shape) if exact else 0
 

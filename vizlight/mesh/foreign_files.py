@@ -287,13 +287,15 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
     """Return the variables of a netCDF file on the axes of its largest variable.
 
     An axis is x, y or z: the last of a variable is x. Of any axis before the last three, other than
-    the time, the first value is taken. Points are at the coordinates, or at the indices of
-    an axis without coordinates.
+    the time, the first value is taken. Points are at the coordinates, depths below 0, or at the
+    indices of an axis without coordinates.
     """
     import xarray
 
     # With all coordinates, corners of cells are none of the variables.
     with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
+        if any(one.attrs.get("cf_role") == "mesh_topology" for one in file.variables.values()):
+            raise ValueError("a mesh of UGRID, not a grid; convert it to .vtu")
         fields: Keywords = {}
         clocks = [dim for dim in file.sizes if _is_time(file, dim)]
         clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
@@ -318,6 +320,8 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
                 file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
             )
             ticks = ticks.astype(np.float64)
+            if dim in file.coords and file[dim].attrs.get("positive") == "down":
+                ticks = -ticks
             widths = np.diff(ticks)
             if not (np.all(widths > 0) or np.all(widths < 0)):
                 raise ValueError(f"the axis {dim!r} does not rise or fall throughout")

@@ -16,15 +16,15 @@ __all__ = ["keep_normals", "welded"]
 def welded(mesh: pv.PolyData) -> pv.PolyData:
     """Return a surface whose points at the same place are one, where all their arrays are equal.
 
-    Normals that are computed are then those of the surface, not of each face; points that differ
-    in a colour or a texture coordinate stay apart.
+    Points without a face are left out. Normals that are computed are then those of the surface, not
+    of each face; points that differ in a colour or a texture coordinate stay apart.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
         Surface of polygons alone; anything else is returned as it is.
     """
-    if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_points:
+    if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_cells:
         return mesh
     parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
     if any(part.dtype.kind not in "biuf" for part in parts):
@@ -34,15 +34,15 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     _, first, same = np.unique(
         table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
     )
-    if len(first) == mesh.n_points:
-        return mesh
-    # In the order of the file.
-    place = np.argsort(np.argsort(first))
-    kept = np.sort(first)
     ids, ends = connectivity(mesh.GetPolys())
+    corners = first[same.reshape(-1)][ids]
+    kept = np.zeros(mesh.n_points, dtype=np.bool_)
+    kept[corners] = True
+    if kept.all():
+        return mesh
     out = pv.PolyData()
     out.points = np.asarray(mesh.points)[kept]
-    out.SetPolys(creases.cell_array(place[same.reshape(-1)][ids], ends))
+    out.SetPolys(creases.cell_array((np.cumsum(kept) - 1)[corners], ends))
     for key, array in mesh.point_data.items():
         point_arrays.attach_rows(out, key, np.asarray(array)[kept])
     out.GetCellData().ShallowCopy(mesh.GetCellData())

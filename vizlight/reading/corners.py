@@ -99,18 +99,25 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
         # Fourth root of each length: the product of two is the square root of their geometric
         # mean.
         roots = [np.sqrt(np.sqrt(np.sqrt(square))) for square in squares]
+        before = [[part[i - 1] for i in range(s)] for part in (sides, squares, roots)]
+        if s > 3 and not all(square.all() for square in squares):
+            # Of a point that a face names twice in turn the last counts, and the side before both.
+            for i in (*range(s), *range(s)):
+                same = before[1][i] == 0
+                for part in before:
+                    part[i] = np.where(same, part[i - 1], part[i])
         for i in range(s):
-            ahead, behind = sides[i], -sides[i - 1]
+            ahead, behind = sides[i], -before[0][i]
             normal, size = face, area
             if s > 3:
                 # A polygon that is not plane has another normal at each corner.
                 corner, size = kernels.unit(kernels.cross(ahead, behind))
                 inward = kernels.dot(corner, face)
-                flat = size <= FLAT * np.maximum(squares[i], squares[i - 1])
+                flat = size <= FLAT * np.maximum(squares[i], before[1][i])
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
             # The angle of the corner, exact for sharp and for blunt ones.
             weight = np.arctan2(size, kernels.dot(ahead, behind))
-            weight *= height / (roots[i] * roots[i - 1])
+            weight *= height / (roots[i] * before[2][i])
             weight[~np.isfinite(weight)] = 0
             for k in range(3):
                 # Faster than np.add.at, as long as a block has points near each other.

@@ -72,8 +72,8 @@ def unlit(invalid: int, total: int) -> str:
     """Return how many points could not be lit, and why, for a warning."""
     return (
         f"{invalid} of {total} points could not be lit (a zero, infinite or NaN vector, "
-        "dependent tangents, or no surface normal there): they have the ambient light, and "
-        "are grey in pictures"
+        "dependent tangents, no cell, or no surface normal there): they have the ambient light, "
+        "and are grey in pictures"
     )
 
 
