@@ -228,8 +228,8 @@ def _varying(arrays: Keywords) -> dict[str, bool]:
 
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
+    from vizlight.mesh.batches import inputs_of
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.mesh.parts import inputs_of
     from vizlight.shading.decide import decide
 
     record = vizlight.provenance(lit, asked.name)
