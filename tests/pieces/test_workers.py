@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -133,6 +134,16 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     with pytest.raises(pieces.PieceError, match=r"piece slices \[0:19\]: workers ended while"):
         Work(work, 0, False).each(always_killed, [(one,)], "light")
     assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
+
+
+def test_processes_and_their_threads_have_ended_with_the_object():
+    before = {*threading.enumerate(), *multiprocessing.active_children()}
+    work = pieces.Processes(2)
+    assert list(work(abs, [-1, 2])) == [1, 2]
+    made = {*threading.enumerate(), *multiprocessing.active_children()} - before
+    assert {type(one).__name__ for one in made} >= {"_ExecutorManagerThread", "SpawnProcess"}
+    del work
+    assert not any(one.is_alive() for one in made)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")

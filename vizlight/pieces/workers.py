@@ -165,8 +165,8 @@ class Processes:
     """
 
     def __init__(self, count: int) -> None:
-        self.count = _check.integer("count", count, low=1)
         self._pool: ProcessPoolExecutor | None = None
+        self.count = _check.integer("count", count, low=1)
 
     def __call__(self, function: Callable[[Foreign], T], calls: Iterable[Foreign]) -> Iterator[T]:
         """Yield the results of calls in their order.
@@ -189,7 +189,8 @@ class Processes:
                     lost = 0
                     yield value
             except BrokenProcessPool:
-                self._pool, lost = None, lost + 1
+                self._end()
+                lost += 1
                 if lost == LOST:
                     raise
             finally:
@@ -205,6 +206,18 @@ class Processes:
             )
         with _main_apart():
             return [self._pool.submit(function, one) for one in calls]
+
+    def _end(self) -> None:
+        """End the processes, and wait for that.
+
+        A process of Python that ends while the thread of an executor closes its pipes, as that
+        thread does once its executor is gone, may write to a pipe that is closed.
+        """
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown()
+
+    __del__ = _end
 
 
 def _begin(parent: int) -> None:
