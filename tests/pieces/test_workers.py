@@ -20,7 +20,7 @@ import traces
 
 from vizlight import Scene, View, pieces
 from vizlight.files import FileError
-from vizlight.pieces.workers import LOST, Call, Work
+from vizlight.pieces.workers import LOST, Work, repeated
 
 PLAIN = Scene(view=View(direction=(0, 0, 1)))
 #: A scheduler and a worker in one process, which prints the address.
@@ -205,11 +205,11 @@ def test_errors_of_the_system_are_tried_again():
             raise pieces.PieceError("piece a: not read") from error
         return len(calls)
 
-    assert Call(work, 2)((OSError("stale"),)) == 3
+    assert repeated(work, 2, (OSError("stale"),)) == 3
     for retries, cause in ((1, OSError("stale")), (2, None)):
         calls.clear()
         with pytest.raises(pieces.PieceError, match="not read"):
-            Call(work, retries)((cause,))
+            repeated(work, retries, (cause,))
         assert len(calls) == (2 if cause else 1)
 
 

@@ -28,7 +28,7 @@ def are_asked(out: Output, pieces: Pieces) -> bool:
     for name, value in vars(pieces).items():
         option = f"--{name}"
         if value is not None:
-            from vizlight.pieces.kinds import INDEX
+            from vizlight.pieces.sources import INDEX
 
             endings = ", ".join(INDEX.values())
             expected = f"an output that ends in {endings}, of pieces, beside {option}"
@@ -42,7 +42,7 @@ def _indices(out: Output) -> list[Path]:
     found = [path for path in out.output or () if path.suffix.lower().startswith(".pv")]
     if not found:
         return []
-    from vizlight.pieces.kinds import INDEX
+    from vizlight.pieces.sources import INDEX
 
     return [path for path in found if path.suffix.lower() in INDEX.values()]
 
