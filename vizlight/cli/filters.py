@@ -7,19 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from vizlight.cli import options, scenes
-from vizlight.cli.arguments import (
-    COMMON,
-    GROUPS,
-    LIT,
-    OUTPUT,
-    Color,
-    Common,
-    Flag,
-    Part,
-    Shape,
-)
+from vizlight.cli import scenes
+from vizlight.cli.arguments import GROUPS, Color, Common, Flag, Part, Shape
 from vizlight.cli.job import Job, carry_out
+from vizlight.cli.options import Given, takes
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
@@ -33,25 +24,16 @@ if TYPE_CHECKING:
     from vizlight.filters.fur import FurOptions
     from vizlight.scene import Light
 
-#: Option of ``project`` that the lights have the name of.
-RENAMED = {"light": "when"}
-#: Option of ``sky`` that the camera has the name of.
-SKY_UP = {"up": "sky_up"}
 
-
-@options.takes(
-    "streamlines",
-    "Streamlines",
-    without=("positions", "tangents"),
-)
+@takes("streamlines", "Streamlines")
 def streamlines(
     files: list[Path],
     /,
     *,
-    part: Annotated[Part, LIT] = Part(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
-    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
+    part: Part,
+    how: Given,
+    common: Common,
+    color: Color,
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -68,7 +50,7 @@ def streamlines(
     scenes.check_target(part)
     scenes.check_color(color)
     look = scenes.Look(common)
-    given = options.keywords(how)
+    given = how.keywords()
     if given.get("line_field") and "," in given.get("vectors", ""):
         given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
@@ -92,15 +74,15 @@ def streamlines(
 
 
 # Heights are exaggerated, and lit, as they are shown.
-@options.takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
+@takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
 def relief(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
+    shape: Shape,
+    how: Given,
     lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    common: Common,
     sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
@@ -121,7 +103,7 @@ def relief(
     look = scenes.Look(common, fill=False)
     # A shadow alone answers no question.
     given: Keywords = {"lit": lit or common.lights.question is not None}
-    given |= options.keywords(how)
+    given |= how.keywords()
     given |= {"lit": True, "occlusion": "sky"} if sky else {}
     asked = ReliefOptions(**given)
 
@@ -145,7 +127,7 @@ def relief(
         scene = look.scene(camera)
         shaded = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
         shown = None if heights is None else _raised_like(raised, shaded)
-        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
             made.scalars = "rgb" if look.colored else "luminance"
@@ -159,14 +141,14 @@ def relief(
     return carry_out(files, job, common.out, "relief", shape)
 
 
-@options.takes("sky", "Sky", renamed=SKY_UP)
+@takes("sky", "Sky", up="sky_up")
 def sky(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Find the share of a uniform sky that each point sees.
 
@@ -179,7 +161,7 @@ def sky(
 
     scenes.check_target(shape)
     look = scenes.Look(common)
-    given = options.keywords(how, SKY_UP)
+    given = how.keywords()
     asked = SkyOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -194,7 +176,7 @@ def sky(
         camera = look.camera(raised, is_map=field)
         lit = _step("skylit", "sky", mesh, None, given, common.out)
         shown = None if heights is None else _raised_like(raised, lit)
-        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = _suffix(found) if field else ""
         return made
 
@@ -218,14 +200,14 @@ def _level_light(lights: Sequence[Light]) -> float:
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-@options.takes("fur", "Fur")
+@takes("fur", "Fur")
 def fur(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
@@ -240,7 +222,7 @@ def fur(
     names = ("ambient", "diffuse", "specular")
     look = scenes.Look(common, material={name: getattr(MATERIAL, name) for name in names})
     given: Keywords = {"feature_angle": "auto"}
-    given |= options.keywords(how)
+    given |= how.keywords()
     asked = FurOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -253,14 +235,14 @@ def fur(
 
 
 # The tolerance is for solids, which no file holds.
-@options.takes("isoluminance", "Contours", without=("tolerance",))
+@takes("isoluminance", "Contours", without=("tolerance",))
 def contours(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
@@ -275,7 +257,7 @@ def contours(
     look = scenes.Look(common)
     # In a picture a crease is seen as one.
     given: Keywords = {"feature_angle": "auto"}
-    given |= options.keywords(how)
+    given |= how.keywords()
     asked = ContourOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -288,13 +270,13 @@ def contours(
     return carry_out(files, job, common.out, "contours", shape)
 
 
-@options.takes("project", "Projection", renamed=RENAMED)
+@takes("project", "Projection", light="when")
 def project(
     files: list[Path],
     /,
     *,
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    how: Given,
+    common: Common,
 ) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
@@ -309,7 +291,7 @@ def project(
     from vizlight.filters.project import ProjectOptions
 
     look = scenes.Look(common)
-    given = options.keywords(how, RENAMED)
+    given = how.keywords()
     asked = ProjectOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:

@@ -144,7 +144,7 @@ LIGHTING = {
         "flow.vtu --contour Temp --tangents V --conditioned",
     ),
     "view": (
-        "view",
+        "light",
         "Light a mesh, and open a page whose light follows the eye.",
         "flow.vtu --contour Temp --tangents V --conditioned",
     ),
