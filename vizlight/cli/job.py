@@ -10,8 +10,9 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import vizlight
+from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
-from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
+from vizlight.cli.output import OK, complain, draw, one_line, say
 from vizlight.cli.scenes import TINT, known, times, tinted, title_of
 from vizlight.cli.script import Step, in_order, source
 
@@ -218,7 +219,7 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
     scalars = job.scalars or _of_light(job)
     # A share that is 1 at most points is white, as paper is.
     plain = "gray" if job.scalars == job.name else None
-    options = known(clim=job.clim, key=_key(job)) | known(background=plain) | drawing(out)
+    options = known(background=plain) | drawing(out) | known(clim=job.clim, key=_key(job))
     panel = Step("", "render.Panel", job.shown or job.lit, scalars)
     return Step(
         "", "render.save_png", panel, path, camera=job.camera, size=job.look.size, **options
