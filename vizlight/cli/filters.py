@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Keywords
-    from vizlight.cli.arguments import Output
     from vizlight.filters.fur import FurOptions
     from vizlight.scene import Light
 
@@ -47,9 +46,7 @@ def streamlines(
     """
     from vizlight.filters.streamlines import StreamlineOptions
 
-    scenes.check_target(part)
-    scenes.check_color(color)
-    look = scenes.Look(common)
+    look = scenes.Look(common, part, color)
     given = how.keywords()
     if given.get("line_field") and "," in given.get("vectors", ""):
         given["vectors"] = tuple(given["vectors"].split(","))
@@ -65,7 +62,7 @@ def streamlines(
             mesh = Step("averaged", ".cell_data_to_point_data", mesh)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
-        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
+        lit = look.step("lit", "streamlines", mesh, look.scene(camera), **given, **on)
         made = Job(lit, asked.name, look, camera)
         made.tint(lit, mesh, color)
         return made
@@ -98,9 +95,8 @@ def relief(
     """
     from vizlight.filters.relief_shadow import ReliefOptions
 
-    scenes.check_target(shape, raised=True)
     # The shadow is cast by one light.
-    look = scenes.Look(common, fill=False)
+    look = scenes.Look(common, shape, raised=True, fill=False)
     # A shadow alone answers no question.
     given: Keywords = {"lit": lit or common.lights.question is not None}
     given |= how.keywords()
@@ -125,7 +121,7 @@ def relief(
                 on["exaggeration"] = factor
         camera = look.camera(raised, is_map=found is not None)
         scene = look.scene(camera)
-        shaded = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
+        shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
         shown = None if heights is None else _raised_like(raised, shaded)
         made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
@@ -159,8 +155,7 @@ def sky(
     """
     from vizlight.filters.sky import SkyOptions
 
-    scenes.check_target(shape)
-    look = scenes.Look(common)
+    look = scenes.Look(common, shape)
     given = how.keywords()
     asked = SkyOptions(**given)
 
@@ -174,7 +169,7 @@ def sky(
         # The sky belongs to the heights as they are.
         raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
         camera = look.camera(raised, is_map=field)
-        lit = _step("skylit", "sky", mesh, None, given, common.out)
+        lit = look.step("skylit", "sky", mesh, **given)
         shown = None if heights is None else _raised_like(raised, lit)
         made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = _suffix(found) if field else ""
@@ -218,9 +213,8 @@ def fur(
     """
     from vizlight.filters.fur import MATERIAL, FurOptions
 
-    scenes.check_target(shape)
     names = ("ambient", "diffuse", "specular")
-    look = scenes.Look(common, material={name: getattr(MATERIAL, name) for name in names})
+    look = scenes.Look(common, shape, material={name: getattr(MATERIAL, name) for name in names})
     given: Keywords = {"feature_angle": "auto"}
     given |= how.keywords()
     asked = FurOptions(**given)
@@ -228,7 +222,7 @@ def fur(
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(_tips(mesh, asked))
-        lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
+        lit = look.step("furry", "fur", mesh, look.scene(camera), **given)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
     return carry_out(files, job, common.out, "fur", shape)
@@ -253,8 +247,7 @@ def contours(
     """
     from vizlight.filters.isoluminance import ContourOptions
 
-    scenes.check_target(shape)
-    look = scenes.Look(common)
+    look = scenes.Look(common, shape)
     # In a picture a crease is seen as one.
     given: Keywords = {"feature_angle": "auto"}
     given |= how.keywords()
@@ -263,7 +256,7 @@ def contours(
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(mesh)
-        lit = _step("found", "isoluminance", mesh, look.scene(camera), given, common.out)
+        lit = look.step("found", "isoluminance", mesh, look.scene(camera), **given)
         bands = Step("", "[]", lit, "bands")
         return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 
@@ -299,25 +292,10 @@ def project(
         found = mesh.run()
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
-        scene = look.scene_in(n)
-        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
+        lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
         return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
 
     return carry_out(files, job, common.out, "projected", Part())
-
-
-def _step(
-    name: str,
-    filter_: str,
-    mesh: Step,
-    scene: Step | None,
-    given: dict[str, object],
-    out: Output,
-) -> Step:
-    """Return the step that runs a filter."""
-    progress = {"progress_bar": True} if out.progress else {}
-    arguments = (mesh,) if scene is None else (mesh, scene)
-    return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
 
 
 def _tips(mesh: Step, asked: FurOptions) -> Step:

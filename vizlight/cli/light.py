@@ -180,9 +180,7 @@ def _builder(
     """Return the function that makes the job of a file, after a check of what needs no mesh."""
     from vizlight.shading.options import LightOptions
 
-    scenes.check_target(target)
-    scenes.check_color(color)
-    look = scenes.Look(common)
+    look = scenes.Look(common, target, color)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.
@@ -190,20 +188,19 @@ def _builder(
     if common.lights.question in CONDITIONED and "tangents" in given:
         given = {"conditioned": True} | given
     asked = LightOptions(**given)
-    lights, place = "vizlight.illuminate", dict[str, object](inplace=True)
+    lights, place = "illuminate", dict[str, object](inplace=True)
     if refine is not None:
-        lights, place = "vizlight.refine", {"error": _finest(refine)}
+        lights, place = "refine", {"error": _finest(refine)}
 
     def job(path: Path, time: float | str | None) -> Job:
         data = scenes.joined(scenes.data(path, target, time), given.get("tangents"))
         mesh = scenes.surface(data, target) if taken else data
         scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))
         camera = look.camera(mesh)
-        progress = {"progress_bar": True} if common.out.progress else {}
         scene = look.scene(camera)
         # The lit mesh shares the arrays of the file; a refined one is new.
         source = mesh if refine else Step("", ".copy", mesh, deep=False)
-        lit = Step("lit", lights, source, scene, **given, **place, **progress)
+        lit = look.step("lit", lights, source, scene, **given, **place)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
         made.kind = "PolyData" if refine else mesh
         made.source = [str(path), *recipe]
@@ -333,9 +330,7 @@ def _light_pieces(
 ) -> int:
     """Light files as pieces of one mesh, or print the script that does; return the exit code."""
     out = common.out
-    scenes.check_target(target)
-    scenes.check_color(color)
-    look = scenes.Look(common)
+    look = scenes.Look(common, target, color)
     for part, names in (
         (target, "time times overlay clip threshold slice warp"),
         (color, "scalars"),
@@ -360,8 +355,8 @@ def _light_pieces(
     shown = {"progress_bar": True} if out.progress else {}
     # The eye belongs to the lit whole, which no piece knows: it is found before the light.
     camera = look.camera(list(files), by="vizlight.pieces.camera_on", **what, **runs, **shown)
-    scene, more = look.scene(camera), {"out": indices[0], **runs, **given, **shown}
-    lit = Step("lit", "vizlight.pieces.light", list(files), scene, **what, **more)
+    scene, more = look.scene(camera), {"out": indices[0], **runs, **given}
+    lit = look.step("lit", "pieces.light", list(files), scene, **what, **more)
     name = str(given.get("name", "luminance"))
     scalars = ("rgb" if name == "luminance" else f"{name}_rgb") if look.colored else name
     panel = Step("", "render.Panel", Step("whole", "vizlight.read", indices[0]), scalars)

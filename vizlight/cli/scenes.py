@@ -51,17 +51,15 @@ def check_target(target: Part, *, raised: bool = False) -> None:
             raise ValueError(message(f"--{option}", f"--{needs} with it", "it alone"))
 
 
-def check_color(color: Color) -> None:
-    """Check the options of a picture in colour that need no mesh."""
-    if color.cmap is None:
-        return
+def _check_map(cmap: str) -> None:
+    """Check the name of a colour map."""
     from vizlight.filters.tint import color_table
 
     try:
-        color_table([], cmap=color.cmap)
+        color_table([], cmap=cmap)
     except ValueError as error:
         expected = "the name of a colour map"
-        raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
+        raise ValueError(message("--cmap", expected, repr(cmap))) from error
 
 
 def times(file: Path, target: Part) -> list[float | str | None]:
@@ -245,9 +243,20 @@ class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
     def __init__(
-        self, common: Common, *, fill: bool = True, material: Mapping[str, float] | None = None
+        self,
+        common: Common,
+        target: Part | None = None,
+        color: Color | None = None,
+        *,
+        raised: bool = False,
+        fill: bool = True,
+        material: Mapping[str, float] | None = None,
     ) -> None:
-        self._fill = fill
+        if target is not None:
+            check_target(target, raised=raised)
+        if color is not None and color.cmap is not None:
+            _check_map(color.cmap)
+        self._fill, self._progress = fill, common.out.progress
         self.lights, self._eye = common.lights, common.eye
         _check_question(self.lights)
         self.size = arguments.pixels(common.out.size)
@@ -272,6 +281,11 @@ class Look:
         self._toward, self._fixed = (
             _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
         )
+
+    def step(self, name: str, filter_: str, /, *arguments: object, **given: object) -> Step:
+        """Return the step that runs a filter, with a progress bar where one is asked for."""
+        progress = {"progress_bar": True} if self._progress else {}
+        return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
 
     def camera(
         self, mesh: object, *, is_map: bool = False, by: str = "render.camera_on", **more: Given
