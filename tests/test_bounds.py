@@ -1,0 +1,105 @@
+"""Stated bounds beside those of the stability suite and of the tests that mirror a file."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import oracles
+import pytest
+from oracles import exact, mp
+
+from vizlight import View
+from vizlight.geometry import relief
+from vizlight.model import highlights
+
+EPS = float(np.finfo(float).eps)
+
+
+def inside(x, y, z, start, way):
+    """Return the length of a ray below a bilinear field, and the number of crossings."""
+    ends = [0.0, max((z.max() - start[2]) / way[2], 0.0)]
+    for nodes, along, place in zip((x, y), way, start, strict=False):
+        if along:
+            ends += [s for s in (nodes - place) / along if 0 < s < ends[1]]
+    place, steps = exact(start), exact(way)
+    total, crossings = mp.mpf(0), 0
+    for low, high in pairwise(map(exact, np.unique(ends))):
+        middle = start + float(low + high) / 2 * way
+        at = [int(np.clip(np.searchsorted(n, p, "right") - 1, 0, len(n) - 2))
+              for n, p in zip((x, y), middle, strict=False)]  # fmt: skip
+
+        def above(s, i=at[0], j=at[1]):
+            p = [a + s * b for a, b in zip(place, steps, strict=True)]
+            u, v = (
+                (min(max(c, exact(n[0])), exact(n[-1])) - exact(n[k])) / exact(n[k + 1] - n[k])
+                for c, n, k in zip(p, (x, y), (i, j), strict=False)
+            )
+            (a, b), (c, d) = exact(z[j : j + 2, i : i + 2])
+            return a * (1 - u) * (1 - v) + b * u * (1 - v) + c * (1 - u) * v + d * u * v - p[2]
+
+        # The parabola through the heights at both ends and midway.
+        first, half, last = above(low), above((low + high) / 2), above(high)
+        two, one = 2 * (first - 2 * half + last), 4 * half - 3 * first - last
+        square, roots = one * one - 4 * two * first, []
+        if abs(two) > mp.mpf(10) ** -30:
+            roots = [(-one + e * mp.sqrt(square)) / (2 * two) for e in (-1, 1)] * (square > 0)
+        elif one:
+            roots = [-first / one]
+        shares = sorted([mp.mpf(0), *(r for r in roots if 0 < r < 1), mp.mpf(1)])
+        crossings += len(shares) - 2
+        for a, b in pairwise(shares):
+            at = (a + b) / 2
+            total += (high - low) * (b - a) * (first + at * (one + at * two) > 0)
+    return total, crossings
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_lengths_below_rough_fields(seed):
+    """Uneven nodes; and heights of integers with rays in the planes of the nodes."""
+    random, whole = np.random.default_rng(seed), seed % 2
+    x, y = (np.arange(float(n)) if whole else np.sort(random.uniform(0, 9, n)) for n in (9, 8))
+    z = random.integers(0, 5, (8, 9)).astype(float) if whole else random.uniform(0, 4, (8, 9))
+    scale = max(map(np.ptp, (x, y, z)))
+    for azimuth in (0, 90, 180, 270) if whole else random.uniform(0, 360, 4):
+        e, a = np.radians([random.uniform(10, 80), azimuth])
+        way = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+        way[np.abs(way) < 1e-15] = 0
+        way /= np.linalg.norm(way)
+        starts = [random.choice(x, 8), random.choice(y, 8), random.uniform(-1, 4, 8)]
+        starts = np.stack(starts, axis=1)
+        found = relief.inside_length(x, y, z, starts, direction=way, method="exact")
+        for start, length in zip(starts, found, strict=True):
+            true, crossings = inside(x, y, z, start, way)
+            bound = 3 * EPS * scale * max(crossings, 1) + 4 * EPS * float(true)
+            assert abs(exact(length) - true) <= bound
+
+
+@pytest.mark.parametrize("n", range(3, 7))
+def test_axes_of_an_eye_are_orthonormal(n, random):
+    for direction in random.standard_normal((15, n)):
+        rows = exact(View(direction=direction).axes())
+        for a, one in enumerate(rows):
+            assert all(abs(oracles.dot(one, o) - (a == b)) <= 4 * EPS for b, o in enumerate(rows))
+
+
+def test_the_factor_of_large_powers(random):
+    angles = random.uniform(0.2, 2.6, 60)
+    found = highlights.simple_factor(angles)
+    for angle, factor in zip(angles, found, strict=True):
+        true = 4 * mp.cos(exact(angle) / 2)
+        assert abs(exact(factor) - true) <= 4 * EPS * true
+
+
+def test_the_mean_error_of_highlights_over_a_sphere(random):
+    """By longitude about the axis across light and eye: what both reach is a lune."""
+    nodes, weights = np.polynomial.legendre.leggauss(600)
+    for angle, r in zip(random.uniform(0.2, 2.5, 3), random.uniform(5, 60, 3), strict=True):
+        light, eye = (np.array([s * np.sin(angle / 2), 0, np.cos(angle / 2)]) for s in (1, -1))
+        t, phi = np.meshgrid(nodes * np.pi / 2, nodes * (np.pi - angle) / 2)
+        normal = np.stack([np.cos(t) * np.sin(phi), np.sin(t), np.cos(t) * np.cos(phi)], axis=-1)
+        mirror = np.maximum(2 * (normal @ light) * (normal @ eye) - light @ eye, 0) ** r
+        off = 255 * (mirror - np.maximum(normal[..., 2], 0) ** (4 * r))
+        area = np.outer(weights, weights) * np.cos(t)
+        rms = np.sqrt(np.sum(area * off**2) / np.sum(area))
+        assert highlights.sphere_error(angle, r) == pytest.approx(rms, rel=1e-4)
