@@ -26,13 +26,7 @@ if TYPE_CHECKING:
 
 @takes("streamlines", "Streamlines")
 def streamlines(
-    files: list[Path],
-    /,
-    *,
-    part: Part,
-    how: Given,
-    common: Common,
-    color: Color,
+    files: list[Path], /, *, part: Part, how: Given, common: Common, color: Color
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -138,14 +132,7 @@ def relief(
 
 
 @takes("sky", "Sky", up="sky_up")
-def sky(
-    files: list[Path],
-    /,
-    *,
-    shape: Shape,
-    how: Given,
-    common: Common,
-) -> int:
+def sky(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
     """Find the share of a uniform sky that each point sees.
 
     Parameters
@@ -196,14 +183,7 @@ def _level_light(lights: Sequence[Light]) -> float:
 
 
 @takes("fur", "Fur")
-def fur(
-    files: list[Path],
-    /,
-    *,
-    shape: Shape,
-    how: Given,
-    common: Common,
-) -> int:
+def fur(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
     Parameters
@@ -230,14 +210,7 @@ def fur(
 
 # The tolerance is for solids, which no file holds.
 @takes("isoluminance", "Contours", without=("tolerance",))
-def contours(
-    files: list[Path],
-    /,
-    *,
-    shape: Shape,
-    how: Given,
-    common: Common,
-) -> int:
+def contours(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
     Parameters
@@ -264,13 +237,7 @@ def contours(
 
 
 @takes("project", "Projection", light="when")
-def project(
-    files: list[Path],
-    /,
-    *,
-    how: Given,
-    common: Common,
-) -> int:
+def project(files: list[Path], /, *, how: Given, common: Common) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
     Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
