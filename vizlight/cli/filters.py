@@ -58,7 +58,7 @@ def streamlines(
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
         lit = look.step("lit", "streamlines", mesh, look.scene(camera), **given, **on)
         made = Job(lit, asked.name, look, camera)
-        made.tint(lit, mesh, color)
+        made.tint(mesh, color)
         return made
 
     return carry_out(files, job, common.out, "streamlines", part)
@@ -107,16 +107,13 @@ def relief(
         on: dict[str, object] = {}
         if found is None and asked.raster is None:
             on["feature_angle"] = "auto"
-        heights = None if found is None else _heights(found, asked.elevation)
-        raised = mesh
-        if heights is not None:
-            raised = scenes.warped("raised", mesh, heights, shape.exaggeration)
-            if (factor := raised.arguments[2]) != 1:
-                on["exaggeration"] = factor
-        camera = look.camera(raised, is_map=found is not None)
+        raised = None if found is None else _raised(mesh, asked.elevation, shape.exaggeration)
+        if raised is not None and raised.arguments[2] != 1:
+            on["exaggeration"] = raised.arguments[2]
+        camera = look.camera(raised or mesh, is_map=found is not None)
         scene = look.scene(camera)
         shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
-        shown = None if heights is None else _raised_like(raised, shaded)
+        shown = _raised_like(raised, shaded)
         made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
@@ -152,12 +149,11 @@ def sky(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> in
         field = shape.contour is None and shape.slice is None and _is_field(found)
         if shape.contour is not None or shape.slice is not None:
             mesh = scenes.surface(mesh, shape)
-        heights = _heights(found, None) if field else None
         # The sky belongs to the heights as they are.
-        raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
-        camera = look.camera(raised, is_map=field)
+        raised = _raised(mesh, None, 1.0) if field else None
+        camera = look.camera(raised or mesh, is_map=field)
         lit = look.step("skylit", "sky", mesh, **given)
-        shown = None if heights is None else _raised_like(raised, lit)
+        shown = _raised_like(raised, lit)
         made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = _suffix(found) if field else ""
         return made
@@ -165,8 +161,21 @@ def sky(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> in
     return carry_out(files, job, common.out, "sky", shape)
 
 
-def _raised_like(raised: Step, lit: Step) -> Step:
+def _raised(mesh: Step, elevation: str | None, factor: float | None) -> Step | None:
+    """Return the step that raises a flat grid by its heights in a picture, if it has some."""
+    from vizlight.mesh.height_grids import heights_name
+
+    field = mesh.run()
+    name = elevation or heights_name(field)
+    if name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
+        return None
+    return scenes.warped("raised", mesh, str(name), factor)
+
+
+def _raised_like(raised: Step | None, lit: Step) -> Step | None:
     """Return the step that raises a lit map as another step raises the map."""
+    if raised is None:
+        return None
     shown = Step("shown", raised.path, lit, *raised.arguments[1:])
     shown.note = raised.note
     return shown
@@ -277,15 +286,6 @@ def _tips(mesh: Step, asked: FurOptions) -> Step:
         length = float(found.point_data[length].max()) if known else 0.0
     normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
-
-
-def _heights(field: pv.DataSet, elevation: str | None) -> str | None:
-    """Return the name of the heights that raise a flat grid in a picture."""
-    from vizlight.mesh.height_grids import heights_name
-
-    name = elevation or heights_name(field)
-    flat = field.bounds.z_min == field.bounds.z_max
-    return name if flat and name is not None and name in field.point_data else None
 
 
 def _is_field(mesh: pv.DataSet) -> bool:

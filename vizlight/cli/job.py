@@ -95,9 +95,9 @@ class Job:
     meshes: list[tuple[Step, Path]] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
 
-    def tint(self, lit: Step, data: Step, color: Color) -> None:
+    def tint(self, data: Step, color: Color) -> None:
         """Show the colours of an array of the data, lit, if one is asked for."""
-        shown = tinted(lit, self.name, data, color)
+        shown = tinted(self.lit, self.name, data, color)
         if shown is not None and color.scalars is not None:
             self.shown, self.scalars, self.color = shown, TINT, color
             self.title = title_of(data, color.scalars)

@@ -204,7 +204,7 @@ def _builder(
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
         made.kind = "PolyData" if refine else mesh
         made.source = [str(path), *recipe]
-        made.tint(lit, data, color)
+        made.tint(data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), target, color.scalars)
         elif color.scalars is not None and color.scalars == target.contour:
