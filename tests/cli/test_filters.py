@@ -241,6 +241,7 @@ def test_azimuth_and_altitude(folder, run):
         ("315,30", (-(0.375**0.5), 0.375**0.5, 0.5)),
         ("12,90", (0, 0, 1)),
         ("-1,2,3", (-1, 2, 3)),
+        ("-y", (0, -1, 0)),
     ):
         code, _, err = run("light", "flow.vti", "--light", text, "-o", "lit.vtp")
         assert (code, err) == (0, "")

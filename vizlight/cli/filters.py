@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from vizlight.cli import scenes
 from vizlight.cli.arguments import GROUPS, Color, Common, Flag, Part, Shape
 from vizlight.cli.job import Job, carry_out
-from vizlight.cli.options import Given, takes
+from vizlight.cli.options import keywords, takes
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @takes("streamlines", "Streamlines")
 def streamlines(
-    files: list[Path], /, *, part: Part, how: Given, common: Common, color: Color
+    files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -41,7 +41,7 @@ def streamlines(
     from vizlight.filters.streamlines import StreamlineOptions
 
     look = scenes.Look(common, part, color)
-    given = how.keywords()
+    given = keywords(how)
     if given.get("line_field") and "," in given.get("vectors", ""):
         given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
@@ -71,7 +71,7 @@ def relief(
     /,
     *,
     shape: Shape,
-    how: Given,
+    how: object,
     lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
     common: Common,
     sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
@@ -93,7 +93,7 @@ def relief(
     look = scenes.Look(common, shape, raised=True, fill=False)
     # A shadow alone answers no question.
     given: Keywords = {"lit": lit or common.lights.question is not None}
-    given |= how.keywords()
+    given |= keywords(how)
     given |= {"lit": True, "occlusion": "sky"} if sky else {}
     asked = ReliefOptions(**given)
 
@@ -129,7 +129,7 @@ def relief(
 
 
 @takes("sky", "Sky", up="sky_up")
-def sky(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
+def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the share of a uniform sky that each point sees.
 
     Parameters
@@ -140,7 +140,7 @@ def sky(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> in
     from vizlight.filters.sky import SkyOptions
 
     look = scenes.Look(common, shape)
-    given = how.keywords()
+    given = keywords(how)
     asked = SkyOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -192,7 +192,7 @@ def _level_light(lights: Sequence[Light]) -> float:
 
 
 @takes("fur", "Fur")
-def fur(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
+def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
     Parameters
@@ -205,7 +205,7 @@ def fur(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> in
     names = ("ambient", "diffuse", "specular")
     look = scenes.Look(common, shape, material={name: getattr(MATERIAL, name) for name in names})
     given: Keywords = {"feature_angle": "auto"}
-    given |= how.keywords()
+    given |= keywords(how)
     asked = FurOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -219,7 +219,7 @@ def fur(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> in
 
 # The tolerance is for solids, which no file holds.
 @takes("isoluminance", "Contours", without=("tolerance",))
-def contours(files: list[Path], /, *, shape: Shape, how: Given, common: Common) -> int:
+def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
     Parameters
@@ -232,7 +232,7 @@ def contours(files: list[Path], /, *, shape: Shape, how: Given, common: Common) 
     look = scenes.Look(common, shape)
     # In a picture a crease is seen as one.
     given: Keywords = {"feature_angle": "auto"}
-    given |= how.keywords()
+    given |= keywords(how)
     asked = ContourOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -246,7 +246,7 @@ def contours(files: list[Path], /, *, shape: Shape, how: Given, common: Common) 
 
 
 @takes("project", "Projection", light="when")
-def project(files: list[Path], /, *, how: Given, common: Common) -> int:
+def project(files: list[Path], /, *, how: object, common: Common) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
     Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
@@ -260,7 +260,7 @@ def project(files: list[Path], /, *, how: Given, common: Common) -> int:
     from vizlight.filters.project import ProjectOptions
 
     look = scenes.Look(common)
-    given = how.keywords()
+    given = keywords(how)
     asked = ProjectOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:

@@ -30,7 +30,7 @@ from vizlight.cli.arguments import (
     fraction,
 )  # fmt: skip
 from vizlight.cli.job import HTML, Job, carry_out, drawing
-from vizlight.cli.options import Given, takes, words
+from vizlight.cli.options import keywords, takes, words
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.cli.script import Step, source
 
@@ -53,7 +53,7 @@ def light(
     /,
     *,
     target: Target,
-    how: Given,
+    how: object,
     common: Common,
     color: Color,
     pieces: Pieces,
@@ -78,7 +78,7 @@ def light(
     refine
         Largest error between points, such as 1/255: cells are split where it is more.
     """
-    given = how.keywords() | ({"occlusion": "sky"} if sky else {})
+    given = keywords(how) | ({"occlusion": "sky"} if sky else {})
     if indices := _indices(common.out, pieces):
         if legibility:
             raise ValueError(message("--legibility", "one mesh, lit as a whole", "pieces"))
@@ -123,7 +123,7 @@ def view(
     /,
     *,
     target: Target,
-    how: Given,
+    how: object,
     lights: Lights,
     finish: Finish,
     eye: Eye,
@@ -155,7 +155,7 @@ def view(
             progress=window.progress,
         )
         common = Common(lights=lights, finish=finish, eye=eye, out=out)
-        build = _builder(target, how.keywords(), common, color, words(target, how))
+        build = _builder(target, keywords(how), common, color, words(target, how))
         code = carry_out([file], build, out, "view", target)
         if folder is not None:
             page.chmod(0o600)

@@ -10,7 +10,7 @@ import ast
 import functools
 import inspect
 import re
-from dataclasses import dataclass, field, fields, make_dataclass
+from dataclasses import field, fields, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Union, get_type_hints
 
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 
     P = ParamSpec("P")
 
-    #: What a name of a module stands for: a node of its source, or a module and a name there.
-    Meaning = ast.FunctionDef | ast.expr | tuple[str, str]
+    #: What a name of a module stands for: the source of a function, the node of a value, or a
+    #: module and a name there.
+    Meaning = str | ast.expr | tuple[str, str]
 
 ROOT = Path(__file__).parents[1]
 #: Types that text can be read as, by their names in annotations, beside those that are choices. A
@@ -112,19 +113,15 @@ READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
 }
 
 
-@dataclass(frozen=True)
-class Given:
-    """Options of a filter that a command was given; see :func:`takes`."""
-
-    def keywords(self) -> Keywords:
-        """Return the options that differ from their defaults, by the filter's names."""
-        found: Keywords = {}
-        for one in fields(self):
-            value, name = getattr(self, one.name), one.metadata["name"]
-            if value != one.default or type(value) is not type(one.default):
-                _, read, _ = READ.get(name, (None, None, None))
-                found[name] = read(one.name.replace("_", "-"), value) if read else value
-        return found
+def keywords(how: Foreign) -> Keywords:
+    """Return the options of a filter that differ from their defaults, by the filter's names."""
+    found: Keywords = {}
+    for one in fields(how):
+        value, name = getattr(how, one.name), one.metadata["name"]
+        if value != one.default or type(value) is not type(one.default):
+            _, read, _ = READ.get(name, (None, None, None))
+            found[name] = read(one.name.replace("_", "-"), value) if read else value
+    return found
 
 
 def words(*parts: Foreign) -> list[str]:
@@ -178,11 +175,9 @@ def takes(
 
 def arguments_of(
     filter_: str, *, without: tuple[str, ...] = (), renamed: Mapping[str, str] | None = None
-) -> type[Given]:
+) -> type:
     """Return a class of the options of a filter, each with the first clause on it; see takes."""
-    node, module = _find(f"vizlight.filters.{filter_}", filter_)
-    assert isinstance(node, ast.FunctionDef)
-    texts = _words.parameters(ast.get_docstring(node))
+    node, texts, module = _function(f"vizlight.filters.{filter_}", filter_)
     made: list[tuple[str, object, object]] = []
     for argument, value in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True):
         name = argument.arg
@@ -198,7 +193,7 @@ def arguments_of(
         )
         own = field(default=default, metadata={"name": name})
         made.append(((renamed or {}).get(name, name), Annotated[text_type, shown], own))
-    kind = make_dataclass("Arguments", made, bases=(Given,), frozen=True, kw_only=True)
+    kind = make_dataclass("Arguments", made, frozen=True, kw_only=True)
     # Cyclopts looks for descriptions in the source of the module of a class; this one has none.
     kind.__module__ = __package__ or __name__
     return kind
@@ -212,27 +207,39 @@ def _meanings(module: str) -> dict[str, Meaning]:
     found: dict[str, Meaning] = {}
     if not (module.startswith("vizlight.") and path.is_file()):
         return found
-    for outer in ast.parse(path.read_text(encoding="utf-8")).body:
-        # What stands below ``if`` is for types alone.
-        for node in outer.body if isinstance(outer, ast.If) else [outer]:
-            if isinstance(node, ast.ImportFrom):
-                for alias in node.names:
-                    found[alias.asname or alias.name] = (node.module or "", alias.name)
-            elif isinstance(node, ast.FunctionDef):
-                found[node.name] = node
-            elif isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-                target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
-                names, values = [target], [node.value]
-                if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
-                    names, values = target.elts, node.value.elts
-                found |= {ast.unparse(name): v for name, v in zip(names, values, strict=True)}
+    for part in path.read_text(encoding="utf-8").split("\n\n\n"):
+        # Functions and classes, which are most of a module, are parsed where they are asked for.
+        if own := re.search(r"^(?:def|class) (\w+)", part, re.M):
+            found[own[1]] = part
+            continue
+        for outer in ast.parse(part).body:
+            # What stands below ``if`` is for types alone.
+            for node in outer.body if isinstance(outer, ast.If) else [outer]:
+                if isinstance(node, ast.ImportFrom):
+                    for alias in node.names:
+                        found[alias.asname or alias.name] = (node.module or "", alias.name)
+                elif isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+                    target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+                    names, values = [target], [node.value]
+                    if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+                        names, values = target.elts, node.value.elts
+                    found |= {ast.unparse(name): v for name, v in zip(names, values, strict=True)}
     return found
 
 
-def _find(module: str, name: str) -> tuple[ast.AST, str]:
+def _find(module: str, name: str) -> tuple[str | ast.expr, str]:
     """Return what a name stands for, and the module in which that is."""
     found = _meanings(module)[name]
     return _find(*found) if isinstance(found, tuple) else (found, module)
+
+
+def _function(module: str, name: str) -> tuple[ast.FunctionDef, dict[str, str], str]:
+    """Return a function, the description of its parameters, and its module."""
+    text, home = _find(module, name)
+    assert isinstance(text, str)
+    node = ast.parse(text).body[-1]
+    assert isinstance(node, ast.FunctionDef)
+    return node, _words.parameters(ast.get_docstring(node)), home
 
 
 def _value(node: ast.expr, module: str) -> object:
@@ -282,9 +289,8 @@ def _text(name: str, texts: Mapping[str, str]) -> str:
     elsewhere = re.search(r"[Aa]s for\s:\w+:`~?vizlight\.([\w.]+)`", entry)
     if elsewhere:
         module, _, function = elsewhere[1].rpartition(".")
-        there, _ = _find(f"vizlight.{module or f'filters.{function}'}", function)
-        assert isinstance(there, ast.FunctionDef)
-        entry = _words.parameters(ast.get_docstring(there)).get(name, "") or entry
+        _, there, _ = _function(f"vizlight.{module or f'filters.{function}'}", function)
+        entry = there.get(name, "") or entry
     text = " ".join(entry.partition("\n")[2].split()).replace("``", "")
     return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", text)
 
