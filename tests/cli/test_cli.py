@@ -10,10 +10,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from cyclopts import App
 
 import vizlight
 from vizlight import Scene, cli, render
 from vizlight.draw import backends
+
+#: Counts the reads of PyVista, runs a command, and prints the count and what is loaded.
+COUNTED = """
+import sys
+import pyvista as pv
+read, reads = pv.BaseReader.read, []
+pv.BaseReader.read = lambda *args: reads.append(args) or read(*args)
+from vizlight import cli
+assert cli.main(sys.argv[1:]) == cli.OK
+print(len(reads), *sys.modules)
+"""
 
 
 @pytest.fixture
@@ -453,3 +465,45 @@ def test_a_file_that_vtk_warns_of_is_refused_in_one_line(tmp_path, capfd):
     err = capfd.readouterr().err
     assert "Cannot read file version" in err
     assert err.count("\n") == 1
+
+
+def counted(folder, *words):
+    command = [sys.executable, "-c", COUNTED, *words]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder)
+    reads, *modules = run.stdout.splitlines()[-1].split()
+    return int(reads), set(modules)
+
+
+@pytest.fixture
+def ball(tmp_path):
+    pv.Sphere().save(tmp_path / "ball.vtp")
+    return tmp_path
+
+
+def test_a_lit_mesh_is_read_once_and_nothing_that_draws_is_loaded(ball):
+    reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.vtp")
+    assert reads == 1
+    drawing = {"vizlight.draw.component", "vizlight.pieces.run", "vizlight.pieces.sources"}
+    assert not modules & {*drawing, "numba", "scipy.optimize", "scipy.spatial"}
+
+
+@pytest.mark.opengl
+def test_a_picture_reads_its_file_once(ball):
+    reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.png", "--size", "60x40")
+    assert reads == 1
+    assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
+    assert "vizlight.draw.component" in modules
+
+
+def test_help_reads_the_arguments_of_its_command_once(monkeypatch, run):
+    asked = []
+    assemble = App.assemble_argument_collection
+
+    def counted(app, **options):
+        asked.append(app.name)
+        return assemble(app, **options)
+
+    monkeypatch.setattr(App, "assemble_argument_collection", counted)
+    code, out, _ = run("fur --help")
+    assert (code, "--density" in out) == (0, True)
+    assert asked == [("fur",)]
