@@ -121,8 +121,24 @@ def of_accessor(method):
     return function
 
 
+def needs_nothing(function):
+    """Return whether a callable can be called without arguments, or by its object alone."""
+    needed = [
+        parameter
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.default is parameter.empty
+        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+    ]
+    return all(parameter.name == "self" for parameter in needed)
+
+
+PUBLIC = public()
 #: Arguments of a valid call by the name of the callable; positional ones by name too.
-CALLS = {**adversary_arrays.CALLS, **meshes.CALLS}
+CALLS = {
+    **{name: dict for name, function in PUBLIC.items() if needs_nothing(function)},
+    **adversary_arrays.CALLS,
+    **meshes.CALLS,
+}
 #: Objects whose methods are called.
 SELF = {
     **{name: vizlight.Sphere for name in CALLS if name.startswith("geometry.solids.base.Solid.")},
@@ -147,8 +163,6 @@ KINDS = {
     ("pieces.survey.camera_on", "sources"): "object | Path",
     ("pieces.run.light", "sources"): "object | Path",
 }
-#: Arguments that are not replaced, with the reason.
-SKIPPED = {}
 #: The only arguments that are replaced where a function of the same arguments is walked anyway.
 ONLY = {name: ("mesh", "surface", "lit", "scene") for name in CALLS if name.startswith("accessor.")}
 #: Words by which an error may name an argument, where the command line says the same to its users.
@@ -200,7 +214,6 @@ MARKED = {
     ),
     "model.frames.split": (r"^\[[01]\]$", "results are NaN where x is not finite"),
 }
-PUBLIC = public()
 
 
 def changes(call):
