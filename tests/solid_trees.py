@@ -7,7 +7,7 @@ import numpy as np
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
-from vizlight.geometry.solids import placement
+from vizlight.geometry.solids import tessellation
 from vizlight.geometry.solids.primitives import Block, Frustum, Sphere
 
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
@@ -210,7 +210,7 @@ def problems(solid, *, tolerance=3e-3, count=100_000, levels=8, seed=0):
     error = mesh.volume_error * mesh.scale**3
     if abs(volume - expected) > error + 4.5 * sigma:
         found.append(f"bound {error:.3g}: volume {volume:.6g}, sampled {expected:.6g}")
-    flips = int(np.count_nonzero(placement.flipped(mesh)))
+    flips = int(np.count_nonzero(tessellation.flipped(mesh)))
     if flips:
         found.append(f"{flips} of {len(mesh.triangles)} flipped")
     if levels and len(mesh.triangles):

@@ -104,7 +104,7 @@ def test_the_preparation_is_won_back_by_all_kernels(home, monkeypatch):
     assert _compiled.preparation() >= _compiled.PREPARE
     monkeypatch.setattr(_compiled, "preparation", lambda: 1.0)
     first, second, third = (_compiled.Kernel(f) for f in (triple, thrice, triple))
-    own = first.start_up() - 1
+    own = first.start_up()
     assert own > 0
     assert not first.pays(0.9 * own)
     assert not second.pays(1.1 * own)
@@ -115,7 +115,7 @@ def test_the_preparation_is_won_back_by_all_kernels(home, monkeypatch):
 
 def test_a_kernel_pays_once_it_has_missed_its_start_up(home):
     kernel = _compiled.Kernel(triple)
-    left = kernel.start_up()
+    left = _compiled.preparation() + kernel.start_up()
     assert left > 0.2
     assert not kernel.pays(left / 2)
     assert kernel.pays(left / 2)

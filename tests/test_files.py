@@ -163,7 +163,7 @@ def test_wrong_endings_and_folders(tmp_path):
     with pytest.raises(files.FileError, match="output: expected a folder that exists"):
         files.check_output(tmp_path / "none" / "a.png", (".png",))
     (tmp_path / "d.png").mkdir()
-    with pytest.raises(files.FileError, match="output: expected a file, got the folder"):
+    with pytest.raises(files.FileError, match="output: expected a file, got .*a folder"):
         files.check_output(tmp_path / "d.png", (".png",))
 
 
@@ -513,7 +513,7 @@ def test_pipes_are_refused_at_once(tmp_path):
             files.read(words[0], overlay=words[1:])
     with pytest.raises(pieces.PieceError, match="sources: expected a file, .*pipe or device"):
         pieces.light(pipe, vizlight.Scene(), out=tmp_path / "lit.pvtp")
-    with pytest.raises(files.FileError, match="output: expected a file, got the device or pipe"):
+    with pytest.raises(files.FileError, match="output: expected a file, .*pipe or device"):
         files.write_mesh(pv.Cube(), pipe)
     assert pipe.is_fifo()
 

@@ -17,10 +17,8 @@ ROOT = Path(vizlight.__file__).parent
 TIERS = [
     {
         "_check",
-        "_colors",
         "_cache",
         "_compiled",
-        "_console",
         "_pool",
         "_progress",
         "_supervise",

@@ -43,23 +43,13 @@ if _typing.TYPE_CHECKING:
     from vizlight.filters.tint import unlit_colors as unlit_colors
     from vizlight.geometry.solids.polyhedra import (
         HalfSpace as HalfSpace,
-    )
-    from vizlight.geometry.solids.polyhedra import (
         Polyhedron as Polyhedron,
-    )
-    from vizlight.geometry.solids.polyhedra import (
         Prism as Prism,
     )
     from vizlight.geometry.solids.primitives import (
         Block as Block,
-    )
-    from vizlight.geometry.solids.primitives import (
         Frustum as Frustum,
-    )
-    from vizlight.geometry.solids.primitives import (
         Sphere as Sphere,
-    )
-    from vizlight.geometry.solids.primitives import (
         Torus as Torus,
     )
     from vizlight.mesh.polylines import direction_colors as direction_colors
@@ -68,17 +58,9 @@ if _typing.TYPE_CHECKING:
     from vizlight.observers.record import Legibility as Legibility
     from vizlight.scene import (
         DepthCue as DepthCue,
-    )
-    from vizlight.scene import (
         Light as Light,
-    )
-    from vizlight.scene import (
         Material as Material,
-    )
-    from vizlight.scene import (
         Scene as Scene,
-    )
-    from vizlight.scene import (
         View as View,
     )
     from vizlight.shading import engine as engine

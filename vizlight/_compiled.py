@@ -246,17 +246,15 @@ class Kernel(Generic[P, R]):
             _Account.missed += saved
         if not self._proven and wanted() != "1":
             self.missed += saved
-            own = self._own_start()
+            own = self.start_up()
             if self.missed < own or _Account.missed < preparation() + own:
                 return False
         return self.ready()
 
     def start_up(self) -> float:
-        """Return the seconds until the first call can run."""
-        return 0.0 if self._proven else preparation() + self._own_start()
-
-    def _own_start(self) -> float:
         """Return the seconds to read or to compile the function, as far as this process pays."""
+        if self._proven:
+            return 0.0
         folder = self._folder()
         if folder is None:
             return self.seconds
@@ -392,18 +390,10 @@ def _apart() -> type:
 
 
 def kernel(
-    *,
-    inline: bool = False,
-    rounding: frozenset[str] = frozenset(),
-    uses: Iterable[str] = (),
-    seconds: float = COMPILE,
+    *, inline: bool = False, rounding: frozenset[str] = frozenset(), seconds: float = COMPILE
 ) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """Return a decorator that makes a :class:`Kernel` of a function; see there."""
-
-    def decorate(function: Callable[P, R]) -> Kernel[P, R]:
-        return Kernel(function, inline=inline, rounding=rounding, uses=uses, seconds=seconds)
-
-    return decorate
+    return lambda function: Kernel(function, inline=inline, rounding=rounding, seconds=seconds)
 
 
 def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, object]:

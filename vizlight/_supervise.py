@@ -16,13 +16,14 @@ import shutil
 import signal
 import sys
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
+
+    from vizlight._types import Foreign
 
 __all__ = ["Doing", "end_with", "read_limit", "run", "stage"]
 
@@ -90,34 +91,18 @@ def stage(
     seconds : float, optional
         Time after which the process is killed. Default: no limit.
     """
+    if _channel is None:
+        yield
+        return
     place = temporary and str(Path(temporary).absolute())
-    _tell({"doing": doing, "path": os.fspath(path), "temporary": place, "seconds": seconds})
+    # The clock is that of the machine, the same for the parent.
+    until = None if seconds is None else time.monotonic() + seconds
+    said = {"doing": doing, "path": os.fspath(path), "temporary": place, "seconds": seconds}
+    os.write(_channel, json.dumps(said | {"until": until}).encode() + b"\n")
     try:
         yield
     finally:
-        _tell({})
-
-
-def _tell(message: dict[str, object]) -> None:
-    if _channel is not None:
-        os.write(_channel, json.dumps(message).encode() + b"\n")
-
-
-@dataclass
-class _Stage:
-    """What a child does."""
-
-    doing: str
-    path: str
-    temporary: str
-    seconds: float | None
-    since: float = field(default_factory=time.monotonic)
-
-    def left(self) -> float:
-        """Return the seconds that are left."""
-        if self.seconds is None:
-            return float("inf")
-        return self.since + self.seconds - time.monotonic()
+        os.write(_channel, b"{}\n")
 
 
 def run(main: Callable[[], int]) -> int:
@@ -217,7 +202,7 @@ class _Parent:
 
     def __init__(self, child: int, reader: int) -> None:
         self.child, self.reader = child, reader
-        self.stages: list[_Stage] = []
+        self.stages: list[Foreign] = []
         self.buffer = b""
         self.ended_by: signal.Signals | None = None
         self.interrupted: float | None = None
@@ -271,14 +256,15 @@ class _Parent:
         for line in lines:
             message = json.loads(line)
             if message:
-                self.stages.append(_Stage(**message))
+                self.stages.append(message)
             else:
                 self.stages.pop()
         return bool(data)
 
     def check(self) -> None:
         """Kill a child that is late, or that does not end after Ctrl-C."""
-        if self.stages and min(stage.left() for stage in self.stages) < 0:
+        ends = [stage["until"] for stage in self.stages if stage["until"] is not None]
+        if ends and min(ends) < time.monotonic():
             self.late = True
             os.kill(self.child, signal.SIGKILL)
         if self.interrupted is not None:
@@ -294,8 +280,8 @@ class _Parent:
         if os.WIFEXITED(status):
             return os.WEXITSTATUS(status)
         for stage in self.stages:
-            if stage.temporary:
-                shutil.rmtree(stage.temporary, ignore_errors=True)
+            if stage["temporary"]:
+                shutil.rmtree(stage["temporary"], ignore_errors=True)
         text, code = self.message(signal.Signals(os.WTERMSIG(status)))
         sys.stderr.write(f"vizlight: {text}\n")
         return code
@@ -308,16 +294,16 @@ class _Parent:
         if not self.stages:
             return f"the process was ended by {by.name}{_reason(by)}", LACKING
         stage = self.stages[-1]
-        what = f"'{stage.path}'"
-        if stage.doing == "read":
-            why = f"not read within {stage.seconds:.0f} s" if self.late else f"by {by.name}"
+        what = f"'{stage['path']}'"
+        if stage["doing"] == "read":
+            why = f"not read within {stage['seconds']:.0f} s" if self.late else f"by {by.name}"
             ends = "its reader" if self.late else "its reader was ended"
             return (
                 f"file: expected a file that can be read, got {what} ({ends} {why}; the file "
                 f"may be damaged{'' if not self.late else f', {READ_VARIABLE}= allows more time'})",
                 BAD_INPUT,
             )
-        if stage.doing == "write":
+        if stage["doing"] == "write":
             return (
                 f"output: expected a file that can be written, got {what} (its writer was ended "
                 f"by {by.name}; is the disk full?); no partial file is left",

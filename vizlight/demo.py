@@ -33,18 +33,6 @@ ABOVE = 1.004
 
 
 @dataclass(frozen=True)
-class Row:
-    """Row of the table of the demonstration: one light, its cost, and what a reader reads in it."""
-
-    light: str
-    points: int
-    terms: str
-    milliseconds: float
-    error: float
-    read: Direction
-
-
-@dataclass(frozen=True)
 class Demo:
     """What the demonstration makes.
 
@@ -57,8 +45,9 @@ class Demo:
     scene : Scene
         Scene of the light.
     camera : pyvista.Camera
-    rows : list of Row
-        A white light, and the light by direction.
+    rows : list of tuple
+        For a white light, and for the light by direction: name, terms, cost in milliseconds,
+        largest error against the reference, and what a reader reads in it.
     plan : str
         What was computed, in words.
     """
@@ -67,7 +56,7 @@ class Demo:
     lines: pv.PolyData
     scene: Scene
     camera: pv.Camera
-    rows: list[Row]
+    rows: list[tuple[str, str, float, float, Direction]]
     plan: str
 
 
@@ -88,25 +77,15 @@ def light_winds() -> Demo:
         runs = [engine.shade(points, wind, scene, exponent=2) for _ in range(5)]
         plan = runs[0].plan
         exact = reference.light(points, wind, scene, exponent=plan.exponent)
-        rows.append(
-            Row(
-                light=title,
-                points=globe.n_points,
-                terms=" + ".join(plan.terms),
-                milliseconds=1e3 * float(np.median([run.seconds for run in runs])),
-                error=float(np.abs(globe["luminance"] - exact).max()),
-                read=_read(globe, scene, camera),
-            )
-        )
+        terms = " + ".join(plan.terms)
+        milliseconds = 1e3 * float(np.median([run.seconds for run in runs]))
+        error = float(np.abs(globe["luminance"] - exact).max())
+        read = legibility(globe, scene, tangents="wind", exponent=2, view=camera).direction
+        assert read is not None
+        rows.append((title, terms, milliseconds, error, read))
     lines = streamlines(globe, scene, vectors="wind", spacing=SPACING)
     lines.points = ABOVE * np.asarray(lines.points)
     return Demo(globe, lines, scene, camera, rows, plan.explain())
-
-
-def _read(globe: pv.PolyData, scene: Scene, camera: pv.Camera) -> Direction:
-    found = legibility(globe, scene, tangents="wind", exponent=2, view=camera).direction
-    assert found is not None
-    return found
 
 
 def save_picture(
@@ -150,7 +129,7 @@ def save_picture(
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
         plotter.vizlight.add_key(demo.scene, corner="lower right", exponent=2)
-        wrong = demo.rows[-1].read.legend_median
+        wrong = demo.rows[-1][-1].legend_median
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")

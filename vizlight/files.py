@@ -42,6 +42,11 @@ from vizlight.mesh import (
 from vizlight.reading.cells import check_whole
 from vizlight.reading.topology import place_numbers
 
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl = None  # type: ignore[assignment]
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
@@ -153,7 +158,8 @@ def read(
     apart by thread, and no stream is redirected. Libraries other than VTK may print.
     """
     path = _path("file", path)
-    overlays = [_path("overlay", one) for one in _listed(overlay)]
+    given = overlay if isinstance(overlay, list | tuple) else [overlay]
+    overlays = [_path("overlay", one) for one in given]
     for name, one in (("file", path), *(("overlay", one) for one in overlays)):
         if what := no_file(one):
             remedy = ""
@@ -207,11 +213,6 @@ def no_file(path: Path) -> str:
     if path.is_file():
         return ""
     return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
-
-
-def _listed(overlay: object) -> list[object]:
-    """Return one path or several as a list."""
-    return [*overlay] if isinstance(overlay, list | tuple) else [overlay]
 
 
 def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
@@ -752,41 +753,37 @@ def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
 
 def _refuse_others(name: str, path: Path) -> None:
     """Raise FileError where a path is no regular file, such as a folder or a pipe, but exists."""
-    if path.exists() and not path.is_file():
-        what = "folder" if path.is_dir() else "device or pipe"
-        raise FileError(_check.message(name, "a file", f"the {what} '{path}'"))
+    if path.exists() and (what := no_file(path)):
+        raise FileError(_check.message(name, "a file", f"'{path}' ({what})"))
 
 
 def _sweep(place: Path) -> None:
     """Remove the temporary folders of writers that were killed: those still at work lock theirs."""
-    try:
-        import fcntl
-    except ImportError:  # on Windows
-        return
-    for folder in place.glob(f"{DRAFTS}*"):
-        with contextlib.suppress(OSError):  # it is locked, another's, or gone
-            opened = os.open(folder, os.O_RDONLY)
-            try:
-                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if time.time() - os.fstat(opened).st_mtime > ABANDONED:
-                    shutil.rmtree(folder)
-            finally:
-                os.close(opened)
+    for folder in place.glob(f"{DRAFTS}*") if fcntl else ():
+        with contextlib.suppress(OSError), _opened(folder) as opened:
+            # An error says that it is locked, another's, or gone.
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if time.time() - os.fstat(opened).st_mtime > ABANDONED:
+                shutil.rmtree(folder)
 
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a temporary folder."""
-    try:
-        import fcntl
-    except ImportError:  # on Windows
+    """Hold the lock of a temporary folder, where the system has such locks."""
+    if not fcntl:
         yield
         return
-    opened = os.open(folder, os.O_RDONLY)
-    try:
-        with contextlib.suppress(OSError):  # the file system has no locks
+    with _opened(folder) as opened:
+        with contextlib.suppress(OSError):  # the file system has none
             fcntl.flock(opened, fcntl.LOCK_SH)
         yield
+
+
+@contextlib.contextmanager
+def _opened(folder: Path) -> Iterator[int]:
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        yield opened
     finally:
         os.close(opened)
 

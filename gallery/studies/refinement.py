@@ -18,7 +18,7 @@ from studies import PIXEL, SHINY, Curve, Row, Study
 from vizlight import data
 from vizlight.filters.refine import refine
 from vizlight.mesh import splitting
-from vizlight.mesh.parts import inputs_of
+from vizlight.mesh.batches import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions

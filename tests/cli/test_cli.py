@@ -28,13 +28,6 @@ def volume(tmp_path, monkeypatch):
     return "flow.vti"
 
 
-def run(capfd, *arguments):
-    """Run the command line with words, of which a string may have several."""
-    code = cli.main([word for each in arguments for word in str(each).split()])
-    out, err = capfd.readouterr()
-    return code, out, err
-
-
 def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
     def interrupted(*_args, **_keywords):
         raise KeyboardInterrupt
@@ -49,9 +42,8 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
 
 
 @pytest.mark.opengl
-def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
+def test_light_writes_mesh_and_picture(volume, tmp_path, run):
     code, out, err = run(
-        capfd,
         "light",
         volume,
         "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3",
@@ -70,30 +62,28 @@ def test_light_writes_mesh_and_picture(volume, tmp_path, capfd):
 
 
 @pytest.mark.opengl
-def test_upper_case_endings(volume, tmp_path, capfd):
-    code, _, err = run(capfd, "light", volume, "-o", "A.VTP", "-o", "B.PNG", "--size", "30x30")
+def test_upper_case_endings(volume, tmp_path, run):
+    code, _, err = run("light", volume, "-o", "A.VTP", "-o", "B.PNG", "--size", "30x30")
     assert (code, err) == (0, "")
     assert (tmp_path / "A.VTP").stat().st_size > 0
     assert (tmp_path / "B.PNG").stat().st_size > 0
 
 
 @pytest.mark.parametrize("suffix", [".vtp", ".vtu", ".vtk"])
-def test_outputs_by_ending(suffix, volume, tmp_path, capfd):
-    code, _, err = run(
-        capfd, "light", volume, "-o", f"x{suffix}", "--view", "0,-1,0", "--headlight"
-    )
+def test_outputs_by_ending(suffix, volume, tmp_path, run):
+    code, _, err = run("light", volume, "-o", f"x{suffix}", "--view", "0,-1,0", "--headlight")
     assert (code, err) == (0, "")
     assert "luminance" in pv.read(f"x{suffix}").point_data
     assert not list(tmp_path.glob("*.png"))
 
 
-def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, capfd):
+def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, run):
     grid = pv.read(volume)
     grid["height"] = grid.points[:, 2]
     grid.save(volume)
     options = ("--contour", "r", "--light", "1,2,3")
     for name, extra in (("a.glb", ()), ("B.GLB", ("--scalars", "height"))):
-        code, out, err = run(capfd, "light", volume, *options, *extra, "-o", name)
+        code, out, err = run("light", volume, *options, *extra, "-o", name)
         assert (code, err) == (0, "")
         assert f"mesh     {name}" in out
     plain, colored = ((tmp_path / name).read_bytes() for name in ("a.glb", "B.GLB"))
@@ -103,37 +93,36 @@ def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, capfd):
     assert plain != colored
 
 
-def test_script_for_paraview(volume, tmp_path, capfd):
+def test_script_for_paraview(volume, tmp_path, run):
     options = ("light", volume, "--contour", "r", "--tangents", "V", "--paraview")
-    code, out, err = run(capfd, *options, "a.py")
+    code, out, err = run(*options, "a.py")
     assert (code, err) == (0, "")
     assert "mesh     a.py" in out
     assert sorted(path.name for path in tmp_path.glob("a*")) == ["a-paraview.vtp", "a.py"]
     assert not list(tmp_path.glob("*.png"))
     assert str(tmp_path / "a-paraview.vtp") in (tmp_path / "a.py").read_text()
-    code, out, _ = run(capfd, *options, "a.py", "--script")
+    code, out, _ = run(*options, "a.py", "--script")
     assert code == 0
     assert 'paraview.save(lit, None, "a.py")' in out
     # The light of a cylinder is no program of fragments, and a script is named as one.
     for more, words in ((("b.py", "--model", "cylinder"), "integral"), (("b.txt",), ".py")):
-        code, _, err = run(capfd, *options, *more)
+        code, _, err = run(*options, *more)
         assert code == 2
         assert words in err
     again = ("light", tmp_path / "a-paraview.vtp", "--paraview", "a.py")
-    assert "another file than the input" in run(capfd, *again)[2]
+    assert "another file than the input" in run(*again)[2]
     assert not list(tmp_path.glob("b*"))
 
 
-def test_all_points_of_a_volume(volume, capfd):
-    code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
+def test_all_points_of_a_volume(volume, run):
+    code, _, err = run("light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
     assert (code, err) == (0, "")
     assert pv.read("x.vti").n_points == 12**3
 
 
 @pytest.mark.opengl
-def test_more_options(volume, capfd):
+def test_more_options(volume, run):
     code, out, err = run(
-        capfd,
         "light",
         volume,
         "--tangents C --light-position 9,9,-9 --color tomato --depth-cue --parallel --model blinn",
@@ -147,20 +136,20 @@ def test_more_options(volume, capfd):
     assert "100%" in err
 
 
-def test_terrain_is_warped(tmp_path, monkeypatch, capfd):
+def test_terrain_is_warped(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     grid = pv.ImageData(dimensions=(9, 9, 1))
     grid["elevation"] = np.sin(grid.points[:, 0])
     grid.save("t.vti")
     code, _, err = run(
-        capfd, "light", "t.vti", "--warp", "elevation", "--exaggeration", "2", "-o", "t.vtp"
+        "light", "t.vti", "--warp", "elevation", "--exaggeration", "2", "-o", "t.vtp"
     )
     assert (code, err) == (0, "")
     assert pv.read("t.vtp").bounds.z_max > 1.5
     assert np.ptp(pv.read("t.vtp")["luminance"]) > 0.1
 
 
-def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
+def test_what_may_have_been_meant_is_told(volume, tmp_path, run):
     pv.ImageData(dimensions=(4, 5, 1)).save("bare.vti")
     flat = pv.ImageData(dimensions=(4, 5, 1))
     flat["height"] = np.arange(20.0)
@@ -191,52 +180,49 @@ def test_what_may_have_been_meant_is_told(volume, tmp_path, capfd):
         (("flat.vti", "--warp", "height", "--exaggeration", "1"), ""),
         (("bare.vti",), ""),
     ):
-        code, out, _ = run(capfd, "light", *options, "-o", "a.vtk")
+        code, out, _ = run("light", *options, "-o", "a.vtk")
         assert code == 0
         assert words in out if words else "note" not in out
 
 
-def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, capfd):
+def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     nibabel = pytest.importorskip("nibabel")
     ball = pv.Sphere()
     ball.save("ball.ply")
     nibabel.freesurfer.write_morph_data("lh.curv", ball.points[:, 2])
     shows = ("--overlay", "lh.curv", "-o", "a.vtp")
-    code, out, _ = run(capfd, "light", "ball.ply", *shows)
+    code, out, _ = run("light", "ball.ply", *shows)
     assert code == 0
     assert "note     --scalars lh.curv shows the values over the surface" in out
-    assert "note" not in run(capfd, "light", "ball.ply", "--scalars", "lh.curv", *shows)[1]
+    assert "note" not in run("light", "ball.ply", "--scalars", "lh.curv", *shows)[1]
 
 
 @pytest.mark.opengl
-def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, capfd):
+def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, run):
     pictures = []
     for up, view in (("y", "x"), ("0,1,0", "1,0,0"), ("z", "x")):
         options = ("--contour", "r", "--up", up, "--view", view, "-o", "a.png")
-        assert run(capfd, "light", volume, *options)[0] == 0
+        assert run("light", volume, *options)[0] == 0
         pictures.append(pv.read("a.png")["PNGImage"])
     np.testing.assert_array_equal(pictures[0], pictures[1])
     assert np.any(pictures[0] != pictures[2])
 
 
-def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, capfd):
+def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     ball = pv.Sphere()
     ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
     ball.save("ball.vtp")
-    assert run(capfd, "light", "ball.vtp", "-o", "a.png")[::2] == (0, "")
-    assert (
-        "white in the picture"
-        in run(capfd, "light", "ball.vtp", "--diffuse", "9", "-o", "a.png")[2]
-    )
+    assert run("light", "ball.vtp", "-o", "a.png")[::2] == (0, "")
+    assert "white in the picture" in run("light", "ball.vtp", "--diffuse", "9", "-o", "a.png")[2]
 
 
-def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
+def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run):
     grid = pv.read(volume)
     grid["V"][:3] = 0
     grid.save("flow.vti")
-    code, _, err = run(capfd, "light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
+    code, _, err = run("light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
     assert code == 0
     assert err.startswith("vizlight: 3 of 1728 points could not be lit")
 
@@ -276,10 +262,10 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, capfd):
         ("nothing", "nothing"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_path, capfd):
+def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_path, run):
     (tmp_path / "bad.vtp").write_text("garbage")
     before = sorted(tmp_path.iterdir())
-    code, out, err = run(capfd, arguments)
+    code, out, err = run(arguments)
     assert code == 2
     assert out == ""
     assert err.startswith("vizlight: ")
@@ -289,9 +275,9 @@ def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_pat
 
 
 @pytest.mark.opengl
-def test_demo(tmp_path, monkeypatch, capfd):
+def test_demo(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
-    code, out, _ = run(capfd, "demo", "--size", "200x100")
+    code, out, _ = run("demo", "--size", "200x100")
     assert code == 0
     for part in ("points", "terms", "time", "error", "by the key", "compute  diffuse: |wi_N|"):
         assert part in out
@@ -300,8 +286,8 @@ def test_demo(tmp_path, monkeypatch, capfd):
     assert {"luminance", "rgb", "wind"} <= set(lit.point_data)
 
 
-def test_paths_of_the_plugin_for_paraview(capfd):
-    code, out, _ = run(capfd, "paraview")
+def test_paths_of_the_plugin_for_paraview(run):
+    code, out, _ = run("paraview")
     assert code == 0
     *files, start = (line.split(maxsplit=1)[1] for line in out.splitlines())
     paths = [Path(file) for file in files]
@@ -312,8 +298,8 @@ def test_paths_of_the_plugin_for_paraview(capfd):
         assert start == f"PYTHONPATH={path.parent} paraview"
 
 
-def test_doctor(capfd):
-    code, out, _ = run(capfd, "doctor")
+def test_doctor(run):
+    code, out, _ = run("doctor")
     assert code == (0 if render.probe("egl").works or render.probe("osmesa").works else 1)
     for part in ("python", "vtk", "pyvista", "egl", "osmesa", "rotating_disk.vtu"):
         assert part in out
@@ -321,7 +307,7 @@ def test_doctor(capfd):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="backends are chosen on Linux")
 def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
-    volume, tmp_path, capfd, monkeypatch
+    volume, tmp_path, run, monkeypatch
 ):
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
     monkeypatch.setattr(
@@ -329,8 +315,8 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     )
     backends._probe_window.cache_clear()
     try:
-        code, _, err = run(capfd, "light", volume, "--tangents", "V")
-        doctor = run(capfd, "doctor")
+        code, _, err = run("light", volume, "--tangents", "V")
+        doctor = run("doctor")
     finally:
         backends._probe_window.cache_clear()
     assert code == 1
@@ -341,30 +327,30 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     assert "apt-get install -y" in doctor[2]
 
 
-def test_help_and_version(capfd):
-    code, out, _ = run(capfd, "--help")
+def test_help_and_version(run):
+    code, out, _ = run("--help")
     assert code == 0
     assert "demo" in out
-    code, out, _ = run(capfd, "--version")
+    code, out, _ = run("--version")
     assert out.strip() == vizlight.__version__
 
 
-def test_another_name_where_the_file_has_its_own(tmp_path, monkeypatch, capfd):
+def test_another_name_where_the_file_has_its_own(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     mesh = pv.Sphere()
     mesh["luminance"] = np.arange(mesh.n_points)
     mesh.save("own.vtp")
-    code, _, err = run(capfd, "light", "own.vtp", "-o", "lit.vtp")
+    code, _, err = run("light", "own.vtp", "-o", "lit.vtp")
     assert code != 0
     assert "--name" in err
-    code, _, err = run(capfd, "light", "own.vtp", "--name", "light", "-o", "lit.vtp")
+    code, _, err = run("light", "own.vtp", "--name", "light", "-o", "lit.vtp")
     assert (code, err) == (0, "")
     np.testing.assert_array_equal(pv.read("lit.vtp")["luminance"], mesh["luminance"])
 
 
-def test_explain_tells_of_averaged_tangents(volume, capfd):
+def test_explain_tells_of_averaged_tangents(volume, run):
     options = ("--tangents", "C", "--no-surface", "--explain", "-o", "lit.vti")
-    code, out, err = run(capfd, "light", volume, *options)
+    code, out, err = run("light", volume, *options)
     assert code == 0
     assert err.count("the cell array 'C' is averaged to the points") == 1
     assert "1 orthonormal tangent" in out
@@ -400,63 +386,61 @@ def test_a_reader_that_crashes_is_one_line(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["ball.ply"]
 
 
-def test_a_mesh_is_refined_and_the_script_does_the_same(tmp_path, monkeypatch, capfd):
+def test_a_mesh_is_refined_and_the_script_does_the_same(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     pv.Sphere().save("ball.vtp")
     for arguments in (("light", "ball.vtp"), ("light", "ball.vtp", "--no-surface")):
-        code, out, _ = run(capfd, *arguments, "-o", "fine.vtp", "--refine", "1/255", "--report")
+        code, out, _ = run(*arguments, "-o", "fine.vtp", "--refine", "1/255", "--report")
         assert code == 0
         assert "error between points" in out
         assert "would do" not in out
         fine = pv.read("fine.vtp")
         assert fine.n_points > 842
         assert fine.field_data["luminance_error"][0] <= 1 / 255
-    code, script, _ = run(
-        capfd, "light", "ball.vtp", "-o", "again.vtp", "--refine", "1/255", "--script"
-    )
+    code, script, _ = run("light", "ball.vtp", "-o", "again.vtp", "--refine", "1/255", "--script")
     assert code == 0
     exec(compile(script, "script", "exec"), {})
     assert pv.read("again.vtp").n_points == fine.n_points
-    code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.vtp", "--refine", "1e-9")
+    code, _, error = run("light", "ball.vtp", "-o", "no.vtp", "--refine", "1e-9")
     assert code == 2
     assert error.startswith("vizlight: --refine: expected a number of at least 1e-05")
-    code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.pvtp", "--refine", "0.01")
+    code, _, error = run("light", "ball.vtp", "-o", "no.pvtp", "--refine", "0.01")
     assert code == 2
     assert error.startswith("vizlight: --refine: expected one mesh, got pieces; refine their union")
 
 
-def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, capfd):
+def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     pv.Sphere(theta_resolution=12, phi_resolution=12).extract_all_edges().save("edges.vtp")
-    code, out, _ = run(capfd, "light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
+    code, out, _ = run("light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
     assert code == 0
     assert "transmittance: a share of each light" in out
     assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
     pv.Sphere().save("ball.vtp")
-    code, _, error = run(capfd, "light", "ball.vtp", "-o", "no.vtp", "--bundle")
+    code, _, error = run("light", "ball.vtp", "-o", "no.vtp", "--bundle")
     assert code == 2
     assert error.startswith("vizlight: bundle: expected a mesh with lines")
 
 
 @pytest.mark.opengl
-def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatch, capfd):
+def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatch, capfd, run):
     monkeypatch.chdir(tmp_path)
     ball = pv.Sphere()
     ball["v"] = np.cross([0.2, 0, 1], ball.points)
     ball["height"] = ball.points[:, 2]
     ball.save("ball.vtp")
     arguments = ("light", "ball.vtp", "-o", "lit.vtp", "--tangents", "v", "--scalars", "height")
-    code, out, _ = run(capfd, *arguments, "--legibility")
+    code, out, _ = run(*arguments, "--legibility")
     assert code == 0
     for text in ("within 10 degrees", "median error of the normal", "nearest colour"):
         assert text in out
-    code, script, _ = run(capfd, *arguments, "--legibility", "--script")
+    code, script, _ = run(*arguments, "--legibility", "--script")
     assert code == 0
     exec(compile(script, "script", "exec"), {})
     table = capfd.readouterr().out.strip()
     assert table.startswith("question")
     assert table in out
-    code, _, error = run(capfd, "light", "ball.vtp", "-o", "lit.pvtp", "--legibility")
+    code, _, error = run("light", "ball.vtp", "-o", "lit.pvtp", "--legibility")
     assert code == 2
     assert "--legibility: expected one mesh, lit as a whole" in error
 

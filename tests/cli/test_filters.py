@@ -47,12 +47,6 @@ def folder(tmp_path, monkeypatch):
     return home
 
 
-def run(capfd, *arguments):
-    code = cli.main([str(a) for a in arguments])
-    out, err = capfd.readouterr()
-    return code, out, err
-
-
 def same_arrays(one, other):
     assert set(one.point_data) == set(other.point_data)
     assert set(one.cell_data) == set(other.cell_data)
@@ -110,18 +104,18 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("question", ["direction", "slope", "heading"])
-def test_the_only_vectors_are_traced_for_a_question(question, folder, capfd):
+def test_the_only_vectors_are_traced_for_a_question(question, folder, run):
     flow = pv.read("flow.vti")
     del flow.point_data["W"]
     flow.save("one.vti")
     line = f"streamlines one.vti --seeds 9 --for {question} -o lines.vtp"
-    assert run(capfd, *line.split())[::2] == (0, "")
+    assert run(*line.split())[::2] == (0, "")
     assert np.ptp(pv.read("lines.vtp")["luminance"]) > 0.1
 
 
 @pytest.mark.opengl
 @pytest.mark.parametrize("missing", [False, True])
-def test_the_key_of_colours_names_what_they_are(missing, folder, capfd, monkeypatch):
+def test_the_key_of_colours_names_what_they_are(missing, folder, run, monkeypatch):
     terrain = pv.read("terrain.vti")
     if missing:
         terrain["height"][3] = np.nan
@@ -135,7 +129,7 @@ def test_the_key_of_colours_names_what_they_are(missing, folder, capfd, monkeypa
         lambda *args, **options: made.append(key(*args, **options)) or made[-1],
     )
     for name in ("height", "paint"):
-        code, _, err = run(capfd, *f"light terrain.vti --scalars {name} -o a.png".split(), *SMALL)
+        code, _, err = run(*f"light terrain.vti --scalars {name} -o a.png".split(), *SMALL)
         assert code == 0, err
     (mesh,) = made
     low, title, high = mesh.field_data["words"]
@@ -146,7 +140,7 @@ def test_the_key_of_colours_names_what_they_are(missing, folder, capfd, monkeypa
 
 @pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
-def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, capfd):
+def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run):
     # Code that is compiled between the two runs would round the second otherwise.
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
     Path("scene.json").write_text(json.dumps(SCENE))
@@ -155,10 +149,10 @@ def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, c
     given = {path.name for path in folder.iterdir()}
     shutil.copytree(folder, tmp_path / "second")
     arguments = [*line.split(), *SMALL]
-    code, script, err = run(capfd, *arguments, "--script")
+    code, script, err = run(*arguments, "--script")
     assert (code, err) == (0, "")
     assert {path.name for path in folder.iterdir()} == given
-    code, out, err = run(capfd, *arguments)
+    code, out, err = run(*arguments)
     assert code == 0, err
     assert "points lit in" in out
     made = {path.name for path in folder.iterdir()} - given
@@ -201,17 +195,17 @@ IN_SCRIPTS = {
 }
 
 
-def shown(name, capfd, monkeypatch):
+def shown(name, run, monkeypatch):
     # The command line keeps its console, whatever the terminal of the first test was.
     monkeypatch.setattr(cli.app, "console", Console(width=100))
-    code, out, _ = run(capfd, name, "--help")
+    code, out, _ = run(name, "--help")
     assert code == 0
     return out
 
 
 @pytest.mark.parametrize("name", FILTERS)
-def test_every_option_of_a_filter_is_one_of_its_command(name, capfd, monkeypatch):
-    out = shown(name, capfd, monkeypatch)
+def test_every_option_of_a_filter_is_one_of_its_command(name, run, monkeypatch):
+    out = shown(name, run, monkeypatch)
     parameters = inspect.signature(FILTERS[name]).parameters.values()
     own = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {*options.NOT_OPTIONS}
     given = set(inspect.signature(options.arguments_of(FILTERS[name].__name__)).parameters)
@@ -222,8 +216,8 @@ def test_every_option_of_a_filter_is_one_of_its_command(name, capfd, monkeypatch
 
 
 @pytest.mark.parametrize("name", FILTERS)
-def test_help_has_groups_and_an_example_and_fits_a_screen(name, capfd, monkeypatch):
-    out = shown(name, capfd, monkeypatch)
+def test_help_has_groups_and_an_example_and_fits_a_screen(name, run, monkeypatch):
+    out = shown(name, run, monkeypatch)
     groups = ["Arguments", "Light", "Material", "Camera", "Output"]
     assert [out.index(f"─ {group} ─") for group in groups] == sorted(
         out.index(f"─ {group} ─") for group in groups
@@ -240,7 +234,7 @@ def test_the_first_clause_of_an_option():
     assert options.first_clause(long) == "Whether it has the exponent p(k, n: the one)."
 
 
-def test_azimuth_and_altitude(folder, capfd):
+def test_azimuth_and_altitude(folder, run):
     for text, direction in (
         ("90,0", (1, 0, 0)),
         ("0,0", (0, 1, 0)),
@@ -248,52 +242,52 @@ def test_azimuth_and_altitude(folder, capfd):
         ("12,90", (0, 0, 1)),
         ("-1,2,3", (-1, 2, 3)),
     ):
-        code, _, err = run(capfd, "light", "flow.vti", "--light", text, "-o", "lit.vtp")
+        code, _, err = run("light", "flow.vti", "--light", text, "-o", "lit.vtp")
         assert (code, err) == (0, "")
         (light,) = vizlight.provenance(pv.read("lit.vtp"))["scene"]["lights"]
         np.testing.assert_allclose(light["direction"], direction, atol=1e-15)
 
 
-def test_a_scene_of_a_file_lights_as_in_a_script(folder, capfd):
+def test_a_scene_of_a_file_lights_as_in_a_script(folder, run):
     Path("view.json").write_text(json.dumps(SCENE | {"view": VIEW}))
     arguments = ("light", "flow.vti", "--contour", "r", "--scene", "view.json")
-    code, _, err = run(capfd, *arguments, "-o", "lit.vtp")
+    code, _, err = run(*arguments, "-o", "lit.vtp")
     assert (code, err) == (0, "")
     scene = vizlight.Scene.from_dict(SCENE | {"view": VIEW})
     lit = vizlight.illuminate(pv.read("flow.vti").contour([5.06], scalars="r"), scene)
     assert vizlight.provenance(pv.read("lit.vtp"))["scene"] == vizlight.provenance(lit)["scene"]
-    code, _, err = run(capfd, *arguments, "--diffuse", "0.3", "--light", "0,0,1", "-o", "lit.vtp")
+    code, _, err = run(*arguments, "--diffuse", "0.3", "--light", "0,0,1", "-o", "lit.vtp")
     made = vizlight.provenance(pv.read("lit.vtp"))["scene"]
     assert made["material"] == {**vizlight.provenance(lit)["scene"]["material"], "diffuse": 0.3}
     assert [light["direction"] for light in made["lights"]] == [[0.0, 0.0, 1.0]]
 
 
-def test_planes_and_ranges_keep_what_they_say(folder, capfd):
+def test_planes_and_ranges_keep_what_they_say(folder, run):
     for option, low, high in (
         ("--clip=z:5", 0, 5),
         ("--clip=-z:-5", 5, 11),
         ("--clip=0,0,-2:-5", 5, 11),
         ("--slice=0,0,3:4", 4, 4),
     ):
-        code, _, err = run(capfd, "light", "flow.vti", option, "-o", "lit.vtp")
+        code, _, err = run("light", "flow.vti", option, "-o", "lit.vtp")
         assert (code, err) == (0, ""), option
         bounds = pv.read("lit.vtp").bounds
         assert (bounds.z_min, bounds.z_max) == pytest.approx((low, high), abs=1e-5)
     sizes = []
     for text in ("r:2:4", "r:2:", "r::4"):
         arguments = ("light", "flow.vti", "--threshold", text, "-o", "lit.vtu", "--no-surface")
-        code, _, err = run(capfd, *arguments, "--tangents", "V")
+        code, _, err = run(*arguments, "--tangents", "V")
         assert (code, err) == (0, ""), text
         sizes.append(pv.read("lit.vtu").n_cells)
     assert sizes[0] < min(sizes[1:])
     assert max(sizes) < 11**3
 
 
-def test_several_files_are_lit_each_by_itself(folder, capfd):
+def test_several_files_are_lit_each_by_itself(folder, run):
     shutil.copy("flow.vti", "again.vti")
     (folder / "made").mkdir()
     arguments = ("--contour", "r", "-o", "made", *SMALL)
-    code, _, err = run(capfd, "light", "flow.vti", "again.vti", *arguments)
+    code, _, err = run("light", "flow.vti", "again.vti", *arguments)
     assert (code, err) == (0, "")
     assert {p.name for p in Path("made").iterdir()} == {
         f"{name}-lit.{suffix}" for name in ("flow", "again") for suffix in ("vtp", "png")
@@ -301,8 +295,8 @@ def test_several_files_are_lit_each_by_itself(folder, capfd):
     same_arrays(pv.read("made/flow-lit.vtp"), pv.read("made/again-lit.vtp"))
 
 
-def test_an_error_in_one_file_leaves_the_others(folder, capfd):
-    code, _, err = run(capfd, "light", "none.vti", "torus.vtp", "flow.vti", "--contour", "r")
+def test_an_error_in_one_file_leaves_the_others(folder, run):
+    code, _, err = run("light", "none.vti", "torus.vtp", "flow.vti", "--contour", "r")
     assert code == 2
     assert err.count("\n") == 2
     assert err.startswith("vizlight: none.vti: file: expected a file")
@@ -311,10 +305,10 @@ def test_an_error_in_one_file_leaves_the_others(folder, capfd):
     assert not list(folder.glob("torus-lit*"))
 
 
-def test_no_input_is_overwritten(folder, capfd):
+def test_no_input_is_overwritten(folder, run):
     shutil.copy("torus.vtp", "flow-lit.vtp")
     before = Path("flow-lit.vtp").read_bytes()
-    code, _, err = run(capfd, "light", "flow.vti", "flow-lit.vtp")
+    code, _, err = run("light", "flow.vti", "flow-lit.vtp")
     assert code == 2
     assert "flow.vti: output: expected another file than the input, got 'flow-lit.vtp'" in err
     assert Path("flow-lit.vtp").read_bytes() == before
@@ -322,13 +316,13 @@ def test_no_input_is_overwritten(folder, capfd):
 
 @pytest.mark.opengl
 @pytest.mark.parametrize(("altitude", "gray"), [(10, 1 / 3), (45, 0.5**0.5)])
-def test_level_ground_under_a_low_sun_is_not_black(altitude, gray, folder, capfd):
+def test_level_ground_under_a_low_sun_is_not_black(altitude, gray, folder, run):
     """The picture is brighter, and says so; the numbers are the shadow's own."""
     flat = pv.ImageData(dimensions=(9, 9, 1))
     flat["height"] = np.zeros(flat.n_points)
     flat.save("flat.vti")
     asked = ("--no-lit", "--light", f"315,{altitude}", "-o", "a.png", "-o", "a.vti", *SMALL)
-    code, out, _ = run(capfd, "relief", "flat.vti", *asked)
+    code, out, _ = run("relief", "flat.vti", *asked)
     assert code == 0
     assert ("white in the picture is t = 0.52" in out) == (altitude == 10)
     np.testing.assert_allclose(pv.read("a.vti")["t"], np.sin(np.radians(altitude)), atol=1e-6)
@@ -336,14 +330,14 @@ def test_level_ground_under_a_low_sun_is_not_black(altitude, gray, folder, capfd
     assert abs(int(picture[30, 45]) - 255 * gray) <= 1
 
 
-def test_a_map_in_degrees_is_lit_as_it_is_shown(folder, capfd):
+def test_a_map_in_degrees_is_lit_as_it_is_shown(folder, run):
     """The light is that of the heights in the picture, which the map as it is has not."""
     grid = pv.ImageData(dimensions=(30, 20, 1), spacing=(1 / 60, 1 / 60, 1), origin=(11, 60, 0))
     x, y, _ = grid.points.T
     grid["height"] = 200 * np.sin(15 * x) * np.cos(20 * y)
     grid.field_data["unit"] = ["degree"]
     grid.save("map.vti")
-    code, out, _ = run(capfd, "relief", "map.vti", "-o", "lit.vti")
+    code, out, _ = run("relief", "map.vti", "-o", "lit.vti")
     assert (code, "heights are taken 5 times" in out) == (0, True)
     made = pv.read("lit.vti")
     shown = vizlight.files.warped(grid, "height", 5.0)
@@ -352,25 +346,25 @@ def test_a_map_in_degrees_is_lit_as_it_is_shown(folder, capfd):
     raised = vizlight.relief_shadow(shown, scene, lit=True, depth=known["depth"])
     np.testing.assert_allclose(made["luminance"], raised["luminance"], atol=2e-6)
     assert np.ptp(made["luminance"]) > 0.15
-    run(capfd, "relief", "map.vti", "-o", "true.vti", "--exaggeration", "1")
+    run("relief", "map.vti", "-o", "true.vti", "--exaggeration", "1")
     assert not np.allclose(pv.read("true.vti")["t"], made["t"], atol=0.01)
 
 
-def test_report_stands_in_the_script_too(folder, capfd):
+def test_report_stands_in_the_script_too(folder, capfd, run):
     arguments = ("relief", "terrain.vti", "--report", "-o", "lit.vti", "--progress")
-    code, script, _ = run(capfd, *arguments, "--script")
+    code, script, _ = run(*arguments, "--script")
     assert code == 0
     exec(script, {})
     printed, _ = capfd.readouterr()
-    code, out, _ = run(capfd, *arguments)
+    code, out, _ = run(*arguments)
     for text in (printed, out):
         assert "points" in text
         assert "not measured between points: cast shadows" in text
-    code, out, _ = run(capfd, "sky", "terrain.vti", "--report", "-o", "skylit.vti")
+    code, out, _ = run("sky", "terrain.vti", "--report", "-o", "skylit.vti")
     assert (code, "or less at 95 of 100 points, as estimated, horizons" in out) == (0, True)
 
 
-def test_components_of_vectors_are_joined(folder, capfd):
+def test_components_of_vectors_are_joined(folder, run):
     mesh = pv.read("flow.vti")
     x, y, z = mesh["V"].T
     mesh["u"], mesh["v"] = x, y
@@ -379,14 +373,14 @@ def test_components_of_vectors_are_joined(folder, capfd):
     mesh.save("whole.vti")
     for file, name in (("parts", "u,v"), ("whole", "V")):
         code, _, _ = run(
-            capfd, "light", f"{file}.vti", "--tangents", name, "-o", f"{file}-lit.vtp",
+            "light", f"{file}.vti", "--tangents", name, "-o", f"{file}-lit.vtp",
         )  # fmt: skip
         assert code == 0
     parts, whole = pv.read("parts-lit.vtp"), pv.read("whole-lit.vtp")
     np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
     joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v,u")
     np.testing.assert_array_equal(joined["v,u"][:, [1, 0, 2]], pv.read("whole.vti")["V"])
-    code, _, _ = run(capfd, "streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
+    code, _, _ = run("streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
     assert code == 0
     assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
 
@@ -464,11 +458,11 @@ def test_components_of_vectors_are_joined(folder, capfd):
         ("fur scan.vtp", "mesh: expected a surface with faces, got a PolyData mesh without"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, capfd):
+def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, run):
     Path("list.json").write_text("[1, 2]")
     pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
     before = sorted(folder.iterdir())
-    code, out, err = run(capfd, *line.split())
+    code, out, err = run(*line.split())
     assert (code, out) == (2, ""), err
     assert err.startswith("vizlight: ")
     assert words in err
@@ -530,19 +524,19 @@ def test_help_of_the_whole_loads_no_pyvista():
         ),
     ],
 )
-def test_options_reach_the_filter(line, file, name, expected, folder, capfd):
+def test_options_reach_the_filter(line, file, name, expected, folder, run):
     suffix = Path(file).suffix
-    code, _, err = run(capfd, *line.split(), "-o", f"lit{suffix}")
+    code, _, err = run(*line.split(), "-o", f"lit{suffix}")
     assert code == 0, err
     options = vizlight.provenance(pv.read(file), name)["options"]
     assert {key: options[key] for key in expected} == expected
 
 
-def test_a_saved_camera_is_the_view(folder, capfd):
+def test_a_saved_camera_is_the_view(folder, run):
     Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
     arguments = ("light", "flow.vti", "--contour", "r", "--view", "camera.json", "-o", "lit.vtp")
     for parallel in ((), ("--parallel",)):
-        assert run(capfd, *arguments, *parallel)[0] == 0
+        assert run(*arguments, *parallel)[0] == 0
         view = vizlight.provenance(pv.read("lit.vtp"))["scene"]["view"]
         assert view["position"] == [30, -10, 20]
         direction = np.array([25, -15, 15]) / np.linalg.norm([25, -15, 15])
@@ -550,22 +544,22 @@ def test_a_saved_camera_is_the_view(folder, capfd):
         assert view["parallel"] is bool(parallel)
 
 
-def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, capfd):
+def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, run):
     arguments = ("project", "torus.vtp", "--view", "0,-1,2", "-o", "lit.vtk")
-    assert run(capfd, *arguments, "--light", "90,0", "--light-position", "1,2,3,4")[0] == 0
+    assert run(*arguments, "--light", "90,0", "--light-position", "1,2,3,4")[0] == 0
     scene = vizlight.provenance(pv.read("lit.vtk"))["scene"]
     assert scene["view"]["direction"] == [0, -1, 2, 0]
     assert scene["lights"][0]["direction"] == [1, 0, 0, 0]
     assert scene["lights"][1]["position"] == [1, 2, 3, 4]
-    assert run(capfd, *arguments)[0] == 0
+    assert run(*arguments)[0] == 0
     lights = vizlight.provenance(pv.read("lit.vtk"))["scene"]["lights"]
     assert lights == json.loads(json.dumps(vizlight.Scene().to_dict()["lights"]))
 
 
 @pytest.mark.opengl
-def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
+def test_colours_of_data_are_multiplied_by_the_light(folder, run):
     arguments = ("light", "flow.vti", "--slice", "z:4", "--scalars", "r", "-o", "a.png", *SMALL)
-    code, script, _ = run(capfd, *arguments, "--script")
+    code, script, _ = run(*arguments, "--script")
     assert code == 0
     space = {}
     exec(script, space)
@@ -582,10 +576,10 @@ def test_colours_of_data_are_multiplied_by_the_light(folder, capfd):
     assert np.ptp(picture, axis=1).max() > 50
 
 
-def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
+def test_parts_are_blocks_of_one_file_and_one_page(folder, run):
     """Other outputs have a file for each part."""
     given = ("fur", "flow.vti", "--contour", "r", "--level", "4", "--fibres", "50")
-    code, out, _ = run(capfd, *given, "-o", "a.vtm", "-o", "a.html", "-o", "b.vtp")
+    code, out, _ = run(*given, "-o", "a.vtm", "-o", "a.html", "-o", "b.vtp")
     assert (code, out.count("mesh  "), out.count("page  ")) == (0, 3, 1)
     blocks = pv.read("a.vtm")
     assert blocks.keys() == ["fibres", "skin"]
@@ -594,17 +588,17 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, capfd):
     page = Path("a.html").read_text(encoding="utf-8")
     assert "fibres" in page
     assert "skin" in page
-    code, out, _ = run(capfd, *given, "-o", "c.vtm", "-o", "c.html", "--script")
+    code, out, _ = run(*given, "-o", "c.vtm", "-o", "c.html", "--script")
     exec(compile(out, "script", "exec"), {})
     same_arrays(pv.read("c.vtm")["skin"], blocks["skin"])
     # Pages name the pictures that a reader saves after themselves.
     again = Path("c.html").read_text(encoding="utf-8")
     assert again.replace('": "c"', '": "a"') == page
-    code, _, err = run(capfd, "light", "flow.vti", "-o", "d.vtm")
+    code, _, err = run("light", "flow.vti", "-o", "d.vtm")
     assert (code, "a name that ends in .vtp, .vtk, .vtu, .stl for PolyData" in err) == (2, True)
 
 
-def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
+def test_steps_without_a_flow_name_those_that_have_one(folder, run):
     import foam
 
     def fields(time, middles):
@@ -612,36 +606,36 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, capfd):
 
     foam.write(folder / "case", [0, 0.5, 2], fields)
     arguments = ("streamlines", "case/case.foam", "--vectors", "U", "--seeds", "5")
-    code, out, _ = run(capfd, *arguments, "-o", "a.vtp")
+    code, out, _ = run(*arguments, "-o", "a.vtp")
     assert (code, "note     time 2, the last of 3 steps; --time takes" in out) == (0, True)
-    code, _, err = run(capfd, *arguments, "--time", "0", "-o", "a.vtp")
+    code, _, err = run(*arguments, "--time", "0", "-o", "a.vtp")
     assert (code, "'U' is not zero everywhere, got 0; pass --time with one of 0.5, 2" in err) == (
         2,
         True,
     )
     # So it is where the only vectors are taken.
-    _, _, same = run(capfd, "streamlines", "case/case.foam", "--time", "0", "-o", "a.vtp")
+    _, _, same = run("streamlines", "case/case.foam", "--time", "0", "-o", "a.vtp")
     assert same == err
     (folder / "out").mkdir()
-    code, out, _ = run(capfd, *arguments, "--times", "1:", "-o", "out", *SMALL)
+    code, out, _ = run(*arguments, "--times", "1:", "-o", "out", *SMALL)
     assert (code, "note" in out) == (0, False)
     assert sorted(path.name for path in Path("out").glob("*.vtp")) == [
         "case-streamlines-0000.vtp",
         "case-streamlines-0001.vtp",
     ]
     (folder / "all").mkdir()
-    code, out, _ = run(capfd, "light", *arguments[1:2], "--times", "all", "-o", "all", *SMALL)
+    code, out, _ = run("light", *arguments[1:2], "--times", "all", "-o", "all", *SMALL)
     assert (code, len([*Path("all").glob("*.png")])) == (0, 3)
     for asked in ("3:", "x", "all --time 1"):
-        code, _, err = run(capfd, *arguments, "--times", *asked.split(), "-o", "out")
+        code, _, err = run(*arguments, "--times", *asked.split(), "-o", "out")
         assert (code, "--times: expected all, or indices of steps" in err) == (2, True)
 
 
-def test_the_picture_of_a_share_is_not_white_on_white(tmp_path, monkeypatch, capfd):
+def test_the_picture_of_a_share_is_not_white_on_white(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     pv.Sphere().save("ball.stl")
     for words, gray in (("", True), ("--background white", False)):
-        code, _, error = run(capfd, "sky", "ball.stl", "-o", "sky.png", *words.split())
+        code, _, error = run("sky", "ball.stl", "-o", "sky.png", *words.split())
         assert code == 0, error
         corner = pv.read("sky.png")["PNGImage"][0]
         assert (np.abs(corner.astype(int) - 128).max() < 3) == gray

@@ -39,7 +39,7 @@ def ball(tmp_path):
 def test_a_lit_mesh_is_read_once_and_nothing_that_draws_is_loaded(ball):
     reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.vtp")
     assert reads == 1
-    drawing = {"vizlight.draw.component", "vizlight.pieces.run", "vizlight.pieces.kinds"}
+    drawing = {"vizlight.draw.component", "vizlight.pieces.run", "vizlight.pieces.sources"}
     assert not modules & {*drawing, "numba", "scipy.optimize", "scipy.spatial"}
 
 

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -19,7 +20,7 @@ import traces
 
 from vizlight import Scene, View, pieces
 from vizlight.files import FileError
-from vizlight.pieces.workers import LOST, Call, Work
+from vizlight.pieces.workers import LOST, Work, repeated
 
 PLAIN = Scene(view=View(direction=(0, 0, 1)))
 #: A scheduler and a worker in one process, which prints the address.
@@ -135,6 +136,16 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
 
 
+def test_processes_and_their_threads_have_ended_with_the_object():
+    before = {*threading.enumerate(), *multiprocessing.active_children()}
+    work = pieces.Processes(2)
+    assert list(work(abs, [-1, 2])) == [1, 2]
+    made = {*threading.enumerate(), *multiprocessing.active_children()} - before
+    assert {type(one).__name__ for one in made} >= {"_ExecutorManagerThread", "SpawnProcess"}
+    del work
+    assert not any(one.is_alive() for one in made)
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_no_process_listens_and_a_script_needs_no_guard(balls):
     (balls / "script.py").write_text(SCRIPT, encoding="utf-8")
@@ -194,11 +205,11 @@ def test_errors_of_the_system_are_tried_again():
             raise pieces.PieceError("piece a: not read") from error
         return len(calls)
 
-    assert Call(work, 2)((OSError("stale"),)) == 3
+    assert repeated(work, 2, (OSError("stale"),)) == 3
     for retries, cause in ((1, OSError("stale")), (2, None)):
         calls.clear()
         with pytest.raises(pieces.PieceError, match="not read"):
-            Call(work, retries)((cause,))
+            repeated(work, retries, (cause,))
         assert len(calls) == (2 if cause else 1)
 
 

@@ -11,7 +11,7 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate, refine
-from vizlight.mesh.parts import inputs_of
+from vizlight.mesh.batches import inputs_of
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify import between

@@ -1,6 +1,7 @@
 """The command line: a command for each filter, ``demo`` and ``doctor``."""
 
+from vizlight._supervise import BAD_INPUT, LACKING
 from vizlight.cli.main import app, main
-from vizlight.cli.output import BAD_INPUT, LACKING, OK
+from vizlight.cli.output import OK
 
 __all__ = ["BAD_INPUT", "LACKING", "OK", "app", "main"]

@@ -6,37 +6,33 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Group, Parameter
 
 from vizlight._words import message
+
+if TYPE_CHECKING:
+    from collections.abc import Container
 
 Backend = Literal["egl", "osmesa"]
 Question = Literal["direction", "slope", "heading", "shape", "value"]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
-Positions = Annotated[
-    list[str],
-    Parameter(allow_leading_hyphen=True, negative=()),
-]
 Overlays = Annotated[list[Path], Parameter(negative=())]
 Outputs = Annotated[list[Path], Parameter(name=["--output", "-o"], negative=())]
 
-#: How the options of a group stand in a command's signature.
+#: Headings of the help in their order; second stand the options of a filter.
 GROUPS = {
     name: Group(name, sort_key=place)
     for place, name in enumerate(
-        ("What is lit", "How", "Light", "Material", "Camera", "Output", "Pieces")
+        ("What is lit", "", "Light", "Material", "Camera", "Output", "Pieces")
     )
 }
-LIT, _, LIGHT, MATERIAL, CAMERA, OUTPUT, PIECES = (
-    Parameter(name="*", group=group) for group in GROUPS.values()
-)
-COMMON = Parameter(name="*")
 
 
+@Parameter(name="*", group=GROUPS["What is lit"])
 @dataclass(frozen=True, kw_only=True)
 class Part:
     """Part of a file.
@@ -100,6 +96,7 @@ class Target(Shape):
     surface: bool = True
 
 
+@Parameter(name="*", group=GROUPS["Light"])
 @dataclass(frozen=True, kw_only=True)
 class Lights:
     """Lights.
@@ -125,12 +122,13 @@ class Lights:
     question: Annotated[Question | None, Parameter(name="--for")] = None
     key: bool = True
     light: Texts | None = None
-    light_position: Positions | None = None
+    light_position: Texts | None = None
     headlight: Flag = False
     depth_cue: Flag = False
     scene: Path | None = None
 
 
+@Parameter(name="*", group=GROUPS["Material"])
 @dataclass(frozen=True, kw_only=True)
 class Finish:
     """Material.
@@ -156,6 +154,7 @@ class Finish:
     color: str | None = None
 
 
+@Parameter(name="*", group=GROUPS["Camera"])
 @dataclass(frozen=True, kw_only=True)
 class Eye:
     """Camera.
@@ -178,6 +177,7 @@ class Eye:
     zoom: float = 1.0
 
 
+@Parameter(name="*", group=GROUPS["Output"])
 @dataclass(frozen=True, kw_only=True)
 class Output:
     """Files and what is printed.
@@ -215,6 +215,7 @@ class Output:
     script: Flag = False
 
 
+@Parameter(name="*", group=GROUPS["Output"])
 @dataclass(frozen=True, kw_only=True)
 class Color:
     """Colour of a picture by data.
@@ -231,6 +232,7 @@ class Color:
     cmap: str | None = None
 
 
+@Parameter(name="*", group=GROUPS["Pieces"])
 @dataclass(frozen=True, kw_only=True)
 class Pieces:
     """Data in pieces, for an output .pvtp, .pvtu, .pvti, .pvtr or .pvts.
@@ -250,17 +252,18 @@ class Pieces:
     slab: float | None = None
 
 
+@Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Common:
     """Options of every command that lights files."""
 
-    lights: Annotated[Lights, LIGHT] = Lights()
-    finish: Annotated[Finish, MATERIAL] = Finish()
-    eye: Annotated[Eye, CAMERA] = Eye()
-    out: Annotated[Output, OUTPUT] = Output()
+    lights: Lights = Lights()
+    finish: Finish = Finish()
+    eye: Eye = Eye()
+    out: Output = Output()
 
 
-def numbers(text: str, counts: tuple[int, ...] = (3,)) -> tuple[float, ...]:
+def numbers(text: str, counts: Container[int] = (3,)) -> tuple[float, ...]:
     """Return numbers separated by commas, none where the text is not that."""
     try:
         values = tuple(float(part) for part in text.split(","))
@@ -270,7 +273,11 @@ def numbers(text: str, counts: tuple[int, ...] = (3,)) -> tuple[float, ...]:
 
 
 #: Directions by the names of axes.
-_AXES = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
+_AXES = {
+    f"{sign}{axis}": ",".join(f"{sign}1" if axis == own else "0" for own in "xyz")
+    for sign in ("", "-")
+    for axis in "xyz"
+}
 
 
 def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
@@ -297,27 +304,24 @@ def toward(azimuth: float, altitude: float) -> tuple[float, float, float]:
     """Return a unit direction from degrees clockwise from y (north) and above the horizon."""
     from vizlight import _check
 
-    a, e = (
-        math.radians(azimuth),
-        math.radians(_check.number("altitude", altitude, low=-90, high=90)),
-    )
+    a = math.radians(azimuth)
+    e = math.radians(_check.number("altitude", altitude, low=-90, high=90))
     x, y, z = math.sin(a) * math.cos(e), math.cos(a) * math.cos(e), math.sin(e)
     return round(x, 15), round(y, 15), round(z, 15)
 
 
-def plane(name: str, text: str, *, n: int = 3) -> tuple[tuple[float, ...], float]:
+def plane(
+    name: str,
+    text: str,
+    *,
+    counts: Container[int] = (3,),
+    expected: str = "NORMAL:OFFSET, 3 numbers and one, such as 0,0,1:2.5 or z:2.5",
+) -> tuple[tuple[float, ...], float]:
     """Return a normal and the distance of the plane from the origin along it."""
-    normal, colon, offset = text.rpartition(":")
-    axis = normal.lower().removeprefix("-")
-    if axis in ("x", "y", "z"):
-        sign = -1.0 if normal.startswith("-") else 1.0
-        values: tuple[float, ...] = tuple(sign if axis == own else 0.0 for own in "xyz"[:n])
-    else:
-        values = numbers(normal, (n,))
+    normal, _, offset = text.rpartition(":")
+    values = numbers(_AXES.get(normal.lower(), normal), counts)
     distance = numbers(offset, (1,))
-    if not (colon and any(values) and distance):
-        example = "0,0,1:2.5 or z:2.5" if n == 3 else ",".join("0" * (n - 1)) + ",1:0.2"
-        expected = f"NORMAL:OFFSET, {n} numbers and one, such as {example}"
+    if not (any(values) and distance):
         raise ValueError(message(f"--{name}", expected, repr(text)))
     return values, distance[0]
 
@@ -337,8 +341,15 @@ def interval(name: str, text: str) -> tuple[str, float, float]:
     raise ValueError(message(f"--{name}", expected, repr(text)))
 
 
-def fraction(name: str, text: str, expected: str = "a number or a fraction such as 1/255") -> float:
-    """Return a number that may be written as a fraction."""
+def fraction(
+    name: str,
+    text: str,
+    expected: str = "a number or a fraction such as 1/255",
+    word: str | None = None,
+) -> float | str:
+    """Return a number that may be written as a fraction, or the one word that may stand for it."""
+    if text == word:
+        return text
     try:
         return float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:

@@ -7,19 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from vizlight.cli import options, scenes
-from vizlight.cli.arguments import (
-    COMMON,
-    GROUPS,
-    LIT,
-    OUTPUT,
-    Color,
-    Common,
-    Flag,
-    Part,
-    Shape,
-)
+from vizlight.cli import scenes
+from vizlight.cli.arguments import GROUPS, Color, Common, Flag, Part, Shape
 from vizlight.cli.job import Job, carry_out
+from vizlight.cli.options import Given, takes
 from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
@@ -29,29 +20,19 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Keywords
-    from vizlight.cli.arguments import Output
     from vizlight.filters.fur import FurOptions
     from vizlight.scene import Light
 
-#: Option of ``project`` that the lights have the name of.
-RENAMED = {"light": "when"}
-#: Option of ``sky`` that the camera has the name of.
-SKY_UP = {"up": "sky_up"}
 
-
-@options.takes(
-    "streamlines",
-    "Streamlines",
-    without=("positions", "tangents"),
-)
+@takes("streamlines", "Streamlines")
 def streamlines(
     files: list[Path],
     /,
     *,
-    part: Annotated[Part, LIT] = Part(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
-    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
+    part: Part,
+    how: Given,
+    common: Common,
+    color: Color,
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -65,10 +46,8 @@ def streamlines(
     """
     from vizlight.filters.streamlines import StreamlineOptions
 
-    scenes.check_target(part)
-    scenes.check_color(color)
-    look = scenes.Look(common)
-    given = options.keywords(how)
+    look = scenes.Look(common, part, color)
+    given = how.keywords()
     if given.get("line_field") and "," in given.get("vectors", ""):
         given["vectors"] = tuple(given["vectors"].split(","))
     asked = StreamlineOptions(**given)
@@ -83,7 +62,7 @@ def streamlines(
             mesh = Step("averaged", ".cell_data_to_point_data", mesh)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
         camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
-        lit = _step("lit", "streamlines", mesh, look.scene(camera), given | on, common.out)
+        lit = look.step("lit", "streamlines", mesh, look.scene(camera), **given, **on)
         made = Job(lit, asked.name, look, camera)
         made.tint(lit, mesh, color)
         return made
@@ -92,15 +71,15 @@ def streamlines(
 
 
 # Heights are exaggerated, and lit, as they are shown.
-@options.takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
+@takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
 def relief(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
+    shape: Shape,
+    how: Given,
     lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    common: Common,
     sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
 ) -> int:
     """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
@@ -116,12 +95,11 @@ def relief(
     """
     from vizlight.filters.relief_shadow import ReliefOptions
 
-    scenes.check_target(shape, raised=True)
     # The shadow is cast by one light.
-    look = scenes.Look(common, fill=False)
+    look = scenes.Look(common, shape, raised=True, fill=False)
     # A shadow alone answers no question.
     given: Keywords = {"lit": lit or common.lights.question is not None}
-    given |= options.keywords(how)
+    given |= how.keywords()
     given |= {"lit": True, "occlusion": "sky"} if sky else {}
     asked = ReliefOptions(**given)
 
@@ -143,9 +121,9 @@ def relief(
                 on["exaggeration"] = factor
         camera = look.camera(raised, is_map=found is not None)
         scene = look.scene(camera)
-        shaded = _step("shaded", "relief_shadow", mesh, scene, on | given, common.out)
+        shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
         shown = None if heights is None else _raised_like(raised, shaded)
-        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
         if asked.lit:
             made.scalars = "rgb" if look.colored else "luminance"
@@ -159,14 +137,14 @@ def relief(
     return carry_out(files, job, common.out, "relief", shape)
 
 
-@options.takes("sky", "Sky", renamed=SKY_UP)
+@takes("sky", "Sky", up="sky_up")
 def sky(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Find the share of a uniform sky that each point sees.
 
@@ -177,9 +155,8 @@ def sky(
     """
     from vizlight.filters.sky import SkyOptions
 
-    scenes.check_target(shape)
-    look = scenes.Look(common)
-    given = options.keywords(how, SKY_UP)
+    look = scenes.Look(common, shape)
+    given = how.keywords()
     asked = SkyOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -192,9 +169,9 @@ def sky(
         # The sky belongs to the heights as they are.
         raised = mesh if heights is None else scenes.warped("raised", mesh, heights, 1.0)
         camera = look.camera(raised, is_map=field)
-        lit = _step("skylit", "sky", mesh, None, given, common.out)
+        lit = look.step("skylit", "sky", mesh, **given)
         shown = None if heights is None else _raised_like(raised, lit)
-        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, before=mesh)
+        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
         made.suffix = _suffix(found) if field else ""
         return made
 
@@ -218,14 +195,14 @@ def _level_light(lights: Sequence[Light]) -> float:
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-@options.takes("fur", "Fur")
+@takes("fur", "Fur")
 def fur(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
@@ -236,31 +213,30 @@ def fur(
     """
     from vizlight.filters.fur import MATERIAL, FurOptions
 
-    scenes.check_target(shape)
     names = ("ambient", "diffuse", "specular")
-    look = scenes.Look(common, material={name: getattr(MATERIAL, name) for name in names})
+    look = scenes.Look(common, shape, material={name: getattr(MATERIAL, name) for name in names})
     given: Keywords = {"feature_angle": "auto"}
-    given |= options.keywords(how)
+    given |= how.keywords()
     asked = FurOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(_tips(mesh, asked))
-        lit = _step("furry", "fur", mesh, look.scene(camera), given, common.out)
+        lit = look.step("furry", "fur", mesh, look.scene(camera), **given)
         return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
 
     return carry_out(files, job, common.out, "fur", shape)
 
 
 # The tolerance is for solids, which no file holds.
-@options.takes("isoluminance", "Contours", without=("tolerance",))
+@takes("isoluminance", "Contours", without=("tolerance",))
 def contours(
     files: list[Path],
     /,
     *,
-    shape: Annotated[Shape, LIT] = Shape(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    shape: Shape,
+    how: Given,
+    common: Common,
 ) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
@@ -271,30 +247,29 @@ def contours(
     """
     from vizlight.filters.isoluminance import ContourOptions
 
-    scenes.check_target(shape)
-    look = scenes.Look(common)
+    look = scenes.Look(common, shape)
     # In a picture a crease is seen as one.
     given: Keywords = {"feature_angle": "auto"}
-    given |= options.keywords(how)
+    given |= how.keywords()
     asked = ContourOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(mesh)
-        lit = _step("found", "isoluminance", mesh, look.scene(camera), given, common.out)
+        lit = look.step("found", "isoluminance", mesh, look.scene(camera), **given)
         bands = Step("", "[]", lit, "bands")
         return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
 
     return carry_out(files, job, common.out, "contours", shape)
 
 
-@options.takes("project", "Projection", renamed=RENAMED)
+@takes("project", "Projection", light="when")
 def project(
     files: list[Path],
     /,
     *,
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
+    how: Given,
+    common: Common,
 ) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
@@ -309,7 +284,7 @@ def project(
     from vizlight.filters.project import ProjectOptions
 
     look = scenes.Look(common)
-    given = options.keywords(how, RENAMED)
+    given = how.keywords()
     asked = ProjectOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
@@ -317,25 +292,10 @@ def project(
         found = mesh.run()
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
-        scene = look.scene_in(n)
-        lit = _step("projected", "project", mesh, None, given | {"scene": scene}, common.out)
+        lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
         return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
 
     return carry_out(files, job, common.out, "projected", Part())
-
-
-def _step(
-    name: str,
-    filter_: str,
-    mesh: Step,
-    scene: Step | None,
-    given: dict[str, object],
-    out: Output,
-) -> Step:
-    """Return the step that runs a filter."""
-    progress = {"progress_bar": True} if out.progress else {}
-    arguments = (mesh,) if scene is None else (mesh, scene)
-    return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
 
 
 def _tips(mesh: Step, asked: FurOptions) -> Step:

@@ -10,9 +10,10 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import vizlight
+from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
-from vizlight.cli.output import BAD_INPUT, OK, complain, draw, one_line, say
-from vizlight.cli.scenes import TINT, times, tinted, title_of
+from vizlight.cli.output import OK, complain, draw, one_line, say
+from vizlight.cli.scenes import TINT, known, times, tinted, title_of
 from vizlight.cli.script import Step, in_order, source
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
+    from vizlight._types import Keywords
     from vizlight.cli.arguments import Color, Output, Part
     from vizlight.cli.scenes import Look
 
@@ -52,10 +54,8 @@ class Job:
         Mesh of the picture. Default: what is lit.
     scalars
         Name of the array that is shown. Default: the light, or its colour.
-    before
-        Mesh whose kind the result has.
     kind
-        Kind of the result where no mesh has it before; empty where it is not known.
+        Kind of the result, empty where it is not known, or the step whose mesh has it.
     parts
         Names of the blocks that are written to files of their own.
     suffix
@@ -82,8 +82,7 @@ class Job:
     camera: Step
     shown: Step | None = None
     scalars: str | None = None
-    before: Step | None = None
-    kind: str = "PolyData"
+    kind: Step | str = "PolyData"
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
     color: Color | None = None
@@ -200,7 +199,7 @@ def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             expected = "another file than the input"
             raise files.FileError(message("output", expected, f"'{path}'"))
-    formats = files.FORMATS.get(job.kind, files.SUFFIXES) if job.before is None else files.SUFFIXES
+    formats = files.FORMATS.get(str(job.kind), files.SUFFIXES)
     formats += files.FORMATS["MultiBlock"] if job.parts else ()
     for _, path in job.meshes:
         if path.suffix.lower() not in (*SHOWN, *formats):
@@ -220,22 +219,17 @@ def _picture(job: Job, path: Path, out: Output) -> Step:
     scalars = job.scalars or _of_light(job)
     # A share that is 1 at most points is white, as paper is.
     plain = "gray" if job.scalars == job.name else None
-    options = {
-        "background": out.background or plain,
-        "line_width": None if out.line_width == 1 else out.line_width,
-        "backend": out.backend,
-        "clim": job.clim,
-        "key": _key(job),
-    }
+    options = known(background=plain) | drawing(out) | known(clim=job.clim, key=_key(job))
+    panel = Step("", "render.Panel", job.shown or job.lit, scalars)
     return Step(
-        "",
-        "render.save_png",
-        Step("", "render.Panel", job.shown or job.lit, scalars),
-        path,
-        camera=job.camera,
-        size=job.look.size,
-        **{key: value for key, value in options.items() if value is not None},
+        "", "render.save_png", panel, path, camera=job.camera, size=job.look.size, **options
     )
+
+
+def drawing(out: Output) -> Keywords:
+    """Return the options of a picture that are not left to their defaults."""
+    width = None if out.line_width == 1 else out.line_width
+    return known(background=out.background, line_width=width, backend=out.backend)
 
 
 def _key(job: Job) -> Step | None:
@@ -260,15 +254,13 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
     if writer is None:
         return Step("", "files.write_mesh", mesh, path)
     color = job.color
-    chosen: dict[str, object] = {} if color is None else {"scalars": color.scalars}
-    if color is not None and color.cmap is not None and suffix in (GLTF, HTML):
-        chosen["cmap"] = color.cmap
+    chosen: Keywords = {} if color is None else {"scalars": color.scalars}
+    if color is not None and suffix in (GLTF, HTML):
+        chosen |= known(cmap=color.cmap)
     if suffix == HTML:
-        chosen |= {"camera": job.camera}
-        chosen |= {"source": list(job.source)} if job.source else {}
-        chosen |= {} if job.look.lights.key else {"key": False}
-        chosen |= {} if out.background is None else {"background": out.background}
-        chosen |= {} if out.line_width == 1 else {"line_width": out.line_width}
+        key = None if job.look.lights.key else False
+        chosen |= known(camera=job.camera, source=list(job.source) or None, key=key)
+        chosen |= {name: value for name, value in drawing(out).items() if name != "backend"}
     return Step("", writer, mesh, None, path, **chosen)
 
 
@@ -282,8 +274,8 @@ def _last_steps(job: Job, out: Output) -> list[Step]:
 def _run(job: Job, out: Output) -> int:
     from vizlight import files
 
-    if job.before is not None:
-        mesh = job.before.run()
+    if isinstance(job.kind, Step):
+        mesh = job.kind.run()
         for _, path in job.meshes:
             if path.suffix.lower() not in SHOWN:
                 files.check_format(mesh, path)

@@ -1,57 +1,62 @@
-"""``vizlight light FILE``: read a mesh, light it, write the lit mesh and a picture."""
+"""``vizlight light`` and ``vizlight view``: a lit mesh, a picture, a page, or pieces."""
 
 from __future__ import annotations
 
+import importlib.util
 import inspect
 import shlex
-from pathlib import Path  # noqa: TC003 - cyclopts reads the annotations
+import tempfile
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 import vizlight
-from vizlight import _words
-from vizlight.cli import in_pieces, options, scenes
+from vizlight._words import message
+from vizlight.cli import scenes
 from vizlight.cli.arguments import (
-    COMMON,
     GROUPS,
-    LIT,
-    OUTPUT,
-    PIECES,
     Color,
     Common,
+    Eye,
+    Finish,
     Flag,
+    Lights,
+    Output,
     Pieces,
     Target,
     fraction,
 )  # fmt: skip
-from vizlight.cli.job import Job, carry_out
-from vizlight.cli.output import say
-from vizlight.cli.script import Step
-
-#: Questions whose light needs the self-shadow of a surface where tangents are lit.
-CONDITIONED = ("shape", "value")
+from vizlight.cli.job import HTML, Job, carry_out, drawing
+from vizlight.cli.options import Given, takes, words
+from vizlight.cli.output import OK, complain, draw, say
+from vizlight.cli.script import Step, source
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     import pyvista as pv
 
     from vizlight._types import Keywords
     from vizlight.shading.options import LightOptions
 
+#: Questions whose light needs the self-shadow of a surface where tangents are lit.
+CONDITIONED = ("shape", "value")
+
 
 # Places in n-space need lights and an eye in n-space, which scripts have; --sky is an occlusion.
-@options.takes("illuminate", "Shading", without=("positions", "occlusion"))
+@takes("illuminate", "Shading", without=("positions", "occlusion"))
 def light(
     files: list[Path],
     /,
     *,
-    target: Annotated[Target, LIT] = Target(),  # noqa: B008
-    how: object = None,
-    common: Annotated[Common, COMMON] = Common(),  # noqa: B008
-    color: Annotated[Color, OUTPUT] = Color(),  # noqa: B008
-    pieces: Annotated[Pieces, PIECES] = Pieces(),  # noqa: B008
+    target: Target,
+    how: Given,
+    common: Common,
+    color: Color,
+    pieces: Pieces,
     explain: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     legibility: Annotated[Flag, Parameter(group=GROUPS["Output"])] = False,
     sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
@@ -73,36 +78,101 @@ def light(
     refine
         Largest error between points, such as 1/255: cells are split where it is more.
     """
-    given = keywords(how, sky=sky)
-    if in_pieces.are_asked(common.out, pieces):
-        scenes.check_target(target)
-        scenes.check_color(color)
-        look = scenes.Look(common)
+    given = how.keywords() | ({"occlusion": "sky"} if sky else {})
+    if indices := _indices(common.out, pieces):
         if legibility:
-            got = "pieces"
-            raise ValueError(_words.message("--legibility", "one mesh, lit as a whole", got))
+            raise ValueError(message("--legibility", "one mesh, lit as a whole", "pieces"))
         if refine:
             remedy = "refine their union, so that split edges match"
-            raise ValueError(_words.message("--refine", "one mesh", "pieces", remedy))
-        return in_pieces.light(files, target, given, common, color, pieces, look)
-    build = builder(
-        target, how, common, color, sky=sky, refine=refine, explain=explain, legibility=legibility
-    )
+            raise ValueError(message("--refine", "one mesh", "pieces", remedy))
+        return _light_pieces(files, indices, target, given, common, color, pieces)
+    recipe = [*words(target, how), *(["--sky"] if sky else [])]
+    build = _builder(target, given, common, color, recipe, refine, explain, legibility)
     return carry_out(files, build, common.out, "lit", target)
 
 
-def keywords(how: object, *, sky: bool) -> Keywords:
-    """Return the options of light, with the ambient light of a sky where it is asked for."""
-    return options.keywords(how) | ({"occlusion": "sky"} if sky else {})
+@Parameter(name="*", group=GROUPS["Output"])
+@dataclass(frozen=True, kw_only=True)
+class Window:
+    """Page that is written and opened.
+
+    Parameters
+    ----------
+    output
+        File .html of the page. Default: one in a private temporary folder.
+    browser
+        Open the page in the browser.
+    background
+        Colour behind the mesh. Default: white, or black behind lines and points.
+    line_width
+        Width of lines in pixels.
+    progress
+        Show a progress bar.
+    """
+
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None
+    browser: bool = True
+    background: str | None = None
+    line_width: float = 1.0
+    progress: Flag = False
 
 
-def builder(
+@takes("illuminate", "Shading", without=("positions",))
+def view(
+    file: Path,
+    /,
+    *,
     target: Target,
-    how: object,
+    how: Given,
+    lights: Lights,
+    finish: Finish,
+    eye: Eye,
+    color: Color,
+    window: Window,
+) -> int:
+    """Light a mesh as the command light does, and open a page whose light follows the reader's eye.
+
+    Parameters
+    ----------
+    file
+        Mesh to show.
+    """
+    from vizlight.files import FileError
+
+    page = window.output
+    if page is not None and page.suffix.lower() != HTML:
+        raise FileError(message("output", f"a name that ends in {HTML}", f"'{page}'"))
+    folder = None
+    if page is None:
+        # Only this user may look into the folder.
+        folder = Path(tempfile.mkdtemp(prefix="vizlight-"))
+        page = folder / f"{file.stem}{HTML}"
+    try:
+        out = Output(
+            output=[page],
+            background=window.background,
+            line_width=window.line_width,
+            progress=window.progress,
+        )
+        common = Common(lights=lights, finish=finish, eye=eye, out=out)
+        build = _builder(target, how.keywords(), common, color, words(target, how))
+        code = carry_out([file], build, out, "view", target)
+        if folder is not None:
+            page.chmod(0o600)
+    finally:
+        if folder is not None and not page.exists():
+            folder.rmdir()
+    if code == OK and window.browser and not webbrowser.open(page.resolve().as_uri()):
+        complain(f"no browser was found; open '{page}' in one")
+    return code
+
+
+def _builder(
+    target: Target,
+    given: Keywords,
     common: Common,
     color: Color,
-    *,
-    sky: bool = False,
+    recipe: list[str],
     refine: str | None = None,
     explain: bool = False,
     legibility: bool = False,
@@ -110,10 +180,7 @@ def builder(
     """Return the function that makes the job of a file, after a check of what needs no mesh."""
     from vizlight.shading.options import LightOptions
 
-    scenes.check_target(target)
-    scenes.check_color(color)
-    look = scenes.Look(common)
-    given = keywords(how, sky=sky)
+    look = scenes.Look(common, target, color)
     taken = target.surface or target.contour is not None or target.slice is not None
     if taken:
         # In a picture a crease is seen as one.
@@ -121,25 +188,22 @@ def builder(
     if common.lights.question in CONDITIONED and "tangents" in given:
         given = {"conditioned": True} | given
     asked = LightOptions(**given)
-    lights, place = "vizlight.illuminate", dict[str, object](inplace=True)
+    lights, place = "illuminate", dict[str, object](inplace=True)
     if refine is not None:
-        lights, place = "vizlight.refine", {"error": _finest(refine)}
+        lights, place = "refine", {"error": _finest(refine)}
 
     def job(path: Path, time: float | str | None) -> Job:
-        data = scenes.data(path, target, time)
-        mesh = data = scenes.joined(data, given.get("tangents"))
-        if taken:
-            mesh = scenes.surface(data, target)
+        data = scenes.joined(scenes.data(path, target, time), given.get("tangents"))
+        mesh = scenes.surface(data, target) if taken else data
         scenes.check_answers(common.lights.question, mesh, color, given.get("tangents"))
         camera = look.camera(mesh)
-        progress = {"progress_bar": True} if common.out.progress else {}
         scene = look.scene(camera)
         # The lit mesh shares the arrays of the file; a refined one is new.
         source = mesh if refine else Step("", ".copy", mesh, deep=False)
-        lit = Step("lit", lights, source, scene, **given, **place, **progress)
+        lit = look.step("lit", lights, source, scene, **given, **place)
         made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
-        made.before = None if refine else mesh
-        made.source = [str(path), *options.words(target, how), *(["--sky"] if sky else [])]
+        made.kind = "PolyData" if refine else mesh
+        made.source = [str(path), *recipe]
         made.tint(lit, data, color)
         if not (target.contour or target.warp or target.slice):
             made.hint = lambda: _hint(data.run(), target, color.scalars)
@@ -161,9 +225,9 @@ def _finest(text: str) -> float:
     from vizlight.filters.refine import FINEST
 
     expected = f"a number of at least {FINEST:g}, such as 1/255"
-    error = fraction("refine", text, expected)
+    error = float(fraction("refine", text, expected))
     if error < FINEST:
-        raise ValueError(_words.message("--refine", expected, text))
+        raise ValueError(message("--refine", expected, text))
     return error
 
 
@@ -228,8 +292,8 @@ def _varying(arrays: Keywords) -> dict[str, bool]:
 
 def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
+    from vizlight.mesh.batches import inputs_of
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.mesh.parts import inputs_of
     from vizlight.shading.decide import decide
 
     record = vizlight.provenance(lit, asked.name)
@@ -237,3 +301,93 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
     layout = inputs.layout._replace(dimmed=bool(asked.bundle))
     say(decide(scene, layout, asked, record["precision"]).explain())
+
+
+def _indices(out: Output, pieces: Pieces) -> list[Path]:
+    """Return the outputs that are indices of pieces, which options of pieces need."""
+    asked = [f"--{name}" for name, value in vars(pieces).items() if value is not None]
+    found = [path for path in out.output or () if path.suffix.lower().startswith(".pv")]
+    if found or asked:
+        from vizlight.pieces.sources import INDEX
+
+        found = [path for path in found if path.suffix.lower() in INDEX.values()]
+        if not found and asked:
+            endings = ", ".join(INDEX.values())
+            expected = f"an output that ends in {endings}, of pieces, beside {asked[0]}"
+            got = ", ".join(str(path) for path in out.output or ()) or "none"
+            raise ValueError(message("output", expected, got))
+    return found
+
+
+def _light_pieces(
+    files: Sequence[Path],
+    indices: Sequence[Path],
+    target: Target,
+    given: Keywords,
+    common: Common,
+    color: Color,
+    pieces: Pieces,
+) -> int:
+    """Light files as pieces of one mesh, or print the script that does; return the exit code."""
+    out = common.out
+    look = scenes.Look(common, target, color)
+    for part, names in (
+        (target, "time times overlay clip threshold slice warp"),
+        (color, "scalars"),
+        (out, "report paraview"),
+    ):
+        for name in names.split():
+            if getattr(part, name):
+                raise ValueError(message(f"--{name}", "no such option for pieces", "one"))
+    pictures = [path for path in out.output or () if path not in indices]
+    for path in pictures:
+        if path.suffix.lower() != ".png":
+            expected = "pictures .png beside the index of pieces"
+            remedy = f"make it of the index by 'vizlight light {indices[0]} -o {path}'"
+            raise ValueError(message("output", expected, f"'{path}'", remedy))
+    if len(indices) > 1:
+        expected = "one index of pieces"
+        raise ValueError(message("output", expected, ", ".join(map(str, indices))))
+    if indices[0].suffix == ".pvtp":
+        given = {"feature_angle": "auto"} | given
+    what = scenes.known(contour=target.contour, level=target.level, slab=pieces.slab)
+    runs: Keywords = _runs(pieces)
+    shown = {"progress_bar": True} if out.progress else {}
+    # The eye belongs to the lit whole, which no piece knows: it is found before the light.
+    camera = look.camera(list(files), by="vizlight.pieces.camera_on", **what, **runs, **shown)
+    scene, more = look.scene(camera), {"out": indices[0], **runs, **given}
+    lit = look.step("lit", "pieces.light", list(files), scene, **what, **more)
+    name = str(given.get("name", "luminance"))
+    scalars = ("rgb" if name == "luminance" else f"{name}_rgb") if look.colored else name
+    panel = Step("", "render.Panel", Step("whole", "vizlight.read", indices[0]), scalars)
+    seen = {"camera": camera, "size": look.size, "light": "points", **drawing(out)}
+    drawn = [Step("", "render.save_png", panel, path, **seen) for path in pictures]
+    if out.script:
+        say(source([[lit, *drawn]]))
+        return OK
+    made = lit.run()
+    none = f", {made.empty} empty" if made.empty else ""
+    say(f"{made.points} points lit in {len(made.files)} pieces{none}")
+    low, high = made.ranges[name]
+    if high > 1:
+        complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
+    say(f"mesh     {made.path}")
+    return max((draw(step.run) for step in drawn), default=OK)
+
+
+def _runs(pieces: Pieces) -> dict[str, Step]:
+    """Return what the pieces are lit by: this process, processes, or a cluster."""
+    if pieces.workers is not None:
+        from vizlight import _check
+
+        _check.integer("--workers", pieces.workers, low=1)
+    if pieces.scheduler is None:
+        several = pieces.workers is not None and pieces.workers > 1
+        return {"map": Step("work", "vizlight.pieces.Processes", pieces.workers)} if several else {}
+    if pieces.workers is not None:
+        raise ValueError(message("--workers", "--workers or --scheduler", "both"))
+    if importlib.util.find_spec("distributed") is None:
+        remedy = "install it by: pip install 'vizlight[scale]'"
+        raise ValueError(message("--scheduler", "the package distributed", "none", remedy))
+    # An address that nobody answers at is an error of the operating system.
+    return {"map": Step("work", "distributed.Client", pieces.scheduler, timeout=10)}

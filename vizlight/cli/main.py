@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, TextIO
 
 from cyclopts import App, CycloptsError
 
-from vizlight import _console
+from vizlight._supervise import BAD_INPUT, LACKING
 from vizlight._version import __version__
 from vizlight.cli import arguments
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.output import BAD_INPUT, LACKING, OK, complain, draw, one_line, say
+from vizlight.cli.output import OK, complain, console, draw, one_line, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,19 +117,19 @@ def demo(
     table = Table(title="The winds of July, lit by their direction")
     for heading in ("light", "points", "terms", "time, ms", "error", "within 10°", "by the key"):
         table.add_column(heading, justify="left" if heading in ("light", "terms") else "right")
-    for row in made.rows:
-        by_key = row.read.legend_median
+    for light, terms, milliseconds, error, read in made.rows:
+        by_key = "" if read.legend_median is None else f"{read.legend_median:.1f}°"
         table.add_row(
-            row.light, f"{row.points}", row.terms, f"{row.milliseconds:.2f}", f"{row.error:.1e}",
-            f"{row.read.within_10:.0%}", "" if by_key is None else f"{by_key:.1f}°",
+            light, f"{made.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
+            f"{read.within_10:.0%}", by_key,
         )  # fmt: skip
-    console = _console.console()
-    console.print(table)
-    console.print("Error: the largest of float32 luminance against plain NumPy in float64.")
-    console.print("Within 10°: share of the picture where an ideal observer reads the direction.")
-    console.print("By the key: median error of a reader who matches hues; 45° is chance. The plan:")
-    console.print(made.plan, highlight=False)
-    console.print(f"mesh     {mesh}", highlight=False)
+    shown = console()
+    shown.print(table)
+    shown.print("Error: the largest of float32 luminance against plain NumPy in float64.")
+    shown.print("Within 10°: share of the picture where an ideal observer reads the direction.")
+    shown.print("By the key: median error of a reader who matches hues; 45° is chance. The plan:")
+    shown.print(made.plan, highlight=False)
+    shown.print(f"mesh     {mesh}", highlight=False)
     picture = functools.partial(
         demo.save_picture, made, out / "flow.png", size=pixels, backend=backend
     )
@@ -144,7 +144,7 @@ LIGHTING = {
         "flow.vtu --contour Temp --tangents V --conditioned",
     ),
     "view": (
-        "view",
+        "light",
         "Light a mesh, and open a page whose light follows the eye.",
         "flow.vtu --contour Temp --tangents V --conditioned",
     ),
@@ -203,7 +203,7 @@ def doctor() -> int:
     table.columns[1].overflow = "fold"
     for part, found in doctor.findings():
         table.add_row(part, found)
-    _console.console().print(table)
+    console().print(table)
     try:
         render.choose_backend()
     except render.BackendError as error:

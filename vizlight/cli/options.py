@@ -1,17 +1,24 @@
-"""Options of a filter on the command line, derived from the filter's own signature."""
+"""Options of a filter on the command line, made of what the filter's source declares.
+
+The source is read without an import: a filter loads PyVista, which takes longer than the help of a
+command.
+"""
 
 from __future__ import annotations
 
+import ast
+import functools
 import inspect
 import re
-from dataclasses import field, fields, make_dataclass
-from typing import TYPE_CHECKING, Annotated, Union
+from dataclasses import dataclass, field, fields, make_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, Union, get_type_hints
 
 from cyclopts import Group, Parameter
 
+from vizlight import _words
 from vizlight._words import message
-from vizlight.cli import declared
-from vizlight.cli.arguments import fraction, numbers
+from vizlight.cli.arguments import fraction, numbers, plane
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -21,6 +28,10 @@ if TYPE_CHECKING:
 
     P = ParamSpec("P")
 
+    #: What a name of a module stands for: a node of its source, or a module and a name there.
+    Meaning = ast.FunctionDef | ast.expr | tuple[str, str]
+
+ROOT = Path(__file__).parents[1]
 #: Types that text can be read as, by their names in annotations, beside those that are choices. A
 #: filter's option that has none of them is left to scripts.
 TYPES: Mapping[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
@@ -34,74 +45,93 @@ def _levels(name: str, text: str) -> object:
     """Return a number of steps, an allowed error, or the luminance of each contour."""
     if text.isdecimal():
         return int(text)
-    values = numbers(text, tuple(range(2, 10_000)))
+    values = numbers(text, range(2, 10_000))
     return list(values) if values else fraction(name, text)
-
-
-def _name_or_vector(_: str, text: str) -> object:
-    return numbers(text) or text
-
-
-def _facing(_: str, text: str) -> object:
-    return text.replace("-", " ")
-
-
-def _angle(name: str, text: str) -> object:
-    return text if text == "auto" else fraction(name, text, "an angle in degrees, or auto")
 
 
 def _rotations(name: str, texts: list[str]) -> object:
     """Return turns PLANE:ANGLE as pairs."""
     found = []
     for text in texts:
-        plane, colon, angle = text.partition(":")
+        turned, colon, angle = text.partition(":")
         if not colon:
             expected = "PLANE:ANGLE with the angle in radians, such as xw:0.3"
             raise ValueError(message(f"--{name}", expected, repr(text)))
-        found.append((plane, fraction(name, angle)))
+        found.append((turned, fraction(name, angle)))
     return found
 
 
-def _hyperplane(name: str, text: str) -> object:
-    """Return a normal of any number of components and an offset."""
-    normal, _, offset = text.rpartition(":")
-    values, distance = numbers(normal, tuple(range(3, 100))), numbers(offset, (1,))
-    if not (any(values) and distance):
-        expected = "NORMAL:OFFSET, such as 0,0,0,1:0.2"
-        raise ValueError(message(f"--{name}", expected, repr(text)))
-    return values, distance[0]
+def _name_or_vector(_: str, text: str) -> object:
+    return numbers(text) or text
 
 
-def _exponent(name: str, text: str) -> object:
-    return text if text == "compensated" else fraction(name, text, "compensated, or a number")
-
-
-#: Options whose text is read in a way of its own, and its description.
-READ: Mapping[str, tuple[Callable[[str, str], object], str]] = {
-    "levels": (_levels, "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
+#: Options whose text is read in a way of its own: type, reader, and description.
+READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
+    "levels": (
+        str | None,
+        _levels,
+        "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6).",
+    ),
     "feature_angle": (
-        _angle,
+        str | None,
+        functools.partial(fraction, expected="an angle in degrees, or auto", word="auto"),
         "Angle in degrees above which edges are sharp, auto for creases.",
     ),
-    "exponent": (_exponent, "Exponent of the diffuse term: compensated, or a number: 1, 2."),
-    "facing": (_facing, "Side that is lit: auto, eye, outward or as-given."),
-    "toward": (_name_or_vector, "Direction x,y,z to which fibres bend, or name of an array."),
+    "exponent": (
+        str | None,
+        functools.partial(fraction, expected="compensated, or a number", word="compensated"),
+        "Exponent of the diffuse term: compensated, or a number: 1, 2.",
+    ),
+    "facing": (
+        str,
+        lambda _, text: text.replace("-", " "),
+        "Side that is lit: auto, eye, outward or as-given.",
+    ),
+    "toward": (
+        str | None,
+        _name_or_vector,
+        "Direction x,y,z to which fibres bend, or name of an array.",
+    ),
     "up": (
+        str | None,
         _name_or_vector,
         "Direction x,y,z of the sky's half space. Default: all round.",
     ),
-    "hyperplane": (_hyperplane, "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),
+    "hyperplane": (
+        str | None,
+        functools.partial(
+            plane, counts=range(3, 100), expected="NORMAL:OFFSET, such as 0,0,0,1:0.2"
+        ),
+        "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2.",
+    ),
+    "rotation": (
+        list[str] | None,
+        _rotations,
+        "Turn PLANE:ANGLE in radians, such as xw:0.5.",
+    ),
 }
-READ_LISTS: Mapping[str, tuple[Callable[[str, list[str]], object], str]] = {
-    "rotation": (_rotations, "Turn PLANE:ANGLE in radians, such as xw:0.5."),
-}
+
+
+@dataclass(frozen=True)
+class Given:
+    """Options of a filter that a command was given; see :func:`takes`."""
+
+    def keywords(self) -> Keywords:
+        """Return the options that differ from their defaults, by the filter's names."""
+        found: Keywords = {}
+        for one in fields(self):
+            value, name = getattr(self, one.name), one.metadata["name"]
+            if value != one.default or type(value) is not type(one.default):
+                _, read, _ = READ.get(name, (None, None, None))
+                found[name] = read(one.name.replace("_", "-"), value) if read else value
+        return found
 
 
 def words(*parts: Foreign) -> list[str]:
     """Return the words of a command that give options of dataclasses the values that they have."""
     found = []
     for part in parts:
-        for one in fields(part) if part is not None else ():
+        for one in fields(part):
             value, flag = getattr(part, one.name), one.name.replace("_", "-")
             if value == one.default or value is None:
                 continue
@@ -114,104 +144,147 @@ def words(*parts: Foreign) -> list[str]:
     return found
 
 
-def arguments_of(
-    filter_: str,
-    *,
-    without: tuple[str, ...] = (),
-    renamed: Mapping[str, str] | None = None,
-) -> type:
-    """Return a class of the options of a filter, each with the first clause on it.
+def takes(
+    filter_: str, group: str, *, without: tuple[str, ...] = (), **renamed: str
+) -> Callable[[Callable[P, int]], Callable[P, int]]:
+    """Let a command take the options of a filter as ``how``, and groups of others by their class.
 
     Parameters
     ----------
     filter_ : str
         Name of a public filter, whose signature and documentation list its options.
+    group : str
+        Heading of the filter's options in the help.
     without : tuple of str
         Options that are left to scripts.
-    renamed : dict of str to str, optional
+    **renamed : str
         Other names of options on the command line.
     """
-    found = declared.filter_(filter_)
+
+    def decorate(command: Callable[P, int]) -> Callable[P, int]:
+        own = arguments_of(filter_, without=without, renamed=renamed)
+        Parameter(name="*", group=Group(group, sort_key=1))(own)
+        command.__annotations__["how"] = own
+        types, signature = get_type_hints(command), inspect.signature(command)
+        command.__kwdefaults__ = {
+            name: types[name]() if one.default is one.empty else one.default
+            for name, one in signature.parameters.items()
+            if one.kind is one.KEYWORD_ONLY
+        }
+        return command
+
+    return decorate
+
+
+def arguments_of(
+    filter_: str, *, without: tuple[str, ...] = (), renamed: Mapping[str, str] | None = None
+) -> type[Given]:
+    """Return a class of the options of a filter, each with the first clause on it; see takes."""
+    node, module = _find(f"vizlight.filters.{filter_}", filter_)
+    assert isinstance(node, ast.FunctionDef)
+    texts = _words.parameters(ast.get_docstring(node))
     made: list[tuple[str, object, object]] = []
-    for name, option in found.options.items():
-        text_type = _type(name, option)
-        if text_type is None or name in (*NOT_OPTIONS, *without):
+    for argument, value in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True):
+        name = argument.arg
+        text_type = _type(name, argument.annotation, module)
+        if text_type is None or value is None or name in (*NOT_OPTIONS, *without):
             continue
-        default = option.default
+        default = _value(value, module)
         shown = Parameter(
-            help=first_clause(_text(name, found.texts)),
-            negative=() if default is False or name in READ_LISTS else None,
+            help=first_clause(_text(name, texts)),
+            negative=() if default is False or name == "rotation" else None,
             show_default=bool(default) and not isinstance(default, bool),
             allow_leading_hyphen=name in READ,
         )
-        made.append(
-            (
-                (renamed or {}).get(name, name),
-                Annotated[text_type, shown],
-                field() if option.required else field(default=default),
-            )
-        )
-    kind = make_dataclass("Arguments", made, frozen=True, kw_only=True)
+        own = field(default=default, metadata={"name": name})
+        made.append(((renamed or {}).get(name, name), Annotated[text_type, shown], own))
+    kind = make_dataclass("Arguments", made, bases=(Given,), frozen=True, kw_only=True)
     # Cyclopts looks for descriptions in the source of the module of a class; this one has none.
     kind.__module__ = __package__ or __name__
     return kind
 
 
-def keywords(arguments: object, renamed: Mapping[str, str] | None = None) -> Keywords:
-    """Return the options that differ from their defaults, by the filter's names."""
-    if arguments is None:
-        return {}
-    names = {new: old for old, new in (renamed or {}).items()}
-    found: Keywords = {}
-    for shown, parameter in inspect.signature(type(arguments)).parameters.items():
-        name, value = names.get(shown, shown), getattr(arguments, shown)
-        if value != parameter.default or type(value) is not type(parameter.default):
-            option = shown.replace("_", "-")
-            if name in READ:
-                value = READ[name][0](option, value)
-            elif name in READ_LISTS:
-                value = READ_LISTS[name][0](option, value)
-            found[name] = value
+@functools.cache
+def _meanings(module: str) -> dict[str, Meaning]:
+    """Return what the names of a module stand for, none for a module of another package."""
+    path = ROOT.joinpath(*module.split(".")[1:])
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    found: dict[str, Meaning] = {}
+    if not (module.startswith("vizlight.") and path.is_file()):
+        return found
+    for outer in ast.parse(path.read_text(encoding="utf-8")).body:
+        # What stands below ``if`` is for types alone.
+        for node in outer.body if isinstance(outer, ast.If) else [outer]:
+            if isinstance(node, ast.ImportFrom):
+                for alias in node.names:
+                    found[alias.asname or alias.name] = (node.module or "", alias.name)
+            elif isinstance(node, ast.FunctionDef):
+                found[node.name] = node
+            elif isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+                target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+                names, values = [target], [node.value]
+                if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+                    names, values = target.elts, node.value.elts
+                found |= {ast.unparse(name): v for name, v in zip(names, values, strict=True)}
     return found
 
 
-def _type(name: str, option: declared.Option) -> object | None:
+def _find(module: str, name: str) -> tuple[ast.AST, str]:
+    """Return what a name stands for, and the module in which that is."""
+    found = _meanings(module)[name]
+    return _find(*found) if isinstance(found, tuple) else (found, module)
+
+
+def _value(node: ast.expr, module: str) -> object:
+    """Return the value of an expression of constants and of names that stand for constants."""
+    known: dict[str, object] = {}
+    for inner in ast.walk(node):
+        if isinstance(inner, ast.Name):
+            found, home = _find(module, inner.id)
+            assert isinstance(found, ast.expr)
+            known[inner.id] = _value(found, home)
+    return eval(ast.unparse(node), {"__builtins__": {}}, known)
+
+
+def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
     """Return the type of an option on the command line, None where text cannot give it."""
-    if name in READ_LISTS:
-        return list[str] | None
     if name in READ:
-        return str if option.annotation == "Facing" else str | None
-    words = option.annotation.split(" | ")
-    parts = [TYPES.get(word) or declared.choices(option, word) for word in words]
+        return READ[name][0]
+    names = ast.unparse(annotation).split(" | ") if annotation else []
+    parts = [TYPES.get(one) or _choices(one, module) for one in names]
     parts = [part for part in parts if part is not None]
     if bool in parts:
         # A flag; the name of an array in its place is left to scripts.
         parts = [bool]
-    optional = [None] if "None" in words else []
+    optional = [None] if "None" in names else []
     return Union[(*parts, *optional)] if parts else None
+
+
+def _choices(name: str, module: str) -> object | None:
+    """Return the type ``Literal`` that a name in an annotation stands for, or None."""
+    try:
+        found, _ = _find(module, name)
+    except KeyError:
+        return None
+    if isinstance(found, ast.Subscript) and ast.unparse(found.value) == "Literal":
+        return Literal[ast.literal_eval(found.slice)]
+    return None
 
 
 def _text(name: str, texts: Mapping[str, str]) -> str:
     """Return the description of an option; one that refers to another function is taken there."""
     if name in READ:
-        return READ[name][1]
-    if name in READ_LISTS:
-        return READ_LISTS[name][1]
+        return READ[name][2]
     names = [*texts]
     at = names.index(name) if name in texts else 0
     # An entry of several options stands at the first of them.
     entry = next((texts[each] for each in reversed(names[: at + 1]) if texts[each]), "")
-    text, elsewhere = _flat(entry), re.search(r"[Aa]s for\s:\w+:`~?vizlight\.([\w.]+)`", entry)
-    if not elsewhere:
-        return text
-    module, _, function = elsewhere[1].rpartition(".")
-    there = (
-        declared.function(f"vizlight.{module}", function) if module else declared.filter_(function)
-    )
-    return _flat(there.texts.get(name, "")) or text
-
-
-def _flat(entry: str) -> str:
+    elsewhere = re.search(r"[Aa]s for\s:\w+:`~?vizlight\.([\w.]+)`", entry)
+    if elsewhere:
+        module, _, function = elsewhere[1].rpartition(".")
+        there, _ = _find(f"vizlight.{module or f'filters.{function}'}", function)
+        assert isinstance(there, ast.FunctionDef)
+        entry = _words.parameters(ast.get_docstring(there)).get(name, "") or entry
     text = " ".join(entry.partition("\n")[2].split()).replace("``", "")
     return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", text)
 
@@ -231,21 +304,3 @@ def first_clause(text: str) -> str:
     if len(sentence) > LENGTH and ends:
         sentence = sentence[: max(short, default=min(ends))]
     return f"{sentence}."
-
-
-def takes(
-    filter_: str,
-    group: str,
-    *,
-    without: tuple[str, ...] = (),
-    renamed: Mapping[str, str] | None = None,
-) -> Callable[[Callable[P, int]], Callable[P, int]]:
-    """Let a command take the options of a filter as its argument ``how``; see arguments_of."""
-
-    def decorate(command: Callable[P, int]) -> Callable[P, int]:
-        kind = arguments_of(filter_, without=without, renamed=renamed)
-        place = Group(group, sort_key=1)
-        command.__annotations__["how"] = Annotated[kind, Parameter(name="*", group=place)]
-        return command
-
-    return decorate

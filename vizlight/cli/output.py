@@ -9,11 +9,17 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from vizlight._supervise import LACKING
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Exit codes: success; no picture or a machine that lacks something; bad input.
-OK, LACKING, BAD_INPUT = 0, 1, 2
+    from rich.console import Console
+
+#: Exit code of success, beside those of ``_supervise``.
+OK = 0
+#: Characters per line where the output is a file or a pipe, which has no width of its own.
+WIDTH = 140
 
 
 def say(text: str) -> None:
@@ -69,3 +75,12 @@ def draw(picture: Callable[[], Path]) -> int:
         return LACKING
     say(f"picture  {made}")
     return OK
+
+
+def console() -> Console:
+    """Return a console as wide as the terminal, or ``WIDTH`` wide where there is no terminal."""
+    from rich.console import Console
+
+    # Brackets in the text, as in an extra of a package, are not markup.
+    own = Console(markup=False)
+    return own if own.is_terminal else Console(width=WIDTH, markup=False)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight._types import Foreign, Given, Vector
+    from vizlight._types import Foreign, Given, Keywords, Vector
     from vizlight.cli.arguments import Color, Common, Lights, Part
     from vizlight.scene import Scene, View
 
@@ -51,17 +51,15 @@ def check_target(target: Part, *, raised: bool = False) -> None:
             raise ValueError(message(f"--{option}", f"--{needs} with it", "it alone"))
 
 
-def check_color(color: Color) -> None:
-    """Check the options of a picture in colour that need no mesh."""
-    if color.cmap is None:
-        return
+def _check_map(cmap: str) -> None:
+    """Check the name of a colour map."""
     from vizlight.filters.tint import color_table
 
     try:
-        color_table([], cmap=color.cmap)
+        color_table([], cmap=cmap)
     except ValueError as error:
         expected = "the name of a colour map"
-        raise ValueError(message("--cmap", expected, repr(color.cmap))) from error
+        raise ValueError(message("--cmap", expected, repr(cmap))) from error
 
 
 def times(file: Path, target: Part) -> list[float | str | None]:
@@ -97,7 +95,7 @@ def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
     from vizlight.mesh import series
 
-    mesh = Step("data", "vizlight.read", file, **_given({"time": time, "overlay": target.overlay}))
+    mesh = Step("data", "vizlight.read", file, **known(time=time, overlay=target.overlay))
     mesh.note = "" if time is not None else series.note(mesh.run())
     warp = target.warp if isinstance(target, Shape) else None
     if isinstance(target, Shape) and warp is not None:
@@ -178,12 +176,11 @@ def _threshold(mesh: Step, text: str) -> Step:
     if name not in there:
         expected = f"the name of an array, {one_of(there)}"
         raise ValueError(message("--threshold", expected, repr(name)))
-    if math.isinf(high):
-        step = Step("kept", ".threshold", mesh, low, scalars=name)
-    elif math.isinf(low):
-        step = Step("kept", ".threshold", mesh, high, scalars=name, method="lower")
-    else:
-        step = Step("kept", ".threshold", mesh, (low, high), scalars=name)
+    ends: object = (low, high)
+    if math.isinf(low) or math.isinf(high):
+        ends = low if math.isinf(high) else high
+    side = {"method": "lower"} if math.isinf(low) else {}
+    step = Step("kept", ".threshold", mesh, ends, scalars=name, **side)
     step.asked = ("--threshold", repr(text))
     return step
 
@@ -202,11 +199,12 @@ def surface(mesh: Step, target: Part) -> Step:
     """Return the step that takes the surface, an isosurface or a section of a mesh."""
     if isinstance(target, Shape) and target.slice is not None:
         return _cut("section", "slice", mesh, target.slice)
-    options: dict[str, object] = {"contour": target.contour, "level": target.level}
-    return Step("surface", "files.surface_of", mesh, **_given(options))
+    options = known(contour=target.contour, level=target.level)
+    return Step("surface", "files.surface_of", mesh, **options)
 
 
-def _given(options: dict[str, object]) -> dict[str, object]:
+def known(**options: object) -> Keywords:
+    """Return the options that are not None."""
     return {name: value for name, value in options.items() if value is not None}
 
 
@@ -217,8 +215,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
     found = data.run()
     there = [*found.point_data, *found.cell_data]
     if color.scalars in there:
-        named = _given({"cmap": color.cmap})
-        return Step("shown", "vizlight.tint", lit, color.scalars, **named, light=name, name=TINT)
+        named = known(cmap=color.cmap) | {"light": name, "name": TINT}
+        return Step("shown", "vizlight.tint", lit, color.scalars, **named)
     if color.scalars != DIRECTION:
         expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))
@@ -247,23 +245,34 @@ class Look:
     """Camera and scene as the options describe them; what needs no mesh is checked first."""
 
     def __init__(
-        self, common: Common, *, fill: bool = True, material: Mapping[str, float] | None = None
+        self,
+        common: Common,
+        target: Part | None = None,
+        color: Color | None = None,
+        *,
+        raised: bool = False,
+        fill: bool = True,
+        material: Mapping[str, float] | None = None,
     ) -> None:
-        self._fill = fill
+        if target is not None:
+            check_target(target, raised=raised)
+        if color is not None and color.cmap is not None:
+            _check_map(color.cmap)
+        self._fill, self._progress = fill, common.out.progress
         self.lights, self._eye = common.lights, common.eye
         _check_question(self.lights)
         self.size = arguments.pixels(common.out.size)
         file = common.lights.scene
-        self._file = None if file is None else read_scene(file)
+        self._file = None if file is None else _scene_of(file)
         base = vizlight.Scene() if self._file is None else self._file
         question = self.lights.question
         if question is not None:
             base = getattr(vizlight.presets, question)()
-        changes = _given(vars(common.finish))
+        changes = known(**vars(common.finish))
         self._material: Step | None = None
         kept: dict[str, object] = dict(material or {})
         if self._file is not None or question is not None:
-            kept = _given(vars(base.material)) if changes else {}
+            kept = known(**vars(base.material)) if changes else {}
         if kept or changes:
             self._material = Step("", "vizlight.Material", **(kept | changes))
             base = base.replace(material=self._material.run())
@@ -274,6 +283,11 @@ class Look:
         self._toward, self._fixed = (
             _asked_view(self._eye.view) if self._view is None else _file_view(self._view)
         )
+
+    def step(self, name: str, filter_: str, /, *arguments: object, **given: object) -> Step:
+        """Return the step that runs a filter, with a progress bar where one is asked for."""
+        progress = {"progress_bar": True} if self._progress else {}
+        return Step(name, f"vizlight.{filter_}", *arguments, **given, **progress)
 
     def camera(
         self, mesh: object, *, is_map: bool = False, by: str = "render.camera_on", **more: Given
@@ -286,13 +300,9 @@ class Look:
         toward = (self._toward or (MAP if is_map else VIEW))[:3]
         parallel = eye.parallel or (is_map and self._toward is None)
         parallel = parallel or (self._view is not None and self._view.parallel)
-        options: dict[str, object] = {
-            "up": up,
-            "parallel": True if parallel else None,
-            "zoom": None if eye.zoom == 1 else eye.zoom,
-        }
+        options = known(up=up, parallel=parallel or None, zoom=None if eye.zoom == 1 else eye.zoom)
         aspect = self.size[0] / self.size[1]
-        return Step("camera", by, mesh, toward, **more, **_given(options), aspect=aspect)
+        return Step("camera", by, mesh, toward, **more, **options, aspect=aspect)
 
     def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
         """Return the step that sets a camera where it was saved."""
@@ -336,59 +346,43 @@ class Look:
 
     def _scene(self, view: Step, shoulder: object, n: int) -> Step:
         asked = self.lights
+        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
+        values = known(material=self._material, depth_cue=cue)
         if asked.question is not None:
-            return self._preset(asked.question, view)
+            made = Step("scene", f"vizlight.presets.{asked.question}", view)
+            return Step("scene", ".replace", made, **values) if values else made
         lights = [
             Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
             for text in asked.light or ()
         ]
-        lights += [
-            Step(
-                "",
-                "vizlight.Light",
-                position=arguments.vector("light-position", text, n=n, direction=False),
-            )
-            for text in asked.light_position or ()
-        ]
+        for text in asked.light_position or ():
+            place = arguments.vector("light-position", text, n=n, direction=False)
+            lights.append(Step("", "vizlight.Light", position=place))
         if asked.headlight:
             lights.append(Step("", "vizlight.Light.headlight"))
         if not lights and self._file is None and not self._fill:
             lights = [Step("", "vizlight.Light", direction=shoulder)]
-        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if asked.depth_cue else None
-        values = _given(
-            {
-                "lights": lights or None,
-                "material": self._material,
-                "view": view if self._view is None else None,
-                "depth_cue": cue,
-            }
+        values = known(
+            lights=lights or None,
+            material=self._material,
+            view=view if self._view is None else None,
+            depth_cue=cue,
         )
         if asked.scene is None:
             return Step("scene", "vizlight.Scene", **values)
-        text = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
-        read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", text))
+        content = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
+        read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", content))
         return Step("scene", ".replace", read, **values) if values else read
-
-    def _preset(self, question: str, view: Step) -> Step:
-        """Return the step that makes the scene of a question."""
-        cue = Step("", "vizlight.DepthCue", back_scale=0.5) if self.lights.depth_cue else None
-        changes = _given({"material": self._material, "depth_cue": cue})
-        made = Step("scene", f"vizlight.presets.{question}", view)
-        return Step("scene", ".replace", made, **changes) if changes else made
 
 
 def _check_question(lights: Lights) -> None:
     """Check that light for a question has no lights beside it."""
     if lights.question is None:
         return
-    given = {
-        "light": lights.light, "light-position": lights.light_position,
-        "headlight": lights.headlight, "scene": lights.scene,
-    }  # fmt: skip
-    for name, value in given.items():
-        if value:
-            expected = "lights of its own"
-            raise ValueError(message("--for", expected, f"--{name} beside it", "leave one out"))
+    for name in ("light", "light_position", "headlight", "scene"):
+        if getattr(lights, name):
+            got = f"--{name.replace('_', '-')} beside it"
+            raise ValueError(message("--for", "lights of its own", got, "leave one out"))
 
 
 def check_answers(question: str | None, mesh: Step, color: Color, tangents: object) -> None:
@@ -426,14 +420,8 @@ def check_answers(question: str | None, mesh: Step, color: Color, tangents: obje
         raise ValueError(message(asked, expected, f"--scalars {color.scalars}"))
 
 
-def read_scene(path: Path) -> Scene:
-    """Return the scene of a JSON file.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read or holds no scene.
-    """
+def _scene_of(path: Path) -> Scene:
+    """Return the scene of a JSON file."""
     values = _json("scene", path)
     try:
         return vizlight.Scene.from_dict(values)
@@ -444,12 +432,9 @@ def read_scene(path: Path) -> Scene:
 def _json(option: str, path: Path) -> Foreign:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        got = f"'{path}' ({error.strerror})"
-        raise ValueError(message(f"--{option}", "a JSON file", got)) from error
-    except ValueError as error:
-        got = f"'{path}' ({error})"
-        raise ValueError(message(f"--{option}", "a JSON file", got)) from error
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ValueError(message(f"--{option}", "a JSON file", f"'{path}' ({reason})")) from error
 
 
 def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import importlib
 import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,9 +33,9 @@ class Step:
         Name of the variable that holds the result; without one the call stands where it is used.
     path : str
         Dotted path of a public function; ``.name`` is a method of the first argument, ``[]`` an
-        item of it, ``()`` the call of it.
+        item of it.
     *arguments, **keywords : object
-        Arguments: plain values, steps, or lists, tuples and dicts of them.
+        Arguments: plain values, steps, or lists and tuples of them.
     """
 
     def __init__(self, name: str, path: str, /, *arguments: object, **keywords: object) -> None:
@@ -44,8 +43,6 @@ class Step:
         self.arguments, self.keywords = arguments, keywords
         #: Attributes that the result is given.
         self.attributes: dict[str, object] = {}
-        #: Items that the result is given.
-        self.items: dict[str, object] = {}
         #: Option and value of a user, with which the result must have points.
         self.asked = ("", "")
         #: What a reader should know of what was decided by itself.
@@ -61,9 +58,7 @@ class Step:
         if self.asked[0] and not made.n_points:
             raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
         for key, value in self.attributes.items():
-            setattr(made, key, _run(value))
-        for key, value in self.items.items():
-            made[key] = _run(value)
+            setattr(made, key, value)
         return made
 
     def _called(self) -> Foreign:
@@ -71,8 +66,6 @@ class Step:
         keywords = {key: _run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
             return arguments[0][arguments[1]]
-        if self.path == "()":
-            return arguments[0](*arguments[1:], **keywords)
         if self.path.startswith("."):
             return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
         head, *names = self.path.split(".")
@@ -84,11 +77,9 @@ class Step:
         return function(*arguments, **keywords)
 
     def parts(self) -> Iterator[object]:
-        """Yield the arguments, keywords, attributes and items."""
+        """Yield the arguments and keywords."""
         yield from self.arguments
         yield from self.keywords.values()
-        yield from self.attributes.values()
-        yield from self.items.values()
 
 
 def _run(value: object) -> object:
@@ -96,8 +87,6 @@ def _run(value: object) -> object:
         return value.run()
     if isinstance(value, list | tuple):
         return type(value)(_run(part) for part in value)
-    if isinstance(value, Mapping):
-        return {key: _run(part) for key, part in value.items()}
     return str(value) if isinstance(value, Path) else value
 
 
@@ -132,8 +121,6 @@ def in_order(steps: Sequence[Step]) -> list[Step]:
         elif isinstance(value, list | tuple):
             for part in value:
                 visit(part)
-        elif isinstance(value, Mapping):
-            visit(list(value.values()))
 
     visit(list(steps))
     return found
@@ -144,9 +131,6 @@ def _statement(step: Step, *, reported: bool) -> list[str]:
     head = f"{step.name} = " if step.name else ""
     lines = [f"{' ' * indent}{head}{_call(step, indent, len(head))}"]
     lines += [f"{step.name}.{key} = {_text(value)}" for key, value in step.attributes.items()]
-    for key, value in step.items.items():
-        start = f"{step.name}[{_text(key)}] = "
-        lines.append(start + _text(value, indent, len(start)))
     return ["with vizlight.report() as report:", *lines, "print(report)"] if reported else lines
 
 
@@ -168,8 +152,8 @@ def _call(step: Step, indent: int, taken: int) -> str:
     arguments = list(step.arguments)
     if step.path == "[]":
         return f"{_text(arguments[0])}[{_text(arguments[1])}]"
-    head = "" if step.path == "()" else step.path
-    if head[:1] in ("", "."):
+    head = step.path
+    if head.startswith("."):
         head = f"{_text(arguments.pop(0))}{head}"
     parts = [("", value) for value in arguments]
     parts += [(f"{key}=", value) for key, value in step.keywords.items()]

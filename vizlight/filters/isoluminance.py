@@ -17,7 +17,7 @@ from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, normals, records
-from vizlight.mesh.parts import inputs_of
+from vizlight.mesh.batches import inputs_of
 from vizlight.model import kernels
 from vizlight.reading.arrays import array_of
 from vizlight.scene.scene import as_scene

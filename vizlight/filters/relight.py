@@ -13,8 +13,8 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, records
+from vizlight.mesh.batches import part_of
 from vizlight.mesh.nspace import PROJECTED
-from vizlight.mesh.parts import part_of
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import Bundle, LightOptions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
@@ -10,7 +11,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 from vizlight.mesh import normals, splitting
-from vizlight.mesh.parts import part_of
+from vizlight.reading import parts as reading
 from vizlight.reading import polylines
 from vizlight.reading.cells import (
     GHOSTS,
@@ -25,6 +26,8 @@ from vizlight.reading.cells import (
 )
 
 if TYPE_CHECKING:
+    Key: TypeAlias = tuple[object, ...]
+    SplitsT = TypeVar("SplitsT", bound="Splits | None")
     from collections.abc import Iterable, Sequence
 
     from typing_extensions import Self
@@ -35,12 +38,9 @@ if TYPE_CHECKING:
     from vizlight.reading.normals import Sided, Told
     from vizlight.reading.parts import Part
     from vizlight.scene import Scene
+    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
 
-    SplitsT = TypeVar("SplitsT", bound="Splits | None")
-    #: What meshes have in common that can be joined: their kind, their kinds of cells, and the
-    #: types and the components of the arrays that light depends on.
-    Key: TypeAlias = tuple[object, ...]
 
 #: Largest number of points of a mesh that is joined with others, and of what they are joined to.
 SMALL, LARGEST = 1 << 12, 1 << 18
@@ -262,3 +262,32 @@ def _cells(cells: Sequence[vtkCellArray], starts: Indices) -> vtkCellArray:
     for own, start in zip(cells, starts.tolist(), strict=False):
         out.Append(own, start)
     return out
+
+
+#: What reads the normals and tangents that earlier results keep with a mesh.
+_READERS = reading.Kept(normals.kept, splitting.kept_tangents)
+
+
+def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
+    """Return the inputs of the engine from one mesh; see :func:`part_of`."""
+    return part_of(mesh, path, scene, options).inputs
+
+
+def part_of(
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    starts: Indices | None = None,
+    known: Sided | None = None,
+    told: Told | None = None,
+) -> Part:
+    """Return what one mesh is lit by; see :func:`vizlight.reading.parts.part_of`.
+
+    ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
+    decides of its sides.
+    """
+    kept = _READERS if known is None else _READERS._replace(normals=lambda _: known)
+    part = reading.part_of(mesh, path, scene, options, kept=kept, starts=starts, told=told)
+    cells = lambda: splitting.simplices(mesh)  # noqa: E731
+    return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))

@@ -14,7 +14,7 @@ from vizlight.draw.backends import BackendError, choose_backend
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.tint import values_of
 from vizlight.mesh import blocks, records, splitting
-from vizlight.mesh.parts import part_of
+from vizlight.mesh.batches import part_of
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.visible import Drawn, rays, visible, weights

@@ -9,17 +9,22 @@ import inspect
 import re
 import shutil
 import uuid
+import xml.etree.ElementTree as ET
 from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+import pyvista as pv
+
 from vizlight import _check, _compiled, _pool, files
+from vizlight.draw import cameras
+from vizlight.filters import lighting
 from vizlight.mesh import normals
-from vizlight.pieces import index, task
-from vizlight.pieces.kinds import INDEX, PieceError, index_files, union
-from vizlight.pieces.sources import pieces_of
-from vizlight.pieces.survey import check_alike, job_of, nothing_found, prepared
-from vizlight.pieces.workers import RETRIES, Work, checked
+from vizlight.pieces import task
+from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
+from vizlight.pieces.workers import RETRIES, Work
 from vizlight.reading import sides
 from vizlight.reading.orientation import SHARP
 from vizlight.scene import Scene
@@ -29,18 +34,12 @@ from vizlight.verify import report
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from vizlight._types import Foreign, Given, Keywords
-    from vizlight.pieces.kinds import Piece
-    from vizlight.pieces.task import Done, Job
+    from vizlight.pieces.sources import Piece
+    from vizlight.pieces.task import Found, Job
     from vizlight.pieces.workers import Map
     from vizlight.reading.normals import Told
-
-#: Options of light that depend on a mesh as a whole.
-WHOLE = {
-    "bundle": "lines of all pieces dim one another; light them together",
-}
 
 
 @dataclass(frozen=True)
@@ -185,9 +184,9 @@ def light(
     _check.instance("scene", scene, Scene)
     path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
-    job = job_of(
-        contour,
-        level,
+    job = task.Job(
+        contour=contour,
+        level=level,
         scene=scene,
         filter=filter,
         options=_common_options(filter, options, contour, ghost),
@@ -195,34 +194,33 @@ def light(
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
         # Workers share the processors.
-        threads=_pool.workers() if checked(map) is builtins.map else 1,
+        threads=_pool.workers() if map is builtins.map else 1,
     )
-    retries = _check.integer("retries", retries, low=0)
-    parts = pieces_of(sources, _check.positive("slab", slab))
     work = Work(map, retries, progress_bar)
+    parts = pieces_of(sources, _check.positive("slab", slab))
     folder = path.with_suffix("")
     drafts = folder / f".vizlight-{uuid.uuid4().hex[:12]}"
     files.make_folder("out", drafts)
     try:
-        parts, job = prepared(parts, job, work)
+        parts, job = _prepared(parts, job, work)
         targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
         _spare_sources(parts, path, outputs)
         job, told = _told(parts, job, work)
         calls = [*zip(parts, [job] * len(parts), targets, told, strict=True)]
-        done: list[Done] = []
+        done: list[Found] = []
         with report.workers(lambda: sum(one.points for one in done)):
             done += work.each(task.light, calls, "light")
         full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
         if not full:
-            raise nothing_found(parts, job, work)
+            raise _nothing_found(parts, job, work)
         first, made = full[0]
         for piece, one in full[1:]:
-            check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+            _check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
         earlier = _named_by(path, folder)
         for _, one in full:
             (drafts / one.file).replace(folder / one.file)
-        index.write(path, [one for _, one in full], folder.name, job.name)
+        _write_index(path, [one for _, one in full], folder.name, job.name)
         for name in earlier - {one.file for _, one in full}:
             (folder / name).unlink()
     finally:
@@ -230,14 +228,66 @@ def light(
     return _result(path, folder, done, job)
 
 
+def camera_on(
+    sources: object,
+    /,
+    direction: Sequence[float] = (1.0, 1.0, 1.0),
+    *,
+    contour: str | None = None,
+    level: float | None = None,
+    up: Sequence[float] | None = None,
+    parallel: bool = False,
+    zoom: float = 1.0,
+    aspect: float = 1.0,
+    map: Map = map,
+    slab: float = 64.0,
+    progress_bar: bool = False,
+) -> pv.Camera:
+    """Return a camera that shows data in pieces, the same as on the whole.
+
+    Parameters
+    ----------
+    sources, contour, level, map, slab, progress_bar
+        As for :func:`light`. Without ``contour`` only the corners of an image are taken; an
+        isosurface costs a first reading and contouring.
+    direction, up, parallel, zoom, aspect
+        As for :func:`vizlight.draw.render.camera_on`.
+
+    Returns
+    -------
+    pyvista.Camera
+        The camera of :func:`vizlight.draw.render.camera_on` for the mesh of all pieces, to
+        rounding.
+
+    Raises
+    ------
+    TypeError, ValueError, PieceError
+        As for :func:`light`.
+    """
+    job = task.Job(contour=contour, level=level)
+    options: Keywords = {"up": up, "parallel": parallel, "zoom": zoom, "aspect": aspect}
+    cameras.camera_on((0, 1) * 3, direction, **options)  # checks them before anything is read
+    parts = pieces_of(sources, _check.positive("slab", slab))
+    work = Work(map, RETRIES, progress_bar)
+    if job.contour is not None and job.level is None:
+        pairs = _surveyed(parts, job, work)
+        job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
+    calls = [(piece, job, direction, up, aspect) for piece in parts]
+    found = work.each(task.outermost, calls, "camera")
+    points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
+    if not len(points):
+        raise _nothing_found(parts, job, work)
+    return cameras.camera_on(pv.PolyData(points), direction, **options)
+
+
 def _common_options(
     filter_name: str, options: Keywords, contour: str | None, ghost: int
 ) -> Keywords:
     """Return the options of a filter that give a piece no opinion of its own."""
     _check.choice("filter", filter_name, tuple(task.FILTERS))
-    for name, remedy in WHOLE.items():
-        if options.get(name):
-            raise ValueError(_check.message(name, "no such option for pieces", "one", remedy))
+    if options.get("bundle"):  # it depends on a mesh as a whole
+        remedy = "lines of all pieces dim one another; light them together"
+        raise ValueError(_check.message("bundle", "no such option for pieces", "one", remedy))
     function: Foreign = task.FILTERS[filter_name]
     known = [*inspect.signature(function).parameters]
     for name in options:
@@ -286,10 +336,11 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
     taken = {output.resolve() for output in (path, *outputs)}
     folder, own = outputs[0].resolve().parent, _own_pieces(path.stem)
     for piece in parts:
-        source = getattr(piece, "path", None)
-        source = None if source is None else source.resolve()
-        earlier = source is not None and source.parent == folder and own.fullmatch(source.name)
-        if source in taken or earlier:
+        given = piece.path if isinstance(piece, FilePiece) else piece.source
+        if not isinstance(given, Path):
+            continue
+        source = given.resolve()
+        if source in taken or (source.parent == folder and own.fullmatch(source.name)):
             expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))
 
@@ -317,7 +368,7 @@ def _clear(folder: Path) -> None:
         folder.rmdir()
 
 
-def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
+def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
     """Return the result, and warn once of what the workers warned of."""
     full = [one for one in done if one.file]
     points, invalid = sum(one.points for one in full), sum(one.invalid for one in full)
@@ -330,21 +381,160 @@ def _result(path: Path, folder: Path, done: Sequence[Done], job: Job) -> Lit:
     sharp = sum((one.sharp or 0.0) * one.cells for one in full)
     sharp /= max(sum(one.cells for one in full), 1)
     normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
-    names = {name for one in full for name in one.ranges}
+    ranges: dict[str, list[tuple[float, float]]] = {}
+    for one in full:
+        for name, ends in one.ranges.items():
+            ranges.setdefault(name, []).append(ends)
     return Lit(
         path=path,
         files=tuple(folder / one.file for one in full),
         points=points,
         cells=sum(one.cells for one in full),
-        bounds=union([one.bounds for one in full]),
+        bounds=tuple(
+            max(ends) if i % 2 else min(ends)
+            for i, ends in enumerate(zip(*(one.bounds for one in full), strict=True))
+        ),
         ranges={
-            name: (
-                min(one.ranges[name][0] for one in full if name in one.ranges),
-                max(one.ranges[name][1] for one in full if name in one.ranges),
-            )
-            for name in sorted(names)
+            name: (min(low for low, _ in ends), max(high for _, high in ends))
+            for name, ends in sorted(ranges.items())
         },
         scene=job.scene,
         level=job.level,
         empty=len(done) - len(full),
     )
+
+
+def _nothing_found(parts: list[Piece], job: Job, work: Work) -> PieceError:
+    """Return the error of pieces without a point to light."""
+    if job.contour is None:
+        expected = "pieces with something to light"
+        return PieceError(_check.message("sources", expected, "no points"))
+    low, high = _ends([one for _, one in _surveyed(parts, job, work)], job.contour)
+    expected = f"a value between {low:g} and {high:g}"
+    return PieceError(_check.message("level", expected, f"{job.level:g}"))
+
+
+def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Job]:
+    """Return pieces that know their neighbours, and a job without a question left open."""
+    cue = job.scene.depth_cue
+    open_cue = cue is not None and (cue.front is None or cue.back is None)
+    loose = any(isinstance(piece, FilePiece) for piece in parts)
+    if not (loose or open_cue or (job.contour is not None and job.level is None)):
+        return parts, job
+    pairs = _surveyed(parts, job, work)
+    boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
+    if job.contour is not None and job.level is None:
+        job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
+    if open_cue:
+        calls = [(piece, job) for piece, _ in pairs]
+        ends = work.each(task.depths, calls, "depth")
+        job = dataclasses.replace(job, scene=lighting.with_depth_ends(job.scene, ends))
+    return _neighbours([piece for piece, _ in pairs], boxes, job.ghost), job
+
+
+def _surveyed(parts: list[Piece], job: Job, work: Work) -> list[tuple[Piece, Found]]:
+    """Return the pieces with points, which have arrays of the same types, and what is in them."""
+    calls = [(piece, job.contour) for piece in parts]
+    found = work.each(task.survey, calls, "survey")
+    pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
+    if not pairs:
+        raise PieceError(_check.message("sources", "pieces with points", "none"))
+    first_piece, first = pairs[0]
+    for piece, one in pairs[1:]:
+        _check_alike(piece, one.arrays, first_piece, first.arrays)
+        if one.lines != first.lines and _by_faces(job):
+            # A whole of both is lit by its faces, and a piece of lines alone by their tangents.
+            expected = f"{'lines' if first.lines else 'faces'} as in {first_piece.name}"
+            got, remedy = "lines alone" if one.lines else "faces", "light lines by themselves"
+            text = _check.message("sources", expected, got, remedy)
+            raise PieceError(f"piece {piece.name}: {text}")
+    return pairs
+
+
+def _by_faces(job: Job) -> bool:
+    """Return whether light depends on faces where a mesh has some."""
+    options = job.options
+    tangents = options.get("tangents") is not None and options.get("conditioned") is not True
+    return job.contour is None and job.filter == "illuminate" and not tangents
+
+
+def _ends(found: Sequence[Found], contour: str) -> tuple[float, float]:
+    """Return the range of the contoured array over all pieces."""
+    arrays = found[0].arrays
+    names = [key[6:] for key in arrays if key.startswith("point ") and " x " not in arrays[key]]
+    ends = [one.ranges[contour] for one in found if contour in one.ranges]
+    if contour not in names or not ends:
+        expected = f"a point array of one component, {_check.one_of(names)}"
+        raise ValueError(_check.message("contour", expected, repr(contour)))
+    return min(low for low, _ in ends), max(high for _, high in ends)
+
+
+def _check_alike(piece: Piece, found: Keywords, first: Piece, expected: Keywords) -> None:
+    """Check that a piece has the arrays of the first, and that both are boxes of one grid."""
+    for name in expected | found:
+        here, there = found.get(name), expected.get(name)
+        if here != there:
+            kind, _, own = name.partition(" ")
+            what = f"{kind} array {own!r}" if own else kind
+            wanted = f"the {what} of {there}" if there else f"no {what}"
+            text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
+            raise PieceError(f"piece {piece.name}: {text}")
+
+
+def _neighbours(parts: list[Piece], boxes: Foreign, ghost: int) -> list[Piece]:
+    """Return the pieces; pieces of files come with the pieces whose boxes touch theirs."""
+    if not ghost:
+        return parts
+    found: list[Piece] = []
+    for i, piece in enumerate(parts):
+        if not isinstance(piece, FilePiece):
+            found.append(piece)
+            continue
+        touch = np.all((boxes[:, :, 0] <= boxes[i, :, 1]) & (boxes[:, :, 1] >= boxes[i, :, 0]), 1)
+        beside = [parts[j] for j in np.flatnonzero(touch) if j != i]
+        own = tuple(one for one in beside if isinstance(one, FilePiece))
+        found.append(dataclasses.replace(piece, beside=own))
+    return found
+
+
+def _write_index(path: Path, pieces: Sequence[Found], folder: str, scalars: str) -> Path:
+    """Write the file that names lit pieces, which VTK and ParaView read as one mesh."""
+    first = pieces[0]
+    suffix = Path(first.file).suffix
+    kind = "P" + next(kind for kind, own in SUFFIX.items() if own == suffix)
+    root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian")
+    grid = ET.SubElement(root, kind, GhostLevel="0")
+    for name, data in (("point", "PPointData"), ("cell", "PCellData")):
+        element = ET.SubElement(grid, data, {"Scalars": scalars} if name == "point" else {})
+        for own, type_ in first.arrays.items():
+            if own.startswith(f"{name} "):
+                _array(element, own.partition(" ")[2], type_)
+    if "points " in first.arrays:
+        _array(ET.SubElement(grid, "PPoints"), "Points", first.arrays["points "])
+    if kind == "PRectilinearGrid":
+        axes = ET.SubElement(grid, "PCoordinates")
+        for axis in "xyz":
+            _array(axes, axis, "float64")
+    if first.extent:
+        whole = [
+            (min, max)[i % 2](piece.extent[i] for piece in pieces if piece.extent) for i in range(6)
+        ]
+        grid.set("WholeExtent", " ".join(map(str, whole)))
+        for name, values in first.grid.items():
+            grid.set(name, " ".join(map(repr, values)))
+    for piece in pieces:
+        element = ET.SubElement(grid, "Piece", Source=f"{folder}/{piece.file}")
+        if piece.extent:
+            element.set("Extent", " ".join(map(str, piece.extent)))
+    ET.indent(root)
+    return files.replace_file(path, ET.ElementTree(root).write)
+
+
+def _array(parent: ET.Element, name: str, type_: str) -> None:
+    own, _, components = type_.partition(" x ")
+    kind = "String"
+    if own != "text":
+        dtype = np.dtype(own)
+        family = {"f": "Float", "i": "Int"}.get(dtype.kind, "UInt")
+        kind = f"{family}{8 * dtype.itemsize}"
+    ET.SubElement(parent, "PDataArray", type=kind, Name=name, NumberOfComponents=components or "1")

@@ -1,36 +1,300 @@
-"""The pieces of files, patterns, indices and arrays."""
+"""Pieces of data in files, grids and arrays: how they are found, and how one is read."""
 
 from __future__ import annotations
 
+import functools
 import glob
 import itertools
 import math
+import threading
+import xml.etree.ElementTree as ET
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
+import numpy as np
 import pyvista as pv
+from vtkmodules import vtkIOXML
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
+from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight import _check, files
-from vizlight.pieces.kinds import (
-    HDF,
-    INDICES,
-    STRUCTURED,
-    BoxPiece,
-    FilePiece,
-    Piece,
-    PieceError,
-    SlabPiece,
-    Slabs,
-    hdf,
-    index_files,
-    structured,
-)  # fmt: skip
+from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 
 if TYPE_CHECKING:
-    from vizlight._types import Foreign
-    from vizlight.pieces.kinds import Extent
+    from collections.abc import Iterable
+
+    from vizlight._types import Array, Foreign, VectorLike
+
+    Extent = tuple[int, ...]
+
+#: Suffix of a piece by its type of mesh, and suffix of an index of pieces by theirs.
+SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}
+INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
+#: Readers of structured grids, which read any box of nodes out of a file.
+STRUCTURED = {
+    **{suffix: files.READERS[suffix] for suffix in (".vti", ".vtr", ".vts")},
+    ".pvti": vtkIOXML.vtkXMLPImageDataReader,
+    ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
+    ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,
+}
+#: Last reader of a structured grid, of each thread.
+_LAST = threading.local()
+#: Files that name the files of their pieces.
+INDICES = (".pvtu", ".pvtp", ".vtm")
+HDF = (".vtkhdf", ".hdf")
+
+
+class PieceError(ValueError):
+    """A piece of the data cannot be read, lit or written; the message begins with its name."""
+
+
+@dataclass(frozen=True)
+class FilePiece:
+    """A file, or one partition of a VTKHDF file, of cells in any order.
+
+    It is small enough to be sent to another process, which reads the file.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages.
+    path : pathlib.Path
+        Path of the file.
+    partition, partitions : int
+        Index of the partition, and their number.
+    beside : tuple of FilePiece
+        Pieces whose bounding boxes touch this one's.
+    """
+
+    name: str
+    path: Path
+    partition: int = 0
+    partitions: int = 1
+    beside: tuple[FilePiece, ...] = ()
+
+    def load(self) -> pv.DataSet:
+        """Return the mesh without ghost cells."""
+        if self.path.suffix.lower() in HDF:
+            reader = _informed(self.path)
+            reader.UpdatePiece(self.partition, self.partitions, 0)
+            found = pv.wrap(reader.GetOutputDataObject(0))
+            mesh = found[self.partition] if isinstance(found, pv.PartitionedDataSet) else found
+            if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
+                got = f"{self.name!r} (no points)"
+                raise files.FileError(_check.message("sources", "pieces with points", got))
+        else:
+            mesh = files.read(self.path)
+        return without_ghosts(mesh)
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """Return the mesh of the piece; cells of other pieces have 1 in the array ``GHOST``."""
+        mesh = self.load()
+        if not ghost:
+            return mesh
+        mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.cast_to_unstructured_grid()
+        others: Iterable[pv.DataSet] = (piece.load() for piece in self.beside)
+        for more in reversed(range(ghost)):
+            mesh, others = with_layer(mesh, others, keep=more > 0)
+        return mesh
+
+    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+        """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
+        return own_cells(mesh)
+
+    def places(self) -> Array:
+        """Return points with the hull of the piece, from no more of the data than it needs."""
+        return _hull(self.load())
+
+
+@dataclass(frozen=True)
+class GridPiece:
+    """A box of nodes of a structured grid.
+
+    Attributes
+    ----------
+    name : str
+        Name in messages.
+    source : pathlib.Path or Slabs
+        What the nodes are read from.
+    extent, whole : tuple of 6 int
+        First and last node of the piece and of the grid, along x, y and z.
+    """
+
+    name: str
+    source: Path | Slabs
+    extent: Extent
+    whole: Extent
+
+    def read(self, ghost: int) -> pv.DataSet:
+        """See :class:`FilePiece`."""
+        grown = tuple(
+            min(node + ghost, self.whole[i]) if i % 2 else max(node - ghost, self.whole[i])
+            for i, node in enumerate(self.extent)
+        )
+        mesh: Foreign
+        if isinstance(self.source, Slabs):
+            mesh = self.source.nodes(grown)
+        else:
+            reader = _grid_reader(self.source)
+            reader.UpdateExtent(grown)
+            mesh = pv.wrap(reader.GetOutputDataObject(0))
+            reader.GetOutputDataObject(0).ReleaseData()
+            mesh = without_ghosts(mesh)
+        found = mesh.GetExtent()
+        outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
+        outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
+        mesh.cell_data[GHOST] = outside.ravel()
+        return mesh  # type: ignore[no-any-return]
+
+    def own(self, mesh: Foreign) -> pv.DataSet:
+        """See :class:`FilePiece`."""
+        if not hasattr(mesh, "GetExtent"):
+            return own_cells(mesh)
+        if tuple(mesh.GetExtent()) != self.extent:
+            kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
+            cutter: Foreign = kinds.get(type(mesh), vtkExtractGrid)()
+            cutter.SetInputDataObject(mesh)
+            cutter.SetVOI(self.extent)
+            cutter.Update()
+            own = pv.wrap(cutter.GetOutput())
+            for name in mesh.field_data:
+                own.field_data[name] = mesh.field_data[name]
+            mesh = own
+        mesh.cell_data.pop(GHOST, None)
+        return mesh  # type: ignore[no-any-return]
+
+    def places(self) -> Array:
+        """See :class:`FilePiece`."""
+        if isinstance(self.source, Slabs):
+            return _hull(self.source.empty(self.extent))
+        info = _grid_reader(self.source).GetOutputInformation(0)
+        if not info.Has(vtkDataObject.SPACING()):  # its places are coordinates in the file
+            return _hull(self.read(0))
+        grid = pv.ImageData()
+        grid.CopyInformationFromPipeline(info)
+        grid.SetExtent(*self.extent)
+        return _hull(grid)
+
+
+Piece: TypeAlias = FilePiece | GridPiece
+
+
+def _hull(mesh: pv.DataSet) -> Array:
+    """Return the corners of a grid with straight axes, the points of any other mesh."""
+    if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or not mesh.n_points:
+        return np.asarray(mesh.points)
+    nx, ny, nz = mesh.dimensions
+    ends = itertools.product((0, nz - 1), (0, ny - 1), (0, nx - 1))
+    return np.array([mesh.GetPoint(x + nx * (y + ny * z)) for z, y, x in ends])
+
+
+class Slabs:
+    """A grid that is read slab by slab from arrays that are larger than memory.
+
+    Parameters
+    ----------
+    arrays : dict of str to array_like
+        Point arrays by name, of shape (nz, ny, nx) or (nz, ny, nx, components): memory-mapped
+        arrays, Zarr or Dask arrays, h5py datasets that can be pickled, or anything else of that
+        shape whose slices ``[z0:z1]``, and ``[z0:z1, y0:y1]`` of wide grids, are arrays.
+    spacing : vector of 3 components, default: (1, 1, 1)
+        Distances between the nodes along x, y and z, in the unit of the mesh.
+    origin : vector of 3 components, default: (0, 0, 0)
+        Place of the first node.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no array, or their shapes do not fit each other.
+
+    Notes
+    -----
+    A memory-mapped array is sent to other processes by the name of its file, others as they are.
+
+    Examples
+    --------
+    >>> import numpy as np, vizlight
+    >>> Z = np.linspace(0, 1, 20)[:, None, None] + np.zeros((20, 10, 10))
+    >>> grid = vizlight.pieces.Slabs({"height": Z}, spacing=(0.1, 0.1, 0.05))
+    >>> grid.extent
+    (0, 9, 0, 9, 0, 19)
+    """
+
+    def __init__(
+        self,
+        arrays: Mapping[str, object],
+        *,
+        spacing: VectorLike = (1.0, 1.0, 1.0),
+        origin: VectorLike = (0.0, 0.0, 0.0),
+    ) -> None:
+        if not isinstance(arrays, Mapping) or not arrays:
+            got = _check.describe(arrays)
+            raise TypeError(_check.message("arrays", "a dict of point arrays by name", got))
+        shapes = {}
+        self.bytes_per_node = 0.0
+        for name, array in arrays.items():
+            shape = getattr(array, "shape", None)
+            dtype = getattr(array, "dtype", None)
+            if shape is None or len(shape) not in (3, 4) or dtype is None:
+                expected = (
+                    f"an array of shape (nz, ny, nx) or (nz, ny, nx, components) for {name!r}"
+                )
+                raise ValueError(_check.message("arrays", expected, _check.describe(array)))
+            shapes[name] = tuple(int(size) for size in shape[:3])
+            self.bytes_per_node += np.dtype(dtype).itemsize * math.prod(shape[3:])
+        if len(set(shapes.values())) > 1:
+            got = ", ".join(f"{name!r} with {shape}" for name, shape in shapes.items())
+            raise ValueError(_check.message("arrays", "one number of nodes along each axis", got))
+        self.arrays = {name: _unmapped(array) for name, array in arrays.items()}
+        steps = [_check.positive("spacing", step) for step in _check.vector("spacing", spacing)]
+        self.spacing = tuple(steps)
+        self.origin = _check.vector("origin", origin)
+        nz, ny, nx = next(iter(shapes.values()))
+        self.extent: Extent = (0, nx - 1, 0, ny - 1, 0, nz - 1)
+
+    def nodes(self, extent: Extent) -> pv.ImageData:
+        """Return a box of nodes with their arrays."""
+        mesh = self.empty(extent)
+        slices, rows = slice(extent[4], extent[5] + 1), slice(extent[2], extent[3] + 1)
+        for name, array in self.arrays.items():
+            is_mapped = isinstance(array, functools.partial)
+            found: Foreign = array() if is_mapped else array
+            wide = rows.stop - rows.start < found.shape[1]
+            part = found[slices, rows] if wide else found[slices]
+            if hasattr(part, "compute"):
+                import dask
+
+                # In this process; the name "sync" in place of the function warns in old versions.
+                part = part.compute(scheduler=dask.get)
+            box = np.array(part) if is_mapped else np.asarray(part)
+            mesh.point_data[name] = box.reshape(-1, *found.shape[3:])
+        return mesh
+
+    def empty(self, extent: Extent) -> pv.ImageData:
+        """Return a box of nodes without arrays."""
+        mesh = pv.ImageData(spacing=self.spacing, origin=self.origin)
+        mesh.extent = extent
+        return mesh
+
+
+def _unmapped(array: Foreign) -> Foreign:
+    """Return the call that maps a memory-mapped array, which is small; other arrays as they are."""
+    if not (isinstance(array, np.memmap) and array.filename and array.flags.c_contiguous):
+        return array
+    base: Foreign = array
+    while isinstance(base.base, np.memmap):
+        base = base.base
+    # A view begins later in the file than the array that it is a view of.
+    first = array.__array_interface__["data"][0] - base.__array_interface__["data"][0]
+    place = base.offset + first
+    return functools.partial(
+        np.memmap, str(array.filename), array.dtype, "r", place, tuple(array.shape)
+    )
 
 
 def pieces_of(sources: object, slab: float) -> list[Piece]:
@@ -58,7 +322,7 @@ def pieces_of(sources: object, slab: float) -> list[Piece]:
     taken: set[Path] = set()
     for source in given:
         if isinstance(source, Slabs):
-            found += _slabs(source, slab)
+            found += _boxes(source, source.extent, source.bytes_per_node, slab)
         elif isinstance(source, str | Path):
             for path in _paths(source):
                 if path.resolve() in taken:
@@ -96,83 +360,123 @@ def _paths(source: str | Path) -> list[Path]:
 def _of_file(path: Path, slab: float) -> list[Piece]:
     """Return the pieces of a file."""
     suffix = path.suffix.lower()
-    if suffix in STRUCTURED:
-        return _boxes(path, slab)
     if suffix in INDICES:
         made = [piece for file in index_files(path) for piece in _of_file(file, slab)]
         if not made:
             got = f"'{path}' (it names none)"
             raise PieceError(_check.message("sources", "an index of files", got))
         return made
+    is_grid = suffix in STRUCTURED
     if suffix in HDF:
-        reader = hdf(path)
+        reader = _informed(path)
         reader.UpdatePiece(1 << 20, 1 << 21, 0)  # beyond all partitions: nothing is read
         found = pv.wrap(reader.GetOutputDataObject(0))
-        if isinstance(found, pv.ImageData):
-            return _boxes(path, slab)
+        is_grid = isinstance(found, pv.ImageData)
         if isinstance(found, pv.PartitionedDataSet):
             count = found.n_partitions
             return [FilePiece(f"{path}[{i}]", path, i, count) for i in range(count)]
-    return [FilePiece(str(path), path)]
+    return [*_boxes(path, *_size(path), slab)] if is_grid else [FilePiece(str(path), path)]
 
 
-def _boxes(path: Path, slab: float) -> list[Piece]:
-    """Return slabs of a structured grid in a file, cut across its last long axis."""
-    reader = structured(path)
-    pipeline = vtkStreamingDemandDrivenPipeline
+def _size(path: Path) -> tuple[Extent, float]:
+    """Return the extent of a structured grid in a file, and the memory in bytes of a node."""
+    reader, pipeline = _grid_reader(path), vtkStreamingDemandDrivenPipeline
     info = reader.GetOutputInformation(0)
     whole: Foreign = info.Get(pipeline.WHOLE_EXTENT()) if info.Has(pipeline.WHOLE_EXTENT()) else ()
     if len(whole) != 6 or any(whole[2 * i + 1] < whole[2 * i] for i in range(3)):
         raise PieceError(_check.message("sources", "a grid with nodes", f"'{path}'"))
-    nodes = math.prod(whole[2 * i + 1] - whole[2 * i] + 1 for i in range(3))
-    size = _uncompressed(path, reader, nodes)
-    return [
-        BoxPiece(f"{path}[{place}]", box, tuple(whole), path)
-        for box, place in _cuts(tuple(whole), size / nodes, slab)
-    ]
-
-
-def _uncompressed(path: Path, reader: Foreign, nodes: int) -> float:
-    """Return the memory in bytes that the arrays of a grid take."""
     # A corner of the grid tells the types of the arrays and their components.
-    info = reader.GetOutputInformation(0)
-    whole = info.Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
-    corner = tuple(min(whole[2 * (i // 2)] + i % 2, whole[2 * (i // 2) + 1]) for i in range(6))
-    reader.UpdateExtent(corner)
+    reader.UpdateExtent(
+        [min(whole[2 * (i // 2)] + i % 2, whole[2 * (i // 2) + 1]) for i in range(6)]
+    )
     mesh = pv.wrap(reader.GetOutputDataObject(0))
     if not mesh.n_points:
         raise PieceError(_check.message("sources", "a file that can be read", f"'{path}'"))
-    arrays = [mesh.point_data[name] for name in mesh.point_data]
-    arrays += [mesh.cell_data[name] for name in mesh.cell_data]
+    arrays = [*mesh.point_data.values(), *mesh.cell_data.values()]
     each = sum(array.itemsize * math.prod(array.shape[1:]) for array in arrays)
     points = 24 if isinstance(mesh, pv.StructuredGrid) else 0
-    return float(max(each + points, 1) * nodes)
+    return tuple(whole), float(max(each + points, 1))
 
 
-def _slabs(grid: Slabs, slab: float) -> list[Piece]:
-    return [
-        SlabPiece(f"slices [{place}]", box, grid.extent, grid)
-        for box, place in _cuts(grid.extent, grid.bytes_per_node(), slab)
-    ]
-
-
-def _cuts(whole: Extent, bytes_per_node: float, slab: float) -> list[tuple[Extent, str]]:
-    """Return boxes of at most so many MB, and their place in words; they share nodes on borders.
+def _boxes(
+    source: Path | Slabs, whole: Extent, bytes_per_node: float, slab: float
+) -> list[GridPiece]:
+    """Return boxes of a grid of at most so many MB, which share nodes on borders.
 
     They are slabs across z; where one layer of cells is larger, they are cut across y too.
     """
     x0, x1, y0, y1, z0, z1 = whole
     row = (x1 - x0 + 1) * bytes_per_node
     thick = int(slab * 1e6 / (row * (y1 - y0 + 1)))
-    layers = _parts(z0, z1, max(thick, 1))
-    if thick:
-        return [((x0, x1, y0, y1, *z), f"{z[0]}:{z[1]}") for z in layers]
-    rows = _parts(y0, y1, max(int(slab * 1e6 / row), 1))
-    return [((x0, x1, *y, *z), f"{z[0]}:{z[1]}, {y[0]}:{y[1]}") for z in layers for y in rows]
+    rows = [(y0, y1)] if thick else _parts(y0, y1, int(slab * 1e6 / row))
+    what = "slices " if isinstance(source, Slabs) else str(source)
+    return [
+        GridPiece(
+            f"{what}[{low}:{high}{'' if thick else f', {first}:{last}'}]",
+            source, (x0, x1, first, last, low, high), whole,
+        )
+        for low, high in _parts(z0, z1, thick)
+        for first, last in rows
+    ]  # fmt: skip
 
 
 def _parts(first: int, last: int, most: int) -> list[tuple[int, int]]:
-    """Return the ends of parts of at most so many steps."""
-    count = max(math.ceil((last - first) / most), 1)
+    """Return the ends of parts of at most so many steps, but of one at least."""
+    count = max(math.ceil((last - first) / max(most, 1)), 1)
     ends = [first + (last - first) * i // count for i in range(count + 1)]
     return list(itertools.pairwise(ends))
+
+
+def index_files(path: Path) -> list[Path]:
+    """Return the files that an index names.
+
+    Raises
+    ------
+    PieceError
+        If the index cannot be read, or a file is missing.
+    """
+    try:
+        root = ET.parse(path).getroot()
+    except (ET.ParseError, OSError) as error:
+        got = f"'{path}' ({error})"
+        raise PieceError(_check.message("sources", "an index in XML", got)) from error
+    found = []
+    for element in root.iter():
+        name = element.get({"Piece": "Source", "DataSet": "file"}.get(element.tag, ""))
+        if name:
+            found.append(path.parent / name)
+            if not found[-1].is_file():
+                text = f"'{path}' names '{found[-1]}' (no such file)"
+                raise PieceError(_check.message("sources", "pieces that exist", text))
+    return found
+
+
+def _grid_reader(path: Path) -> Foreign:
+    """Return a reader of a structured grid that knows the grid's extent.
+
+    A thread keeps the last one: to find what a file holds a reader may have to go through all of
+    it, which would take longer than to read a slab.
+    """
+    status = path.stat()
+    stamp = (str(path.resolve()), status.st_size, status.st_mtime_ns)
+    if getattr(_LAST, "stamp", None) != stamp:
+        _LAST.reader, _LAST.stamp = _informed(path), stamp
+    return _LAST.reader
+
+
+def _informed(path: Path) -> Foreign:
+    """Return a reader of a file in parts that has read what the file holds, but no data."""
+    reader: Foreign
+    if path.suffix.lower() in HDF:
+        from vtkmodules.vtkIOHDF import vtkHDFReader
+
+        reader = vtkHDFReader()
+    else:
+        reader = STRUCTURED[path.suffix.lower()]()
+    reader.SetFileName(str(path))
+    with files.captured_errors() as errors:
+        reader.UpdateInformation()
+    if errors:
+        got = f"'{path}' ({errors[0]})"
+        raise PieceError(_check.message("sources", "a file that can be read", got))
+    return reader

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -16,10 +15,11 @@ from vizlight.filters.illuminate import illuminate, light_mesh
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
-from vizlight.pieces.kinds import INDEX, SUFFIX, Piece, PieceError
+from vizlight.pieces.sources import INDEX, SUFFIX, PieceError
 from vizlight.reading import hull, sides
 from vizlight.reading.parts import uses_normals
 from vizlight.reading.polylines import has_lines_only
+from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight._types import Array, Foreign, Given
+    from vizlight.pieces.sources import Piece
     from vizlight.reading.normals import Told
-    from vizlight.scene import Scene
 
 T = TypeVar("T")
 
@@ -46,15 +46,23 @@ INSIDE = "vizlight_inside"
 class Job:
     """What is done with each piece, the same for all."""
 
-    scene: Scene
-    filter: str
-    options: Mapping[str, Given]
     contour: str | None
     level: float | None
-    ghost: int
-    suffix: str
+    scene: Scene = field(default_factory=Scene)
+    filter: str = "illuminate"
+    options: Mapping[str, Given] = field(default_factory=dict)
+    ghost: int = 0
+    suffix: str = ""
     compiled: str = "0"
     threads: int = 1
+
+    def __post_init__(self) -> None:
+        if self.contour is not None:
+            _check.text("contour", self.contour, expected="the name of a point array")
+        elif self.level is not None:
+            raise ValueError(_check.message("level", "contour= beside it", self.level))
+        if self.level is not None:
+            _check.set_fields(self, level=_check.number("level", self.level))
 
     @property
     def name(self) -> str:
@@ -62,97 +70,116 @@ class Job:
         return str(self.options.get("name", "luminance"))
 
 
-@dataclass(frozen=True)
-class Survey:
-    """What a first look at a piece finds.
+@dataclass
+class Found:
+    """What is in a piece, as it is read or as it was lit.
 
     Attributes
     ----------
-    points : int
-        Number of points.
+    points, cells : int
+        Numbers of both.
     bounds : tuple of 6 float
-        Bounding box.
-    arrays : dict
-        Type and number of components of each array, by "point NAME" and "cell NAME".
-    values : tuple of 2 float
-        Range of the contoured array.
+        Bounding box, if there are points.
+    arrays : dict of str to str
+        Type and number of components of each array, by "point NAME" and "cell NAME", of the
+        points, and of the mesh.
+    ranges : dict of str to (float, float)
+        Smallest and largest finite value of point arrays.
     lines : bool
         Whether it has lines and no faces.
+    extent, grid
+        First and last node of a structured grid, and the place of an image.
+    file : str
+        Name of the file that was written, if any point remains.
+    invalid : int
+        Number of points that could not be lit.
+    sharp : float or None
+        Share of sharp edges, where that is known.
+    notes : list of str
+        Texts of warnings.
     """
 
-    points: int
-    bounds: tuple[float, ...]
-    arrays: dict[str, str]
-    values: tuple[float, float] = (np.inf, -np.inf)
-    lines: bool = False
-
-
-@dataclass
-class Done:
-    """A piece that was lit: its file, if any point of it remains, and what is in it."""
-
-    file: str = ""
     points: int = 0
     cells: int = 0
-    bounds: list[float] = field(default_factory=list)
-    extent: list[int] = field(default_factory=list)
+    bounds: tuple[float, ...] = ()
+    arrays: dict[str, str] = field(default_factory=dict)
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
+    lines: bool = False
+    extent: tuple[int, ...] = ()
     grid: dict[str, list[float]] = field(default_factory=dict)
-    ranges: dict[str, list[float]] = field(default_factory=dict)
-    arrays: dict[str, list[Foreign]] = field(default_factory=dict)
+    file: str = ""
     invalid: int = 0
     sharp: float | None = None
     notes: list[str] = field(default_factory=list)
 
 
-def survey(piece: Piece, contour: str | None) -> Survey:
-    """Return what a first look at a piece finds.
+def survey(piece: Piece, contour: str | None) -> Found:
+    """Return what is in a piece, with the range of one array.
 
     Raises
     ------
     PieceError
         If it cannot be read.
     """
-    mesh = read(piece, 0)
+    return _described(_read(piece, 0), [contour])
+
+
+def _described(mesh: Foreign, ranged: list[str | None] | None = None) -> Found:
+    """Return what is in a mesh, with the ranges of some point arrays, or of all."""
+    found = Found(points=mesh.n_points, cells=mesh.n_cells)
     if not mesh.n_points:
-        return Survey(0, (), {})
-    arrays = {"type ": type(mesh).__name__}
+        return found
+    found.bounds, found.lines = tuple(map(float, mesh.bounds)), has_lines_only(mesh)
+    found.arrays["type "] = type(mesh).__name__
     for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
         for name, array in data.items():
             if name != GHOST:
                 components = "" if array.ndim == 1 else f" x {array.shape[1]}"
-                arrays[f"{kind} {name}"] = f"{array.dtype}{components}"
+                own_type = "text" if array.dtype.kind == "U" else array.dtype
+                found.arrays[f"{kind} {name}"] = f"{own_type}{components}"
     if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
-        arrays["points "] = str(np.asarray(mesh.points).dtype)
-    values = (np.inf, -np.inf)
-    if contour is not None and contour in mesh.point_data and mesh.point_data[contour].ndim == 1:
-        rows = np.asarray(mesh.point_data[contour], dtype=np.float64)
-        rows = rows[np.isfinite(rows)]
-        values = (float(rows.min(initial=np.inf)), float(rows.max(initial=-np.inf)))
-    return Survey(mesh.n_points, tuple(mesh.bounds), arrays, values, has_lines_only(mesh))
+        found.arrays["points "] = f"{np.asarray(mesh.points).dtype} x 3"
+    for name in mesh.point_data if ranged is None else set(mesh.point_data) & set(ranged):
+        array = mesh.point_data[name]
+        if array.dtype.kind in "fiub":
+            values = np.asarray(array, dtype=np.float64)
+            values = values[np.isfinite(values)]
+            if values.size:
+                found.ranges[name] = (float(values.min()), float(values.max()))
+    if hasattr(mesh, "GetExtent"):
+        found.extent = tuple(map(int, mesh.GetExtent()))
+    if isinstance(mesh, pv.ImageData):
+        found.grid = {"Origin": list(mesh.origin), "Spacing": list(mesh.spacing)}
+    return found
 
 
 def outermost(piece: Piece, job: Job, *view: Foreign) -> Array:
     """Return the points of a piece, or of its isosurface, on which a camera depends."""
     if job.contour is None:
-        found = _tried(piece, piece.places)
+        places = _tried(piece, piece.places)
     else:
-        found = _tried(piece, lambda: np.asarray(isosurface(read(piece, 0), job).points))
+        places = np.asarray(_target(piece, job, 0).points)
     direction, up, aspect = view
-    places = np.empty((0, 3)) if found is None else found
+    places = np.empty((0, 3)) if places is None else places
     return cameras.outermost(places, direction, up=up, aspect=aspect)
 
 
 def depths(piece: Piece, job: Job) -> tuple[float, float]:
     """Return the least and the largest depth of the points of a piece that are lit."""
-    mesh = read(piece, 0)
-    if job.contour is not None:
-        mesh = _tried(piece, partial(isosurface, mesh, job)) or mesh
-    return engine.depth_range(np.asarray(mesh.points), job.scene)
+    return engine.depth_range(np.asarray(_target(piece, job, 0).points), job.scene)
 
 
-def read(piece: Piece, ghost: int) -> pv.DataSet:
+def _read(piece: Piece, ghost: int) -> pv.DataSet:
     """Return the mesh of a piece, which may have no points."""
-    return _tried(piece, partial(piece.read, ghost)) or pv.PolyData()
+    return _tried(piece, lambda: piece.read(ghost)) or pv.PolyData()
+
+
+def _target(piece: Piece, job: Job, ghost: int) -> pv.DataSet:
+    """Return what of a piece is lit: its mesh, or an isosurface of that."""
+    mesh = _read(piece, ghost)
+    if job.contour is None or not mesh.n_points:
+        return mesh
+    return _tried(piece, lambda: _isosurface(mesh, job)) or pv.PolyData()
 
 
 def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
@@ -167,15 +194,13 @@ def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
 
 def look(piece: Piece, job: Job) -> sides.Look | None:
     """Return what a piece tells of the sides of the whole, None where its light has none."""
-    mesh = read(piece, job.ghost)
-    if job.contour is not None:
-        mesh = _tried(piece, partial(isosurface, mesh, job)) or mesh
+    mesh = _target(piece, job, job.ghost)
     options = LightOptions.of(job.options)
     if not mesh.n_points or not uses_normals(mesh, options):
         return None
     if hasattr(mesh, "GetExtent") and 1 not in mesh.dimensions:
         return None  # a grid that fills space is closed, and so is each slab of it
-    return _tried(piece, partial(sides.look, mesh, _others(mesh), options.normals, job.scene.view))
+    return _tried(piece, lambda: sides.look(mesh, _others(mesh), options.normals, job.scene.view))
 
 
 def _others(mesh: pv.DataSet) -> Array:
@@ -186,7 +211,7 @@ def _others(mesh: pv.DataSet) -> Array:
     return np.asarray(around.cell_data_to_point_data().point_data[GHOST])
 
 
-def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Done:
+def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Found:
     """Light a piece, of whose sides the whole may have told, and write it to a path.
 
     The path has no suffix.
@@ -196,32 +221,32 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Don
     PieceError
         If the piece cannot be read, lit or written.
     """
-    mesh = read(piece, job.ghost)
+    mesh = _target(piece, job, job.ghost)
     try:
         ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
         with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
             warnings.simplefilter("always", UserWarning)
-            if job.contour is not None:
-                mesh = isosurface(mesh, job)
             share = job.options.get("occlusion")
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
                 raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
             lit, sharp = _lit(mesh, piece, job, told)
         del mesh
-        done = _described(lit, job)
+        inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
+        done = _described(lit)
         done.sharp = sharp
         said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells, creases over all pieces.
         known = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
         done.notes = [text for text in said if not any(part in text for part in known)]
         if lit.n_points:
+            valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
+            done.invalid = int(np.count_nonzero(~valid & ~inside))
             suffix = SUFFIX[type(lit).__name__]
             if suffix != job.suffix:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
-            path = files.write_mesh(lit, target.with_suffix(suffix))
-            done.file = path.name
+            done.file = files.write_mesh(lit, target.with_suffix(suffix)).name
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
     return done
@@ -263,10 +288,8 @@ def _lit(
     return own, sharp
 
 
-def isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
+def _isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
     """Return the isosurface of a piece, with the gradient of its array if normals are that."""
-    if not mesh.n_points:
-        return pv.PolyData()
     name = str(job.contour)
     if name not in mesh.point_data or mesh.point_data[name].ndim != 1:
         known = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
@@ -280,34 +303,3 @@ def isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
         mesh = mesh.compute_derivative(scalars=name, gradient=GRADIENT)
     found: pv.PolyData = mesh.contour([job.level], scalars=name)
     return found
-
-
-def _described(lit: Foreign, job: Job) -> Done:
-    """Return what is in a lit piece."""
-    inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
-    done = Done(points=lit.n_points, cells=lit.n_cells)
-    if not lit.n_points:
-        return done
-    done.bounds = [float(x) for x in lit.bounds]
-    for kind, data, attributes in (
-        ("point", lit.point_data, lit.GetPointData()),
-        ("cell", lit.cell_data, lit.GetCellData()),
-    ):
-        for name, array in data.items():
-            own = attributes.GetAbstractArray(name)
-            own_type, components = own.GetDataTypeAsString(), own.GetNumberOfComponents()
-            done.arrays[f"{kind} {name}"] = [own_type, components]
-            if kind == "point" and array.dtype.kind in "fiub" and array.size:
-                finite = np.asarray(array, dtype=np.float64)
-                finite = finite[np.isfinite(finite)]
-                if finite.size:
-                    done.ranges[name] = [float(finite.min()), float(finite.max())]
-    valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
-    done.invalid = int(np.count_nonzero(~valid & ~inside))
-    if hasattr(lit, "GetExtent"):
-        done.extent = [int(x) for x in lit.GetExtent()]
-    if isinstance(lit, pv.ImageData):
-        done.grid = {"Origin": list(lit.origin), "Spacing": list(lit.spacing)}
-    if isinstance(lit, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
-        done.arrays["points "] = [lit.GetPoints().GetData().GetDataTypeAsString(), 3]
-    return done

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import multiprocessing
 import os
 import signal
 import sys
 from concurrent.futures import CancelledError, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from vizlight import _check, _progress, _supervise
-from vizlight.pieces.kinds import PieceError
+from vizlight.pieces.sources import PieceError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -32,39 +32,10 @@ RETRIES = 2
 LOST = 3
 
 
-@dataclass(frozen=True)
-class Call(Generic[T]):
-    """A function of a piece and more, called again after an error of the operating system.
-
-    Attributes
-    ----------
-    function : callable
-    retries : int
-        Number of times that a call is repeated.
-    """
-
-    function: Callable[..., T]
-    retries: int
-
-    def __call__(self, arguments: tuple[Foreign, ...]) -> T:
-        """Call the function with a tuple of arguments."""
-        for _ in range(self.retries):
-            try:
-                return self.function(*arguments)
-            except PieceError as error:
-                cause: BaseException | None = error
-                while cause is not None and not isinstance(cause, OSError):
-                    cause = cause.__cause__
-                if cause is None:
-                    raise
-        return self.function(*arguments)
-
-
-@dataclass(frozen=True)
 class Work:
-    """What calls functions, each with a piece first.
+    """What calls functions, each with a piece first, and again after errors of the system.
 
-    Attributes
+    Parameters
     ----------
     map : callable or object
         ``map``, or an object with such a method, whose results may be futures.
@@ -72,11 +43,19 @@ class Work:
         Number of times that a call is repeated after an error of the operating system.
     show : bool
         Whether progress is shown.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the map is neither a function nor has a method ``map``, or the number is negative.
     """
 
-    map: Map
-    retries: int
-    show: bool
+    def __init__(self, map: Map, retries: int, show: bool) -> None:
+        if not (callable(map) or callable(getattr(map, "map", None))):
+            expected = "map, an executor or a client of Dask"
+            raise TypeError(_check.message("map", expected, _check.describe(map)))
+        self.map, self.show = map, show
+        self.retries = _check.integer("retries", retries, low=0)
 
     def each(
         self, function: Callable[..., T], calls: Sequence[tuple[Foreign, ...]], what: str
@@ -84,12 +63,16 @@ class Work:
         """Return the results of calls in their order; the error of a worker names its piece."""
         found: list[T] = []
         results: Iterator[Foreign] = iter(())
+        start: Foreign = getattr(self.map, "map", self.map)
+        # Dask takes calls of the same arguments for one.
+        more = {"pure": False} if hasattr(self.map, "gather") else {}
         with _progress.progress(what, len(calls), show=self.show) as report:
             try:
                 for number, arguments in enumerate(calls):
                     with _naming(arguments[0].name):
                         if not number:
-                            results = iter(self._started(Call(function, self.retries), calls))
+                            call = functools.partial(repeated, function, self.retries)
+                            results = iter(start(call, calls, **more))
                         value = next(results)
                         found.append(value.result() if hasattr(value, "result") else value)
                     report(len(found))
@@ -99,27 +82,19 @@ class Work:
                         self.map.cancel([*results], force=True)
         return found
 
-    def _started(self, call: Call[T], calls: Sequence[tuple[Foreign, ...]]) -> Iterable[Foreign]:
-        """Return the results of calls, or their futures."""
-        # Dask takes calls of the same arguments for one.
-        more = {"pure": False} if hasattr(self.map, "gather") else {}
-        start: Foreign = getattr(self.map, "map", self.map)
-        made: Iterable[Foreign] = start(call, calls, **more)
-        return made
 
-
-def checked(map: Map) -> Map:
-    """Return a map, if it is one.
-
-    Raises
-    ------
-    TypeError
-        If it is neither a function nor has a method ``map``.
-    """
-    if callable(map) or callable(getattr(map, "map", None)):
-        return map
-    expected = "map, an executor or a client of Dask"
-    raise TypeError(_check.message("map", expected, _check.describe(map)))
+def repeated(function: Callable[..., T], retries: int, arguments: tuple[Foreign, ...]) -> T:
+    """Call a function, and some more times after errors of the operating system."""
+    for _ in range(retries):
+        try:
+            return function(*arguments)
+        except PieceError as error:
+            cause: BaseException | None = error
+            while cause is not None and not isinstance(cause, OSError):
+                cause = cause.__cause__
+            if cause is None:
+                raise
+    return function(*arguments)
 
 
 @contextlib.contextmanager
@@ -165,8 +140,8 @@ class Processes:
     """
 
     def __init__(self, count: int) -> None:
-        self.count = _check.integer("count", count, low=1)
         self._pool: ProcessPoolExecutor | None = None
+        self.count = _check.integer("count", count, low=1)
 
     def __call__(self, function: Callable[[Foreign], T], calls: Iterable[Foreign]) -> Iterator[T]:
         """Yield the results of calls in their order.
@@ -182,29 +157,36 @@ class Processes:
         while left:
             futures: list[Future[T]] = []
             try:
-                futures = self._submitted(function, left)
+                if self._pool is None:
+                    spawn = multiprocessing.get_context("spawn")
+                    self._pool = ProcessPoolExecutor(self.count, spawn, _begin, (os.getpid(),))
+                with _main_apart():
+                    futures = [self._pool.submit(function, one) for one in left]
                 for future in futures:
                     value = future.result()
                     left.pop(0)
                     lost = 0
                     yield value
             except BrokenProcessPool:
-                self._pool, lost = None, lost + 1
+                self._end()
+                lost += 1
                 if lost == LOST:
                     raise
             finally:
                 for future in futures:
                     future.cancel()
 
-    def _submitted(
-        self, function: Callable[[Foreign], T], calls: Iterable[Foreign]
-    ) -> list[Future[T]]:
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(
-                self.count, multiprocessing.get_context("spawn"), _begin, (os.getpid(),)
-            )
-        with _main_apart():
-            return [self._pool.submit(function, one) for one in calls]
+    def _end(self) -> None:
+        """End the processes, and wait for that.
+
+        A process of Python that ends while the thread of an executor closes its pipes, as that
+        thread does once its executor is gone, may write to a pipe that is closed.
+        """
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown()
+
+    __del__ = _end
 
 
 def _begin(parent: int) -> None:

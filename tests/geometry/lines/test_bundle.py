@@ -7,7 +7,7 @@ import pytest
 
 import vizlight
 from vizlight import _compiled
-from vizlight.geometry.lines import bundle, lamps, voxels
+from vizlight.geometry.lines import bundle, voxels
 
 
 def pieces(middles, tangents, length, voxel):
@@ -87,7 +87,7 @@ def test_a_lamp_in_and_out_of_a_ball(lamp):
     out = np.sqrt(1 - (places * places).sum(axis=1) + along**2) - along
     way = np.where(distance < out, distance - 0.15, out)
     keep = way > 0.2
-    depth, _ = lamps.depths(
+    depth, _ = bundle.depths(
         ball.middles, ball.vectors, ball.targets(places).places,
         (np.array(lamp) - ball.origin) / ball.voxel,
     )  # fmt: skip
@@ -105,7 +105,7 @@ def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
     ways = unit(np.random.default_rng(4).normal(size=(tries, 3)))
     ways = ways[np.abs(ways[:, 2]) < 0.9]
     places = (10 * ways - line.origin).T.astype(np.float32)
-    depth, _ = lamps.depths(line.middles, line.vectors, places, -line.origin, thick)
+    depth, _ = bundle.depths(line.middles, line.vectors, places, -line.origin, thick)
     hidden = 1 - np.exp(-thick * depth).mean()
     assert hidden == pytest.approx(np.arcsin(0.5 / gap) / np.pi, abs=0.01)
 

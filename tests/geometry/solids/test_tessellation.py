@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
-from vizlight.geometry.solids import placement
+from vizlight.geometry.solids import tessellation
 from vizlight.geometry.solids.primitives import Block, Boolean, Frustum, Sphere
 
 PI = np.pi
@@ -314,7 +314,7 @@ def test_random_trees(kind, seed):
 def test_triangles_are_upright():
     for kind, seed in (("coaxial", 0), ("grid", 10), ("deep", 0)):
         mesh = solids.tessellate(solid_trees.tree(kind, seed))
-        assert not placement.flipped(mesh).any()
+        assert not tessellation.flipped(mesh).any()
 
 
 HARD = {
@@ -351,7 +351,7 @@ def test_thin_walls_keep_the_volume_of_parallel_facets():
     assert mesh.volume * mesh.scale**3 == pytest.approx(expected, rel=6e-3)
     assert abs(mesh.volume * mesh.scale**3 - expected) <= mesh.volume_error * mesh.scale**3
     assert len(mesh.triangles) < 3000
-    assert not placement.flipped(mesh).any()
+    assert not tessellation.flipped(mesh).any()
 
 
 @pytest.mark.parametrize("name", CLOSED_FORMS)

@@ -1,9 +1,15 @@
-"""Data in pieces on the command line: the picture of the whole, and what is refused."""
+"""``vizlight light`` of pieces, and ``vizlight view``: one private page from disk, no server."""
 
 from __future__ import annotations
 
 import json
+import os
+import re
 import socket
+import stat
+import sys
+import webbrowser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +17,7 @@ import pyvista as pv
 from PIL import Image
 
 import vizlight
-from vizlight import cli, render
+from vizlight import render
 
 CONTOUR = ("--contour", "r", "--level", "3")
 
@@ -34,23 +40,17 @@ def parts(tmp_path, monkeypatch):
     return [f"part{i}.vtu" for i in range(3)]
 
 
-def run(capfd, *arguments):
-    code = cli.main([str(a) for a in arguments])
-    out, err = capfd.readouterr()
-    return code, out, err
-
-
 @pytest.mark.opengl
 @pytest.mark.parametrize("view", [(), ("--view", "1,0.5,0.45", "--parallel"), ("camera",)], ids=str)
-def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
+def test_the_picture_is_that_of_the_whole(parts, run, view, tmp_path):
     if view == ("camera",):
         place = [[20, 9, 14], [4.5, 5.5, 7], [0, 0, 1]]
         (tmp_path / "camera.json").write_text(json.dumps(place), encoding="utf-8")
         view = ("--view", "camera.json")
     more = (*CONTOUR, "--size", "150x100", *view)
     lit = ("light", *parts, *more, "-o", "lit.pvtp", "-o", "lit.png")
-    assert run(capfd, *lit)[::2] == (0, "")
-    assert run(capfd, "light", "whole.vtu", *more, "-o", "lit.vtp")[0] == 0
+    assert run(*lit)[::2] == (0, "")
+    assert run("light", "whole.vtu", *more, "-o", "lit.vtp")[0] == 0
     whole = vizlight.read("lit.vtp")
     seen = vizlight.provenance(whole)["scene"]["view"]
     one = vizlight.provenance(pv.read(sorted(tmp_path.glob("lit/*.vtp"))[0]))["scene"]["view"]
@@ -70,37 +70,37 @@ def test_the_picture_is_that_of_the_whole(parts, capfd, view, tmp_path):
         assert max(np.ptp(rows) / 100, np.ptp(columns) / 150) > 0.85
 
 
-def test_processes_write_the_same_bytes(parts, capfd, tmp_path):
+def test_processes_write_the_same_bytes(parts, run, tmp_path):
     for name, more in (("one", ()), ("two", ("--workers", "2"))):
         lit = ("light", *parts, *CONTOUR, "-o", f"{name}.pvtp", *more)
-        assert run(capfd, *lit)[::2] == (0, "")
+        assert run(*lit)[::2] == (0, "")
     for i in range(3):
         one, two = (tmp_path / name / f"{name}_000{i}.vtp" for name in ("one", "two"))
         assert one.read_bytes() == two.read_bytes()
 
 
-def test_a_scheduler_that_does_not_answer(parts, capfd):
+def test_a_scheduler_that_does_not_answer(parts, run):
     pytest.importorskip("distributed")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-    code, out, err = run(capfd, "light", *parts, "-o", "a.pvtp", "--scheduler", address)
+    code, out, err = run("light", *parts, "-o", "a.pvtp", "--scheduler", address)
     assert (code, out, len(err.splitlines())) == (2, "", 1)
     assert "127.0.0.1" in err
 
 
-def test_the_script_does_the_same(parts, capfd):
-    code, out, err = run(capfd, "light", *parts, "--contour", "r", "-o", "a.pvtp", "--script")
+def test_the_script_does_the_same(parts, run):
+    code, out, err = run("light", *parts, "--contour", "r", "-o", "a.pvtp", "--script")
     assert (code, err) == (0, "")
     exec(compile(out, "script", "exec"), {})
-    _, out, _ = run(capfd, "light", *parts, "-o", "a.pvtp", "--workers", "3", "--script")
+    _, out, _ = run("light", *parts, "-o", "a.pvtp", "--workers", "3", "--script")
     assert "work = vizlight.pieces.Processes(3)\n" in out
     assert out.count("map=work") == 2
     level = vizlight.read("whole.vtu")["r"]
     assert vizlight.read("a.pvtp")["r"] == pytest.approx((level.min() + level.max()) / 2)
 
 
-def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, capfd):
+def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, run):
     monkeypatch.chdir(tmp_path)
     box = pv.Box(level=40).triangulate().clean()
     box.clear_data()
@@ -111,9 +111,9 @@ def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, capfd):
         part.clear_data()
         part.save(f"part{i}.vtp")
     parts = ("light", "part0.vtp", "part1.vtp", "--view", "3,2,1", "-o", "a.pvtp")
-    code, _, err = run(capfd, *parts)
+    code, _, err = run(*parts)
     assert (code, err) == (0, "")
-    assert run(capfd, "light", "whole.vtp", *parts[3:5], "-o", "b.vtp")[0] == 0
+    assert run("light", "whole.vtp", *parts[3:5], "-o", "b.vtp")[0] == 0
     lit, whole = vizlight.read("a.pvtp"), vizlight.read("b.vtp")
     assert len(np.unique(whole["luminance"])) < len(box.points)
     own, other = (
@@ -139,8 +139,91 @@ def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, capfd):
     ],
     ids=str,
 )
-def test_bad_input_is_one_line_and_exit_code_2(parts, capfd, arguments, message, tmp_path):
-    code, out, err = run(capfd, "light", *parts, *arguments)
+def test_what_pieces_cannot_is_one_line_and_exit_code_2(parts, run, arguments, message, tmp_path):
+    code, out, err = run("light", *parts, *arguments)
     assert (code, out, len(err.splitlines())) == (2, "", 1)
     assert message in err
     assert {path.suffix for path in tmp_path.iterdir()} == {".vtu"}
+
+
+@pytest.fixture
+def shell(tmp_path, monkeypatch):
+    """Work in a folder with a ball, note what the browser opens, and keep temporary files here."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    ball = pv.Sphere(theta_resolution=12, phi_resolution=12)
+    ball["V"] = np.cross(ball.points, (0.3, 0.2, 1.0))
+    ball["height"] = ball.points[:, 2]
+    ball.save("ball.vtp")
+    opened = []
+    monkeypatch.setattr(webbrowser, "open", lambda url: opened.append(url) or True)
+    return opened
+
+
+@pytest.mark.opengl
+def test_the_page_is_private_and_opened(shell, run):
+    code, out, err = run("view", "ball.vtp", "--tangents", "V", "--light", "-1,-2,3")
+    assert (code, err) == (0, "")
+    page = Path(re.search(r"^page +(.+)$", out, re.MULTILINE)[1])
+    assert page.name == "ball.html"
+    assert shell == [page.as_uri()]
+    if sys.platform != "win32":
+        assert stat.S_IMODE(page.stat().st_mode) == 0o600
+        assert stat.S_IMODE(page.parent.stat().st_mode) == 0o700
+        assert page.parent.stat().st_uid == os.getuid()
+    text = page.read_text(encoding="utf-8")
+    assert text.rstrip().endswith("</html>")
+    toward = np.array(re.search(r'"value": \[([^\]]+)\]', text)[1].split(","), float)
+    np.testing.assert_allclose(toward / np.linalg.norm(toward), np.array([-1, -2, 3]) / 14**0.5)
+
+
+@pytest.mark.opengl
+def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, run):
+    code, out, err = run(
+        "view", "ball.vtp", "--scalars", "height", "-o", "kept.html", "--no-browser"
+    )
+    assert (code, err, shell) == (0, "", [])
+    assert "page     kept.html" in out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
+
+
+@pytest.mark.opengl
+def test_the_page_copies_the_command(shell, run):
+    """The words of the command stand in the page, and light the file alike."""
+    options = ["--tangents", "V", "--conditioned", "--clip", "z:0.3", "--exponent", "2"]
+    code, _, err = run("view", "ball.vtp", *options, "-o", "kept.html", "--no-browser")
+    assert (code, err) == (0, "")
+    recipe = json.loads(re.search(r'"recipe": (\{.*?\}), "name"', Path("kept.html").read_text())[1])
+    assert recipe["file"] == "ball.vtp"
+    words = recipe["command"]
+    assert sorted(words) == ["--clip=z:0.3", "--conditioned", "--exponent=2", "--tangents=V"]
+    for given, path in ((options, "a.vtp"), (words, "b.vtp")):
+        assert run("light", "ball.vtp", *given, "-o", path)[0] == 0
+    np.testing.assert_array_equal(pv.read("a.vtp")["luminance"], pv.read("b.vtp")["luminance"])
+
+
+@pytest.mark.opengl
+def test_without_a_browser_the_path_is_told(shell, run, monkeypatch):
+    monkeypatch.setattr(webbrowser, "open", lambda url: False)
+    code, _, err = run("view", "ball.vtp", "-o", "kept.html")
+    assert code == 0
+    assert err == "vizlight: no browser was found; open 'kept.html' in one\n"
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["none.vtp"], "no such file"),
+        (["ball.vtp", "-o", "page.png"], "ends in .html"),
+        (["ball.vtp", "--tangents", "W"], "tangents"),
+        (["ball.vtp", "--port", "80"], "--port"),
+    ],
+)
+def test_what_cannot_be_shown_leaves_nothing(arguments, words, shell, run, tmp_path):
+    code, _, err = run("view", *arguments)
+    assert code == 2
+    assert words in err
+    assert err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["ball.vtp"]
+    assert not shell

@@ -6,12 +6,13 @@ import inspect
 import subprocess
 import sys
 import typing
+from dataclasses import fields
 
 import pytest
 
 import vizlight
 from vizlight import _words
-from vizlight.cli import declared, options
+from vizlight.cli import options
 from vizlight.geometry.relief.height_field import Border
 from vizlight.shading.options import Model
 
@@ -23,35 +24,27 @@ FILTERS = (
 
 @pytest.mark.parametrize("name", FILTERS)
 def test_options_are_those_of_the_signature(name):
-    function = getattr(vizlight, name)
-    found = declared.filter_(name)
-    expected = {
-        key: (str(p.annotation), p.default is p.empty, None if p.default is p.empty else p.default)
-        for key, p in inspect.signature(function).parameters.items()
-        if p.kind is p.KEYWORD_ONLY
+    parameters = inspect.signature(getattr(vizlight, name)).parameters
+    found = {one.name: one.default for one in fields(options.arguments_of(name))}
+    assert found == {key: parameters[key].default for key in found}
+    plain = {
+        key
+        for key, one in parameters.items()
+        if one.kind is one.KEYWORD_ONLY and one.annotation.partition(" | ")[0] in options.TYPES
     }
-    assert {key: option[:3] for key, option in found.options.items()} == expected
-    texts = _words.parameters(function.__doc__)
-    assert {key: found.texts[key] for key in expected} == {key: texts[key] for key in expected}
+    assert plain - {*options.NOT_OPTIONS} <= found.keys()
 
 
 def test_choices_are_those_of_the_type():
-    model = declared.filter_("illuminate").options["model"]
-    border = declared.filter_("relief_shadow").options["border"]
-    for option, kind in ((model, Model), (border, Border)):
-        made = declared.choices(option, option.annotation)
+    for name, option, kind in (
+        ("illuminate", "model", Model), ("relief_shadow", "border", Border)
+    ):  # fmt: skip
+        made = typing.get_type_hints(options.arguments_of(name))[option]
         assert typing.get_args(made) == typing.get_args(kind)
-    assert declared.choices(model, "ArrayLike") is None
-    assert declared.choices(model, "int") is None
-
-
-def test_what_is_not_there_is_named():
-    with pytest.raises(LookupError, match=r"no file of vizlight\.filters\.nothing"):
-        declared.filter_("nothing")
-    with pytest.raises(LookupError, match="defines no nothing"):
-        declared.function("vizlight.filters.fur", "nothing")
-    with pytest.raises(LookupError, match="FurOptions is no function"):
-        declared.function("vizlight.filters.fur", "FurOptions")
+    # An array, and a type of another module, are left to scripts.
+    assert "sun" not in typing.get_type_hints(options.arguments_of("relief_shadow"))
+    tangents = typing.get_type_hints(options.arguments_of("illuminate"))["tangents"]
+    assert tangents == str | None
 
 
 def test_help_loads_nothing_that_computes_or_draws():
@@ -72,9 +65,10 @@ print(*{name.partition(".")[0] for name in sys.modules}, "rich.markdown" in sys.
 
 
 def test_the_help_of_an_option_is_its_own_description():
-    texts = declared.filter_("illuminate").texts
+    texts = _words.parameters(vizlight.illuminate.__doc__)
     own = {name: text for name, text in texts.items() if text and "s for :" not in text}
     assert len(own) > 8
     for name, text in own.items():
-        found = options._text(name, texts)
-        assert found == options._flat(text) or name in {*options.READ, *options.READ_LISTS}
+        words = " ".join(text.partition("\n")[2].split()).replace("``", "")
+        if name not in options.READ and ":" not in words:
+            assert options._text(name, texts) == words

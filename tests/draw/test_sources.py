@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from vizlight.draw import sources
-from vizlight.mesh import boxes, normals
+from vizlight.mesh import normals
 from vizlight.mesh.normals import split_edges
 
 
@@ -27,7 +27,7 @@ def test_sides_are_those_of_the_outer_surface_split_at_its_edges(make):
     grid = make()
     grid["v"] = np.arange(grid.n_points, dtype=float)
     grid.cell_data["c"] = np.arange(grid.n_cells)
-    found, expected = boxes.box(grid), split_edges(grid.extract_surface(algorithm=None), 30.0)
+    found, expected = sources.box(grid), split_edges(grid.extract_surface(algorithm=None), 30.0)
     assert (found.n_points, found.n_cells) == (expected.n_points, expected.n_cells)
     np.testing.assert_allclose(grid.points[found["v"].astype(int)], found.points, atol=1e-14)
     key = lambda mesh: sorted(map(tuple, np.round(mesh.cell_centers().points, 4)))  # noqa: E731
@@ -46,9 +46,9 @@ def test_sides_are_those_of_the_outer_surface_split_at_its_edges(make):
 def test_a_live_grid_takes_them_and_what_is_no_box_does_not():
     grid = image()
     (source,), _ = sources.sources_of(grid, None, {})
-    assert source.mesh.n_points == boxes.box(grid).n_points
+    assert source.mesh.n_points == sources.box(grid).n_points
     assert source.mesh.n_points > grid.extract_surface(algorithm=None).n_points
     hidden = image()
     hidden.cell_data["vtkGhostType"] = np.zeros(hidden.n_cells, np.uint8)
     for mesh in (image((14, 1, 9)), hidden, grid.cast_to_structured_grid(), pv.Sphere()):
-        assert boxes.box(mesh) is None
+        assert sources.box(mesh) is None
