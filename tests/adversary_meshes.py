@@ -193,8 +193,8 @@ CALLS = {
         "got": np.zeros((20, 20, 3), np.uint8),
         "expected": np.zeros((20, 20, 3), np.uint8),
     },
-    "pieces.kinds.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
-    "pieces.survey.camera_on": lambda: {"sources": saved()},
+    "pieces.sources.Slabs": lambda: {"arrays": {"a": np.zeros((3, 4, 5))}},
+    "pieces.run.camera_on": lambda: {"sources": saved()},
     "pieces.run.light": lambda: {
         "sources": saved(),
         "scene": SCENE,

@@ -17,6 +17,7 @@ from vizlight import Light, Material
 from vizlight.accessor import Accessor
 from vizlight.draw.render import PlotterKeywords
 from vizlight.geometry.solids.primitives import Solid
+from vizlight.pieces.sources import Slabs
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.engine import Shading
 from vizlight.shading.options import Options
@@ -50,11 +51,12 @@ RETURNED = {
     "accessor.Accessor": "made by PyVista for each mesh",
 }
 #: Parts of the protocol between solids, whose arrays `contains` and `tessellate` checked, and
-#: of that of meshes that are lit together.
+#: of those of meshes that are lit together and of slabs.
 PROTOCOLS = {
     Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
     Shading: {"part"},
     Options: {"of"},
+    Slabs: {"empty", "nodes"},
 }
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
@@ -160,7 +162,7 @@ SELF = {
 #: Kinds of arguments, as annotations, where their own say less.
 KINDS = {
     ("filters.pathlines.pathlines", "series"): "Sequence[pv.DataSet] | Path",
-    ("pieces.survey.camera_on", "sources"): "object | Path",
+    ("pieces.run.camera_on", "sources"): "object | Path",
     ("pieces.run.light", "sources"): "object | Path",
 }
 #: The only arguments that are replaced where a function of the same arguments is walked anyway.
@@ -173,7 +175,7 @@ ALIASES = {
     ("draw.movie.save", "path"): {"output"},
     ("draw.movie.turn", "path"): {"output"},
     # Errors of a piece begin with its name.
-    ("pieces.survey.camera_on", "sources"): {"piece"},
+    ("pieces.run.camera_on", "sources"): {"piece"},
     ("pieces.run.light", "sources"): {"piece"},
     ("draw.render.save_png", "panels"): {"scalars"},
     ("draw.render.save_png", "path"): {"output"},
