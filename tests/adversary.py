@@ -24,7 +24,6 @@ import re
 import signal
 import sys
 import tempfile
-import time
 import traceback
 import typing
 import warnings
@@ -129,7 +128,7 @@ def calls(name):
     return [Call(name, "", "valid", None)] + [
         Call(name, argument, label, value)
         for argument, text in parameters(function).items()
-        if argument in table.ONLY.get(name, (argument,)) and (name, argument) not in table.SKIPPED
+        if argument in table.ONLY.get(name, (argument,))
         for label, value in values.of(table.KINDS.get((name, argument), text), valid.get(argument))
     ]
 
@@ -236,8 +235,8 @@ def judge(call):
         try:
             with warnings.catch_warnings(record=True) as said:
                 warnings.simplefilter("always")
-                with np.errstate(over="warn", divide="warn", invalid="warn"):
-                    result = _timed(function, args, keywords, call.name)
+                with np.errstate(over="warn", divide="warn", invalid="warn"), limited(LIMIT):
+                    result = _called(function, args, keywords)
         except (Exception, TooSlow) as caught:  # noqa: BLE001
             error = caught
         finally:
@@ -278,38 +277,51 @@ def _bad(place, call, given):
     return re.sub(r"^(\[\d+\]|\.mesh)*", "", place) not in (kept if meshes else ())
 
 
-def _timed(function, args, keywords, name):
+@contextlib.contextmanager
+def limited(seconds):
+    """Raise TooSlow after some processor time."""
+
     def stop(number, frame):
         raise TooSlow
 
     old = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, LIMIT)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
-        result = function(*args, **keywords)
-        if inspect.isgenerator(result):
-            return next(result, None)
-        if isinstance(result, contextlib.AbstractContextManager) and not isinstance(result, Path):
-            with result as entered:
-                return entered
-        return result
+        yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.signal(signal.SIGPROF, old)
+
+
+def _called(function, args, keywords):
+    result = function(*args, **keywords)
+    if inspect.isgenerator(result):
+        return next(result, None)
+    if isinstance(result, contextlib.AbstractContextManager) and not isinstance(result, Path):
+        with result as entered:
+            return entered
+    return result
+
+
+def place_of(error):
+    """Return where in vizlight an exception comes from, and whether a `raise` there raised it."""
+    frames = traceback.extract_tb(error.__traceback__)
+    inside = [f for f in frames if Path(f.filename).is_relative_to(ROOT)]
+    if not inside:
+        return "call", False
+    last = inside[-1]
+    place = f"{Path(last.filename).relative_to(ROOT)}:{last.lineno}"
+    return place, last is frames[-1] and last.lineno in raises(last.filename)
 
 
 def wrong_error(error, call, given):
     """Return what is wrong with an exception, or an empty text."""
     if not call.argument:
         return f"the valid call raises {type(error).__name__}: {error}"
-    frames = traceback.extract_tb(error.__traceback__)
-    inside = [f for f in frames if Path(f.filename).is_relative_to(ROOT)]
-    last = frames[-1]
     text = " ".join(str(error).split())
     kind = type(error).__name__
-    place = (
-        f"{Path(inside[-1].filename).relative_to(ROOT)}:{inside[-1].lineno}" if inside else "call"
-    )
-    if not Path(last.filename).is_relative_to(ROOT) or last.lineno not in raises(last.filename):
+    place, own = place_of(error)
+    if not own:
         return f"raw {kind} at {place}: {text[:90]}"
     if not isinstance(error, ERRORS):
         return f"raises {kind} at {place}"
@@ -328,38 +340,44 @@ def sample(name, each, seed):
     return [every[i] for i in sorted(chosen)]
 
 
+def forked(work):
+    """Run a function of a file in a fork of this process; return what it wrote, and the exit code.
+
+    What is written arrives line by line, so that a crash loses the last line alone.
+    """
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        code = 1
+        try:
+            with os.fdopen(writing, "w", encoding="utf-8", buffering=1) as file:
+                work(file)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(writing)
+    with os.fdopen(reading, encoding="utf-8") as file:
+        text = file.read()
+    return text, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
 def walk(name, each, seed):
     """Judge the calls of one callable in child processes; yield each with what is wrong."""
     todo = sample(name, each, seed)
-    start = 0
-    while start < len(todo):
-        reading, writing = os.pipe()
-        child = os.fork()
-        if not child:
-            os.close(reading)
-            _child(todo[start:], writing)
-        os.close(writing)
-        said = []
-        with os.fdopen(reading) as lines:
-            said = [json.loads(line) for line in lines]
-        _, status = os.waitpid(child, 0)
-        for wrong in said:
-            yield todo[start], wrong
-            start += 1
-        if start < len(todo) and status:
-            yield todo[start], f"crashes the process ({status})"
-            start += 1
+    while todo:
+        text, code = forked(functools.partial(_judged, todo))
+        for line in text.splitlines():
+            yield todo.pop(0), json.loads(line)
+        if todo:
+            yield todo.pop(0), f"crashes the process ({code})"
 
 
-def _child(todo, writing):
+def _judged(todo, file):
     quiet = os.open(os.devnull, os.O_WRONLY)
     os.dup2(quiet, 2)
     os.dup2(quiet, 1)
-    with os.fdopen(writing, "w") as out:
-        for call in todo:
-            out.write(json.dumps(judge(call)) + "\n")
-            out.flush()
-    os._exit(0)
+    for call in todo:
+        file.write(json.dumps(judge(call)) + "\n")
 
 
 def main():
@@ -371,25 +389,17 @@ def main():
     parser.add_argument("--seed", type=int, default=0, help="seed of the sample")
     parser.add_argument("--each", type=int, default=0, help="calls of each callable; 0: all")
     asked = parser.parse_args()
-    names = [
-        name for name in table.CALLS
-        if not asked.names or any(name.startswith(start) for start in asked.names)
-    ]  # fmt: skip
-    tried, failed = collections.Counter(), collections.Counter()
+    names = [name for name in table.CALLS if name.startswith(tuple(asked.names or [""]))]
+    tried, failed = 0, collections.Counter()
     for name in names:
-        begin = time.monotonic()
         for call, wrong in walk(name, asked.each, asked.seed):
-            tried[name] += 1
+            tried += 1
             if wrong:
                 failed[name] += 1
-                print(ascii(f"{name}({call.argument}={call.label}): {wrong}")[1:-1])
-        if failed[name]:
-            print(f"  {name}: {failed[name]} of {tried[name]} in {time.monotonic() - begin:.1f} s")
-        sys.stdout.flush()
-    bad = sum(1 for name in names if failed[name])
-    total, wrong = tried.total(), failed.total()
-    print(f"{total} calls of {len(names)} callables: {wrong} fail, of {bad} callables")
-    return bool(failed.total())
+                print(ascii(f"{name}({call.argument}={call.label}): {wrong}")[1:-1], flush=True)
+    bad = len(failed)
+    print(f"{tried} calls of {len(names)} callables: {failed.total()} fail, of {bad} callables")
+    return bool(failed)
 
 
 if __name__ == "__main__":

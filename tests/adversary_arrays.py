@@ -149,15 +149,11 @@ CALLS = {
     "geometry.solids.base.Solid.rotate_z": lambda: {"angle": 0.3},
     "geometry.solids.base.Solid.scale": lambda: {"factor": 2.0},
     "geometry.solids.base.Solid.translate": lambda: {"xyz": (1.0, 0.0, 0.0)},
-    "geometry.solids.polyhedra.HalfSpace": dict,
     "geometry.solids.polyhedra.Polyhedron": lambda: dict(
         zip(("points", "triangles"), triangles(), strict=True)
     ),
     "geometry.solids.polyhedra.Prism": lambda: {"outline": [[0, 0], [1, 0], [0, 1]]},
-    "geometry.solids.primitives.Block": dict,
     "geometry.solids.primitives.Frustum": lambda: {"height": 1.0},
-    "geometry.solids.primitives.Sphere": dict,
-    "geometry.solids.primitives.Torus": dict,
     "geometry.solids.tessellation.tessellate": lambda: {
         "solid": vizlight.Sphere(),
         "tolerance": 0.1,

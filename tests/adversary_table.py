@@ -17,6 +17,7 @@ from vizlight import Light, Material
 from vizlight.accessor import Accessor
 from vizlight.draw.render import PlotterKeywords
 from vizlight.geometry.solids.primitives import Solid
+from vizlight.pieces.sources import Slabs
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.engine import Shading
 from vizlight.shading.options import Options
@@ -50,11 +51,12 @@ RETURNED = {
     "accessor.Accessor": "made by PyVista for each mesh",
 }
 #: Parts of the protocol between solids, whose arrays `contains` and `tessellate` checked, and
-#: of that of meshes that are lit together.
+#: of those of meshes that are lit together and of slabs.
 PROTOCOLS = {
     Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
     Shading: {"part"},
     Options: {"of"},
+    Slabs: {"empty", "nodes"},
 }
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
@@ -121,8 +123,24 @@ def of_accessor(method):
     return function
 
 
+def needs_nothing(function):
+    """Return whether a callable can be called without arguments, or by its object alone."""
+    needed = [
+        parameter
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.default is parameter.empty
+        and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+    ]
+    return all(parameter.name == "self" for parameter in needed)
+
+
+PUBLIC = public()
 #: Arguments of a valid call by the name of the callable; positional ones by name too.
-CALLS = {**adversary_arrays.CALLS, **meshes.CALLS}
+CALLS = {
+    **{name: dict for name, function in PUBLIC.items() if needs_nothing(function)},
+    **adversary_arrays.CALLS,
+    **meshes.CALLS,
+}
 #: Objects whose methods are called.
 SELF = {
     **{name: vizlight.Sphere for name in CALLS if name.startswith("geometry.solids.base.Solid.")},
@@ -144,11 +162,9 @@ SELF = {
 #: Kinds of arguments, as annotations, where their own say less.
 KINDS = {
     ("filters.pathlines.pathlines", "series"): "Sequence[pv.DataSet] | Path",
-    ("pieces.survey.camera_on", "sources"): "object | Path",
+    ("pieces.run.camera_on", "sources"): "object | Path",
     ("pieces.run.light", "sources"): "object | Path",
 }
-#: Arguments that are not replaced, with the reason.
-SKIPPED = {}
 #: The only arguments that are replaced where a function of the same arguments is walked anyway.
 ONLY = {name: ("mesh", "surface", "lit", "scene") for name in CALLS if name.startswith("accessor.")}
 #: Words by which an error may name an argument, where the command line says the same to its users.
@@ -159,7 +175,7 @@ ALIASES = {
     ("draw.movie.save", "path"): {"output"},
     ("draw.movie.turn", "path"): {"output"},
     # Errors of a piece begin with its name.
-    ("pieces.survey.camera_on", "sources"): {"piece"},
+    ("pieces.run.camera_on", "sources"): {"piece"},
     ("pieces.run.light", "sources"): {"piece"},
     ("draw.render.save_png", "panels"): {"scalars"},
     ("draw.render.save_png", "path"): {"output"},
@@ -200,7 +216,6 @@ MARKED = {
     ),
     "model.frames.split": (r"^\[[01]\]$", "results are NaN where x is not finite"),
 }
-PUBLIC = public()
 
 
 def changes(call):

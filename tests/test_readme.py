@@ -7,7 +7,6 @@ import re
 import runpy
 import shlex
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -190,16 +189,6 @@ def test_the_map_names_the_folders_that_exist():
 def test_the_map_is_in_the_order_of_imports():
     order = [TIER[p.split("/")[1]] for p in folder_map() if p.startswith("vizlight/")]
     assert order == sorted(order)
-
-
-def test_model_and_geometry_load_no_pyvista():
-    folders = [ROOT / "vizlight" / part for part in ("model", "geometry")]
-    paths = [path.relative_to(ROOT) for folder in folders for path in folder.rglob("*.py")]
-    names = [".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths]
-    heavy = "{'pyvista', 'vtk', 'vtkmodules'} & set(sys.modules)"
-    code = f"import sys, {', '.join(names)}; sys.exit(str({heavy} or ''))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert run.stderr.strip() == ""
 
 
 def test_the_architecture_page_has_the_tiers():

@@ -10,12 +10,10 @@ A walk is repeated by its seed and number.
 from __future__ import annotations
 
 import argparse
-import os
+import functools
 import signal
 import sys
-import traceback
 import warnings
-from pathlib import Path
 
 import adversary
 import numpy as np
@@ -163,10 +161,9 @@ def fault(name, step, mesh, random):
             warnings.simplefilter("ignore", UserWarning)
             found = step(mesh, random)
     except Exception as error:  # noqa: BLE001
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        own = Path(last.filename).is_relative_to(adversary.ROOT)
-        if not own or last.lineno not in adversary.raises(last.filename):
-            return f"raw {type(error).__name__} at {last.filename}:{last.lineno}: {error}", mesh
+        place, own = adversary.place_of(error)
+        if not own:
+            return f"raw {type(error).__name__} at {place}: {error}", mesh
     if adversary.mark(mesh) != before:
         return "the mesh was changed", mesh
     for block in found if isinstance(found, pv.MultiBlock) else [found]:
@@ -195,13 +192,11 @@ def walk(seed, number, said):
                 made = mesh
             wrong = ""
         else:
-            signal.setitimer(signal.ITIMER_PROF, LIMIT)
             try:
-                wrong, made = fault(name, TAKEN[name], mesh, random)
+                with adversary.limited(LIMIT):
+                    wrong, made = fault(name, TAKEN[name], mesh, random)
             except adversary.TooSlow:
                 wrong, made = f"more than {LIMIT:g} s", mesh
-            finally:
-                signal.setitimer(signal.ITIMER_PROF, 0)
         if wrong:
             return path, wrong
         whole = isinstance(made, pv.DataSet | pv.MultiBlock)
@@ -220,14 +215,7 @@ def run(total, seed, say=lambda text: sys.stdout.write(f"{text}\n")):
     """Take walks, each in a fork of this process, and return the number of those that failed."""
     failed = 0
     for number in range(total):
-        reader, writer = os.pipe()
-        pid = os.fork()
-        if not pid:
-            _alone(seed, number, writer)
-        os.close(writer)
-        with os.fdopen(reader, encoding="utf-8") as file:
-            text = file.read()
-        code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+        text, code = adversary.forked(functools.partial(_alone, seed, number))
         path, _, wrong = text.partition("\n")
         if code or wrong:
             failed += 1
@@ -235,18 +223,12 @@ def run(total, seed, say=lambda text: sys.stdout.write(f"{text}\n")):
     return failed
 
 
-def _alone(seed, number, writer):
-    """Take one walk in this process and end it; what is wrong is written line by line."""
-
-    def late(number, frame):
-        raise adversary.TooSlow
-
-    signal.signal(signal.SIGPROF, late)
+def _alone(seed, number, file):
+    """Take one walk in this process; what is wrong is written line by line."""
     signal.alarm(int(20 * LIMIT))
-    with os.fdopen(writer, "w", encoding="utf-8", buffering=1) as file, adversary.new_folder():
+    with adversary.new_folder():
         _, wrong = walk(seed, number, file)
-        file.write(f"\n{' '.join(wrong.split())}")
-    os._exit(0)
+    file.write(f"\n{' '.join(wrong.split())}")
 
 
 def main():

@@ -21,6 +21,7 @@ from vizlight.scene import Material
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
+    from types import ModuleType
 
 Axis = Literal["parameter", "error", "cost"]
 Key = TypeVar("Key")
@@ -147,6 +148,14 @@ def number(value: float | str) -> str:
     if isinstance(value, str):
         return value
     return "" if math.isnan(value) else f"{value:.4g}"
+
+
+def foreign(name: str, /) -> ModuleType | None:
+    """Return a module of a package to compare with, None where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
 
 
 def take_turns(ways: Mapping[Key, Callable[[], object]], repeats: int) -> dict[Key, float]:

@@ -47,12 +47,6 @@ class Panel:
     mean: float
     contrast: float
 
-    @property
-    def title(self) -> str:
-        """Title of the panel: k, n and the exponent p."""
-        p = brightness.exponent(self.k, self.n) if self.compensated else 1.0
-        return f"k = {self.k}, n = {self.n}, p = {p:.5g}"
-
 
 def panels(resolution: int = 192) -> list[Panel]:
     """Return the eight panels, first the plain ones, then the compensated ones.

@@ -10,22 +10,19 @@ nodes that are on the wrong side, as of vizlight with a depth of nearly 0, from 
 
 from __future__ import annotations
 
-import importlib
 import math
-import os
-from contextlib import contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from scipy import ndimage
 
-from studies import Row, Study, peak_memory, take_turns
+from studies import Row, Study, foreign, peak_memory, take_turns
 from vizlight import _compiled
 from vizlight.geometry.relief import shadowing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
 
     from vizlight._types import Array, Bools, Indices
 
@@ -59,19 +56,6 @@ def sun(height: float, azimuth: float = 40.0) -> Array:
     return toward
 
 
-@contextmanager
-def code(setting: str) -> Iterator[None]:
-    """Set VIZLIGHT_FAST for a while: "0" NumPy alone, "1" compiled code."""
-    before = os.environ.get("VIZLIGHT_FAST")
-    os.environ["VIZLIGHT_FAST"] = setting
-    try:
-        yield
-    finally:
-        del os.environ["VIZLIGHT_FAST"]
-        if before is not None:
-            os.environ["VIZLIGHT_FAST"] = before
-
-
 def measure(side: int, height: float = HEIGHT, repeats: int = 3) -> list[Row]:
     """Return the rows of one field of hills, with the exact method as the reference.
 
@@ -81,7 +65,7 @@ def measure(side: int, height: float = HEIGHT, repeats: int = 3) -> list[Row]:
     x, z = np.linspace(0, 1, side), hills(side)
 
     def light(method: shadowing.Method, setting: str = "0") -> Array:
-        with code(setting):
+        with _compiled.setting(setting):
             t: Array = shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
         return t
 
@@ -144,11 +128,8 @@ def hard(side: int, repeats: int = 3, places: int = 2000) -> list[Row]:
         return np.asarray(t > 1e-3)
 
     found: dict[str, Callable[[], Bools]] = {"hard shadow, depth 1e-6": ours}
-    try:
-        vis: Any = importlib.import_module("rvt.vis")
-    except ImportError:
-        pass
-    else:
+    vis = foreign("rvt.vis")
+    if vis is not None:
         # Rows run southward there, and azimuths clockwise from north.
         def theirs() -> Bools:
             made = vis.shadow_horizon(z[::-1], 1, shadow_az=50, shadow_el=HEIGHT)
@@ -183,7 +164,7 @@ def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Error
     low = np.maximum(middle - half, ground)
     length = ground + np.maximum(middle + half - low, 0) * (half > 0)
     expected = depth / np.maximum(length, depth)
-    with code("0"):
+    with _compiled.setting("0"):
         t = shadowing.shadow(x, x, z, depth=depth, direction=way, normals=normal, method=method)
     error = np.abs(t - expected)
     kind = 2 * (z > 0) + (np.maximum(middle + half - low, 0) * (half > 0) > 0)

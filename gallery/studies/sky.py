@@ -9,16 +9,15 @@ does libigl's ambient occlusion; trimesh follows the same rays as vizlight by th
 
 from __future__ import annotations
 
-import importlib
 import time
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 import vizlight
-from studies import Row, Study
+from studies import Row, Study, foreign
 from vizlight import _compiled
 from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import sky as meshes
@@ -121,9 +120,8 @@ def of_field(side: int, slope: float, error: float) -> list[Row]:
 
 def of_rvt(side: int, slope: float, directions: int, radius: int) -> list[Row]:
     """Return the row of RVT, against its own definition from the same horizons."""
-    try:
-        vis: Any = importlib.import_module("rvt.vis")
-    except ImportError:
+    vis = foreign("rvt.vis")
+    if vis is None:
         return []
     z = ground(side, slope)
     at, _, t, _ = horizons(side, slope)
@@ -163,9 +161,8 @@ def of_surface(points: int, error: float) -> list[Row]:
 
 def of_libigl(points: int, rays: int) -> list[Row]:
     """Return the row of libigl, against its own definition: a sky without the cosine."""
-    try:
-        igl: Any = importlib.import_module("igl")
-    except ImportError:
+    igl = foreign("igl")
+    if igl is None:
         return []
     ball, _ = surface_truth(points)
     vertices, faces = np.asarray(ball.points, np.float64), np.asarray(ball.regular_faces, np.int64)
@@ -180,9 +177,8 @@ def of_libigl(points: int, rays: int) -> list[Row]:
 
 def of_trimesh(points: int, rays: int) -> list[Row]:
     """Return the row of trimesh's rays by Embree, in random directions by the cosine."""
-    try:
-        trimesh: Any = importlib.import_module("trimesh")
-    except ImportError:
+    trimesh = foreign("trimesh")
+    if trimesh is None:
         return []
     ball, true = surface_truth(points)
     mesh = trimesh.Trimesh(np.asarray(ball.points), ball.regular_faces, process=False)

@@ -22,14 +22,6 @@ def test_eight_panels_in_order():
     assert [(p.compensated, p.k, p.n) for p in made] == [
         (c, k, n) for c in (False, True) for k in (1, 2) for n in (3, 4)
     ]
-    titles = [p.title for p in made]
-    assert titles[0] == "k = 1, n = 3, p = 1"
-    assert titles[4:] == [
-        "k = 1, n = 3, p = 4.7635",
-        "k = 1, n = 4, p = 7.6737",
-        "k = 2, n = 3, p = 1",
-        "k = 2, n = 4, p = 2",
-    ]
 
 
 def test_plain_light_grows_brighter_and_flatter_with_codimension(panels):
