@@ -33,7 +33,7 @@ BESIDE = (
 RETURNED = {
     "geometry.contours.banding.Bands": "returned by sphere and truncus",
     "geometry.contours.banding.Laminae": "returned by sphere and truncus",
-    "observers.record.Legibility": "returned by legibility",
+    "observers.legibility.Legibility": "returned by legibility",
     "model.cylinder.Gradient": "returned by the gradients",
     "model.highlights.MaximumError": "returned by max_pixel_error",
     "draw.backends.Probe": "returned by probe",

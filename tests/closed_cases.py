@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from vizlight import Light, Material, Scene, View
-from vizlight.observers import colors, direction, shape, slope, value
-from vizlight.observers.colors import lab, seen
+from vizlight.observers import readers
+from vizlight.observers.readers import lab, seen
 from vizlight.observers.samples import Sample, Shares
 from vizlight.shading.options import ShadingOptions
 
@@ -59,7 +59,7 @@ def lines(lights, material=MATTE, **how):
 
 
 def read_direction(sample, noise=NOISE):
-    return direction.ideal(sample, np.random.default_rng(0), noise)
+    return readers.find_direction(sample, np.random.default_rng(0), noise)
 
 
 def within_10(error):
@@ -122,14 +122,14 @@ for what in ("median", "share", "bits"):
 @case
 def key_reads_a_plane_that_is_the_key():
     sample = plane([color(0, "red"), color(60, "lime"), color(120, "blue")])
-    error = direction.by_key(sample, np.zeros(3), np.random.default_rng(0), 0.0)
+    error = readers.by_key(sample, np.zeros(3), np.random.default_rng(0), 0.0)
     near(np.median(error), 0, 1)
 
 
 @case
 def key_of_white_lamps_is_chance():
     sample = plane([color(0, "white"), color(60, "white")])
-    error = direction.by_key(sample, np.zeros(3), np.random.default_rng(0), NOISE)
+    error = readers.by_key(sample, np.zeros(3), np.random.default_rng(0), NOISE)
     # 180 grays have hues at random, some of which stand alone.
     near(np.median(error), 45, 5)
 
@@ -143,7 +143,7 @@ def two_grays_tell_what_the_binary_channel_does():
     observed = table[random.integers(0, 2, 100_000)] + random.normal(0, noise, (100_000, 3))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
     lost = (weight * np.log2(1 + np.exp(-2 * (1 + z)))).sum() / np.sqrt(2 * np.pi)
-    bits = colors.information(colors.posterior(observed, table, noise)).mean()
+    bits = readers.information(readers.posterior(observed, table, noise)).mean()
     near(bits, 1 - lost, 0.005)
 
 
@@ -158,19 +158,19 @@ def cylinder_under_a_headlight_has_its_formula():
 
 def _steepness(sample, noise):
     light = lab(seen(sample.own_light(), np.random.default_rng(0), noise))[:, 0]
-    return slope.steepness(sample), light
+    return readers.steepness(sample), light
 
 
 @case
 def cylinder_under_a_headlight_orders_slopes():
     steep, light = _steepness(lines(Light.headlight(), model="cylinder"), 1e-6)
-    near(slope.rank_correlation(light, steep), -1, 1e-3)
+    near(readers.rank_correlation(light, steep), -1, 1e-3)
 
 
 @case
 def sign_of_slope_is_a_coin():
     sample = lines(Light.headlight(), model="cylinder")
-    error = slope.in_space(sample, np.random.default_rng(0), 1e-6)
+    error = readers.find_slope(sample, np.random.default_rng(0), 1e-6)
     toward = np.degrees(np.arcsin(np.abs(sample.tangents[:, 0, 2])))
     near(within_10(error), 0.5 + 0.5 * np.mean(2 * toward % 180 <= 10), 0.06)
 
@@ -181,12 +181,12 @@ DARK = Material(ambient=0.5, diffuse=0, specular=0)
 @case
 def no_light_orders_nothing():
     steep, light = _steepness(lines(Light.headlight(), DARK), NOISE)
-    near(slope.rank_correlation(light, steep), 0, 0.03)
+    near(readers.rank_correlation(light, steep), 0, 0.03)
 
 
 @case
 def no_light_tells_no_slope():
-    near(slope.mutual_information(*_steepness(lines(Light.headlight(), DARK), NOISE)), 0, 0.03)
+    near(readers.mutual_information(*_steepness(lines(Light.headlight(), DARK), NOISE)), 0, 0.03)
 
 
 @case
@@ -195,7 +195,7 @@ def few_places_tell_no_slope_either():
     found = []
     for start in range(0, len(dark) - 256, 256):
         some = dark.take(slice(start, start + 256))
-        found.append(slope.mutual_information(*_steepness(some, NOISE)))
+        found.append(readers.mutual_information(*_steepness(some, NOISE)))
     near(np.mean(found), 0, 0.05)
 
 
@@ -219,7 +219,7 @@ def of_a_dark_ball_the_eye_is_the_best_guess():
     radius, angle = np.sqrt(random.uniform(size=4000)), random.uniform(0, 2 * np.pi, 4000)
     height = np.sqrt(1 - radius**2)
     normals = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
-    found = shape.ideal(places(scene_of([], DARK), normals=normals), random, NOISE)
+    found = readers.find_normal(places(scene_of([], DARK), normals=normals), random, NOISE)
     near(np.median(found.error), 45, 2)
     near(found.bits.mean(), 0, 1e-9)
 
@@ -227,14 +227,14 @@ def of_a_dark_ball_the_eye_is_the_best_guess():
 @case
 def three_lamps_solve_for_the_normal():
     sample = _ball(Material(ambient=0, diffuse=1, specular=0))
-    found = shape.ideal(sample, np.random.default_rng(0), NOISE)
+    found = readers.find_normal(sample, np.random.default_rng(0), NOISE)
     # The 900 candidates are up to some 4 degrees apart.
     near(np.median(found.error), 0, 3)
 
 
 @case
 def one_gray_tells_no_normal():
-    near(shape.ideal(_ball(DARK), np.random.default_rng(0), NOISE).bits.mean(), 0, 0.01)
+    near(readers.find_normal(_ball(DARK), np.random.default_rng(0), NOISE).bits.mean(), 0, 0.01)
 
 
 BAR = np.stack([np.linspace(0, 1, 256), np.linspace(1, 0, 256), np.full(256, 0.5)], axis=1)
@@ -248,18 +248,17 @@ def _values():
 @case
 def unlit_colors_are_read_to_half_a_step():
     v, colors = _values()
-    read = value.decode(colors, v, BAR)
-    near(max(read.nearest.max(), read.chromatic.max()), 0, 0.501 / 256)
+    near(np.max(readers.decode(colors, v, BAR)), 0, 0.501 / 256)
 
 
 @case
 def colors_of_other_values_are_chance():
     v, colors = _values()
-    near(np.median(value.decode(colors[::-1], v, BAR).chromatic), 1 - 0.5**0.5, 0.01)
+    near(np.median(readers.decode(colors[::-1], v, BAR)[1]), 1 - 0.5**0.5, 0.01)
 
 
 @case
 def dimmed_colors_keep_their_chromaticity():
     v, colors = _values()
     factor = np.random.default_rng(4).uniform(0.3, 1, (len(v), 1))
-    near(np.abs(value.decode(colors * factor, v, BAR).chromatic).max(), 0, 0.501 / 256)
+    near(np.abs(readers.decode(colors * factor, v, BAR)[1]).max(), 0, 0.501 / 256)

@@ -54,8 +54,7 @@ if _typing.TYPE_CHECKING:
     )
     from vizlight.mesh.polylines import direction_colors as direction_colors
     from vizlight.mesh.records import provenance as provenance
-    from vizlight.observers.legibility import legibility as legibility
-    from vizlight.observers.record import Legibility as Legibility
+    from vizlight.observers.legibility import Legibility as Legibility, legibility as legibility
     from vizlight.scene import (
         DepthCue as DepthCue,
         Light as Light,
@@ -91,8 +90,7 @@ _NAMES = {
     "geometry.solids.primitives": "Block Frustum Sphere Torus",
     "mesh.polylines": "direction_colors",
     "mesh.records": "provenance",
-    "observers.legibility": "legibility",
-    "observers.record": "Legibility",
+    "observers.legibility": "Legibility legibility",
     "draw.gltf": "save_gltf",
     "draw.html": "live_html",
     "scene": "DepthCue Light Material Scene View",

@@ -18,8 +18,8 @@ from studies._readable import LINES, VIEWS, known
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate
 from vizlight.filters import lighting
 from vizlight.filters.tint import color_table
-from vizlight.observers import record
-from vizlight.observers.colors import shown
+from vizlight.observers import legibility as meter
+from vizlight.observers.readers import shown
 from vizlight.observers.samples import parts_of, places_of, seen_from
 from vizlight.scene.presets import PRESETS, brightest_normal
 from vizlight.shading.options import LightOptions
@@ -196,22 +196,22 @@ def error(
     gray = float(255 * np.mean([shown(one.own_light()).mean() for one in samples]))
     notes: list[str] = []
     if question in ("direction", "key"):
-        found = record.of_direction(samples, 0, noise, notes)
+        found = meter.of_direction(samples, 0, noise, notes)
         assert found is not None
         assert found.legend_median is not None
         return (1 - found.within_10 if question == "direction" else found.legend_median), gray
     if question in ("slope", "heading"):
-        steep = record.of_slope(samples, 0, noise, notes)
+        steep = meter.of_slope(samples, 0, noise, notes)
         assert steep is not None
         assert steep.median is not None
         return (4 - steep.bits if question == "slope" else steep.median), gray
     if question == "shape":
-        normals = record.of_shape(samples, 0, noise, notes)
+        normals = meter.of_shape(samples, 0, noise, notes)
         assert normals is not None
         return normals.median, gray
     values = [np.asarray(part.values) for _, part in taken]
     cmap = "viridis" if question.endswith("viridis") else None
-    read = record.of_value(taken, color_table(values, cmap=cmap), notes)
+    read = meter.of_value(taken, color_table(values, cmap=cmap), notes)
     assert read is not None
     return read.p95, gray
 

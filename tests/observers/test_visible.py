@@ -9,13 +9,13 @@ import pyvista as pv
 from vizlight.draw.backends import choose_backend
 from vizlight.draw.cameras import camera_on
 from vizlight.observers import visible
-from vizlight.observers.visible import Drawn, rays, weights
+from vizlight.observers.visible import rays, weights
 
 pytestmark = pytest.mark.opengl
 
 
 def seen(meshes, camera):
-    parts = [Drawn(mesh.GetPoints(), mesh.regular_faces) for mesh in meshes]
+    parts = [(mesh.GetPoints(), mesh.regular_faces) for mesh in meshes]
     return visible.visible(parts, camera, choose_backend())
 
 
@@ -49,20 +49,20 @@ def test_places_lie_on_the_lines_of_sight():
     random = np.random.default_rng(1)
     camera = camera_on((-1, 1, -1, 1, -1, 1), (1, 2, 3))
     at = random.uniform(-0.3, 0.3, (500, 2))
-    sight = rays(camera, at)
+    origin, way = rays(camera, at)
     share = random.dirichlet(np.ones(3), 500)
-    middle = sight.origin + random.uniform(2, 6, (500, 1)) * sight.way
+    middle = origin + random.uniform(2, 6, (500, 1)) * way
     corners = random.normal(size=(500, 3, 3))
     corners += (middle - np.einsum("ms,msn->mn", share, corners))[:, np.newaxis]
-    np.testing.assert_allclose(weights(corners, sight), share, atol=1e-8)
+    np.testing.assert_allclose(weights(corners, origin, way), share, atol=1e-8)
     ends = corners[:, :2]
-    found = weights(ends, sight)
+    found = weights(ends, origin, way)
     assert np.all(found >= 0)
-    place = np.einsum("ms,msn->mn", found, ends) - sight.origin
-    off = np.linalg.norm(np.cross(place, sight.way), axis=1)
+    place = np.einsum("ms,msn->mn", found, ends) - origin
+    off = np.linalg.norm(np.cross(place, way), axis=1)
     for share in (0.2, 0.5, 0.9):  # no other place on the segment is nearer
-        other = share * ends[:, 0] + (1 - share) * ends[:, 1] - sight.origin
-        assert np.all(off <= np.linalg.norm(np.cross(other, sight.way), axis=1) + 1e-12)
+        other = share * ends[:, 0] + (1 - share) * ends[:, 1] - origin
+        assert np.all(off <= np.linalg.norm(np.cross(other, way), axis=1) + 1e-12)
 
 
 def test_more_cells_than_colors_take_several_pictures(monkeypatch):

@@ -9,14 +9,12 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
-from vizlight.draw.bars import fitted, name_no_data, settle
-from vizlight.draw.corner import PLACES, CornerKey, ink_on
-from vizlight.draw.fragments import Fragments, unfit
 from vizlight.draw.html import write_page
+from vizlight.draw.legends import PLACES, CornerKey, fitted, ink_on, name_no_data, settle
 from vizlight.draw.live import LightAt, Live, colorless, has_pass, is_copy, items
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.page import Shown
-from vizlight.draw.points import Points
+from vizlight.draw.painters import Fragments, Points, unfit
 from vizlight.draw.program import Stroke
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
@@ -36,7 +34,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike, Foreign, Given, Keywords
-    from vizlight.draw.corner import Corner
+    from vizlight.draw.legends import Corner
     from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
 
@@ -363,7 +361,7 @@ class Component:
             live = self._live_of(actor)
             if not actor.GetVisibility():
                 continue
-            if live is None or live.painter is None:
+            if live is None:
                 others += 1
             else:
                 found.append(Shown(live.name or f"mesh {len(found) + 1}", live, actor))
@@ -392,7 +390,6 @@ class Component:
             If the actor has no live light.
         """
         live = self._lit_by_us(actor)
-        assert live.painter is not None
         plotter = self._open_plotter()
         return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
 
@@ -424,7 +421,7 @@ class Component:
         if not hasattr(actor, "GetAddressAsString"):
             raise TypeError(_check.message("actor", expected, _check.describe(actor)))
         live = self._live_of(actor)
-        if live is None or live.painter is None:
+        if live is None:
             raise ValueError(_check.message("actor", expected, _check.describe(actor)))
         return live
 
@@ -454,9 +451,8 @@ class Component:
         drawing = dict(drawing)
         stroke = _stroke(source, drawing)
         reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
-        # In fragments VTK interpolates the drawn copy's own tangents and normals, so that it must
-        # be a surface; light at the points is drawn on the mesh as it is.
-        live = Live(source, scene, follow=follow, by_surface=not reason)
+        painter = Points(reason, stroke.diameter) if reason else Fragments(stroke)
+        live = Live(source, scene, painter, follow=follow)
         if light == "fragments" and reason:
             _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
         rendered = drawing.pop("render", True)
@@ -467,16 +463,11 @@ class Component:
             if live.has_colors():
                 drawing["rgb"] = True
             else:
-                drawing["cmap"] = default_map(drawing.get("cmap"))
-                drawing["nan_color"] = default_nan_color(drawing.get("nan_color"))
+                drawing |= _map_of(drawing)
                 drawing["scalar_bar_args"] = fitted(plotter, scalars, asked)
-        painter: Points | Fragments = (
-            Points(reason, stroke.diameter) if reason else Fragments(stroke)
-        )
         # Light at points has no normal across a line: VTK's own tubes are drawn instead.
         if stroke.round and reason and stroke.diameter is None:
             drawing["render_lines_as_tubes"] = True
-        live.painter = painter
         painter.attach(live)
         drawing = painter.drawing(live, drawing)
         actor: pv.Actor = plotter.add_mesh(
@@ -496,7 +487,7 @@ class Component:
                 own.specular = default.specular
         try:
             painter.start(live, actor)
-            live.start(plotter.renderer, actor)
+            live.paint(plotter.renderer, actor)
         except (TypeError, ValueError):
             plotter.remove_actor(actor, render=False)
             raise
@@ -570,9 +561,7 @@ class Component:
             holder.release()
         self._holders.clear()
 
-    def __plotter_deep_clean__(self) -> None:
-        """Let go of everything when the plotter is cleaned."""
-        self.__plotter_close__()
+    __plotter_deep_clean__ = __plotter_close__
 
 
 class _Holder:
@@ -590,6 +579,14 @@ def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
 
 
+def _map_of(drawing: Keywords) -> Keywords:
+    """Return the colours of values, and of what is no data, that keywords ask for."""
+    return {
+        "cmap": default_map(drawing.get("cmap")),
+        "nan_color": default_nan_color(drawing.get("nan_color")),
+    }
+
+
 def _add_cloud(
     plotter: pv.BasePlotter, mesh: pv.DataSet, scalars: str | None, drawing: Keywords
 ) -> pv.Actor:
@@ -597,9 +594,8 @@ def _add_cloud(
     if scalars is None:
         drawing = {"color": True} | drawing
     else:
-        own = {"cmap": default_map(drawing.get("cmap"))}
-        own["nan_color"] = default_nan_color(drawing.get("nan_color"))
-        drawing = drawing | ({"rgb": True} if are_colors(values_of(mesh, scalars)) else own)
+        as_given = are_colors(values_of(mesh, scalars))
+        drawing = drawing | ({"rgb": True} if as_given else _map_of(drawing))
     actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
     return actor
 

@@ -1,21 +1,27 @@
-"""How the shaders of a renderer name and declare what a program of light reads."""
+"""How the shaders of a renderer declare what a program of light reads, and how VTK widens lines."""
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from vizlight.draw import glsl
-from vizlight.draw.program import Varying, suffixed
+from vizlight.draw.program import ALONG, Varying, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight.draw.program import Program, Uniform
+    from vtkmodules.vtkRenderingCore import vtkActor
+
+    from vizlight.draw.program import Program, Stroke, Uniform
 
 #: Matrix from the coordinates of a buffer of VTK to world coordinates.
 WORLD = "MCWCMatrix"
+#: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
+#: of a diameter, so that none breaks up.
+LEAST = 1.01
+#: Cosine of the angle between a segment and the tangent of the line up to which ends are mitred.
+SHARPEST = 0.5
 
 
 class Replacement(NamedTuple):
@@ -32,61 +38,49 @@ class Dialect:
 
     Parameters
     ----------
-    attribute, output, input : str
-        Qualifiers of an attribute of a vertex, of a varying in the vertex shader, and of one in the
-        fragment shader.
     normal, tangent : str
-        Names of the attributes.
-    clip : str
-        Name of the matrix from model to clip coordinates.
-    turned : str
-        Matrix that turns tangents to view coordinates, as an expression.
-    geometry : bool
-        Whether there may be a geometry shader between the two others.
-    declares : bool
-        Whether the text declares its uniforms; otherwise the renderer does.
+        Names of the attributes of a vertex.
+    web : bool, default: False
+        Whether the renderer is vtk.js, with the GLSL of WebGL 1: the text declares its uniforms,
+        which VTK does itself, and there is no geometry shader between the two others. Actors are
+        not moved, so that tangents turn by the matrix of the normals. (``mat3(MCVCMatrix)`` has
+        the scale of vtk.js's buffers in it.)
     constant : bool, default: False
         Whether the text holds the numbers, because the renderer takes none. Those that do not turn
         with the camera are turned in the vertex shader.
     """
 
-    attribute: str
-    output: str
-    input: str
-    normal: str
-    tangent: str
-    clip: str
-    turned: str
-    geometry: bool
-    declares: bool
+    normal: str = "normalMC"
+    tangent: str = "tangentMC"
+    web: bool = False
     constant: bool = False
-
-    def declare(self, uniform: Uniform) -> str:
-        """Return the declaration of a uniform in the fragment shader, a line or nothing."""
-        return f"uniform {uniform.kind} {uniform.name};\n" if self.declares else ""
 
     def passing(self, varyings: Iterable[Varying]) -> list[Replacement]:
         """Return what passes values from the vertices to the fragments."""
         varyings = tuple(varyings)
+        attribute, output = ("attribute", "varying") if self.web else ("in", "out")
+        clip = "MCPCMatrix" if self.web else "MCDCMatrix"
+        # Tangents turn with the model, of whose matrix the normal matrix is the inverse transpose.
+        turned = "normalMatrix" if self.web else "transpose(inverse(normalMatrix))"
         # VTK's own name for an output of the vertex shader ends so; a geometry shader renames it.
         names = [(v.kind, suffixed(v.name)) for v in varyings]
         values = {
             "position": "(MCVCMatrix * vertexMC).xyz",
             "normal": f"normalMatrix * {self.normal}",
-            "tangent": f"{self.turned} * {self.tangent}",
+            "tangent": f"{turned} * {self.tangent}",
             "length": f"length({self.normal})",
             "size": f"length({self.tangent})",
-            "along": f"{self.clip} * vec4({self.normal}, 0.0)",
+            "along": f"{clip} * vec4({self.normal}, 0.0)",
         }
         read = "".join(v.value for v in varyings)
         attributes = ""
         if any(word in read for word in ("{normal}", "{length}", "{along}")):
-            attributes += f"{self.attribute} vec3 {self.normal};\n"
+            attributes += f"{attribute} vec3 {self.normal};\n"
         if "{tangent}" in read or "{size}" in read:
-            attributes += f"{self.attribute} vec3 {self.tangent};\n"
-        out = "".join(f"{self.output} {kind} {name};\n" for kind, name in names)
+            attributes += f"{attribute} vec3 {self.tangent};\n"
+        out = "".join(f"{output} {kind} {name};\n" for kind, name in names)
         # VTK declares these only where its own light needs them; twice is allowed in GLSL.
-        matrices = f"uniform mat4 {self.clip};\nuniform mat4 MCVCMatrix;\n"
+        matrices = f"uniform mat4 {clip};\nuniform mat4 MCVCMatrix;\n"
         if WORLD in read:
             matrices += f"uniform mat4 {WORLD};\n"
         found = [
@@ -104,7 +98,7 @@ class Dialect:
         ]
         # Where lines are drawn as tubes VTK puts a geometry shader between: it must hand values
         # on.
-        if self.geometry:
+        if not self.web:
             passed = [(kind, name, name.replace("VSOutput", "GSOutput")) for kind, name in names]
             declared = "".join(f"in {k} {name}[];\nout {k} {own};\n" for k, name, own in passed)
             copied = "".join(f"  {own} = {name}[i];\n" for _, name, own in passed)
@@ -132,8 +126,10 @@ class Dialect:
         if self.constant:
             varyings += [_turned(uniform) for uniform in given if uniform.space]
             constants = "".join(map(_constant, given))
-        into = "".join(f"{self.input} {v.kind} {suffixed(v.name)};\n" for v in varyings)
-        uniforms = "".join(map(self.declare, given))
+        word = "varying" if self.web else "in"
+        into = "".join(f"{word} {v.kind} {suffixed(v.name)};\n" for v in varyings)
+        declared = given if self.web else []
+        uniforms = "".join(f"uniform {u.kind} {u.name};\n" for u in declared)
         written = f"{constants}{program.body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n"
         return [
             *self.passing(varyings),
@@ -170,37 +166,114 @@ def _turned(uniform: Uniform) -> Varying:
     return Varying(uniform.name, "vec3", f"normalMatrix * {text}")
 
 
-#: VTK 9.6 and later, on the desktop. It declares uniforms itself.
-VTK = Dialect(
-    attribute="in",
-    output="out",
-    input="in",
-    normal="normalMC",
-    tangent="tangentMC",
-    clip="MCDCMatrix",
-    # Tangents turn with the model, of whose matrix the normal matrix is the inverse transpose.
-    turned="transpose(inverse(normalMatrix))",
-    geometry=True,
-    declares=False,
-)
+#: VTK 9.6 and later, on the desktop.
+VTK = Dialect()
 
-#: vtk.js. Tangents and normals are arrays of these names without "MC"; actors are not moved, so
-#: both turn by the same matrix. (``mat3(MCVCMatrix)`` has the scale of vtk.js's buffers in it.)
-VTK_JS = Dialect(
-    attribute="attribute",
-    output="varying",
-    input="varying",
-    normal="vizNormalMC",
-    tangent="vizTangentMC",
-    clip="MCPCMatrix",
-    turned="normalMatrix",
-    geometry=False,
-    declares=True,
-)
+#: vtk.js, whose arrays have these names without "MC".
+VTK_JS = Dialect(normal="vizNormalMC", tangent="vizTangentMC", web=True)
 
 #: ParaView 5.11, which has VTK 9.1 and takes text alone. The eye is its camera's.
-PARAVIEW = dataclasses.replace(VTK, constant=True)
+PARAVIEW = Dialect(constant=True)
 
 #: The same with tangents. VTK 9.1 takes an array of any type as the normals, but as the tangents
 #: only one of float32, as ParaView's filters make normals: so the two change places.
-PARAVIEW_TANGENTS = dataclasses.replace(PARAVIEW, normal="tangentMC", tangent="normalMC")
+PARAVIEW_TANGENTS = Dialect(normal="tangentMC", tangent="normalMC", constant=True)
+
+
+def widen(actor: vtkActor, stroke: Stroke) -> None:
+    """Draw the lines of an actor with the diameter of a stroke, in the colours that they have.
+
+    The active normals of what is drawn are the tangents of its lines.
+    """
+    actor.GetProperty().SetInterpolationToGouraud()
+    passed = widened(actor, VTK.passing([ALONG]), stroke)
+    unlit = [
+        Replacement("Fragment", mark, "") for mark in ("//VTK::Normal::Dec", "//VTK::Normal::Impl")
+    ]
+    replace(actor, [*passed, *unlit])
+
+
+def replace(actor: vtkActor, replacements: Iterable[Replacement]) -> None:
+    """Put texts in place of VTK's, in every shader of the pipeline."""
+    shader = actor.GetShaderProperty()
+    shader.ClearAllShaderReplacements()
+    for stage, mark, text in replacements:
+        getattr(shader, f"Add{stage}ShaderReplacement")(mark, True, text, False)
+
+
+def widened(
+    actor: vtkActor, replacements: Iterable[Replacement], stroke: Stroke
+) -> list[Replacement]:
+    """Return replacements that draw lines as quads of a width, which the actor is set to.
+
+    Parameters
+    ----------
+    actor : vtkActor
+        Actor of lines.
+    replacements : iterable of Replacement
+        What passes values to the fragments, and their light; with ``ALONG`` the quads of a line
+        join.
+    stroke : Stroke
+        Width of the lines.
+    """
+    # Lines as tubes are quads that VTK makes in a shader, whatever width a driver can draw.
+    prop = actor.GetProperty()
+    prop.SetRenderLinesAsTubes(True)
+    prop.SetLineWidth(LEAST if stroke.diameter else max(prop.GetLineWidth(), LEAST))
+    matrices = "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n"
+    found = []
+    for stage, mark, text in replacements:
+        if mark == "//VTK::Normal::Dec" and stage == "Geometry":
+            text = matrices + text
+        if mark == "//VTK::Normal::Dec" and stage == "Fragment" and stroke.round:
+            text += "uniform mat4 MCDCMatrix;\n"
+        found.append(Replacement(stage, mark, text))
+    joined = any(suffixed(ALONG.name) in text for _, _, text in found)
+    return [
+        *found,
+        # Normals of VTK's own tubes, and their depth.
+        Replacement("Geometry", "//VTK::Normal::Start", ""),
+        Replacement("Fragment", "//VTK::Depth::Impl", ""),
+        Replacement("Geometry", "//VTK::PositionVC::Impl", _quad(stroke, joined=joined)),
+    ]
+
+
+def _quad(stroke: Stroke, *, joined: bool) -> str:
+    """Return what moves a corner of the quad of a segment, in pixels that are square.
+
+    VTK's own quads are not perpendicular to their lines unless the picture is a square.
+    """
+    lines = [
+        "//VTK::PositionVC::Impl",
+        "vec4 vizHere = gl_in[i].gl_Position;",
+        "vec2 vizWay = normalize((gl_in[1].gl_Position.xy / gl_in[1].gl_Position.w",
+        "  - gl_in[0].gl_Position.xy / gl_in[0].gl_Position.w) / lineWidthNVC);",
+        "float vizWide = 1.0;",
+    ]
+    if stroke.diameter is not None:
+        # Row 1 of the projection, free of the model and of how VTK shifts and scales points.
+        rows = [f"vec3({m}[0][1], {m}[1][1], {m}[2][1])" for m in ("MCDCMatrix", "MCVCMatrix")]
+        lines += [
+            f"float vizSpread = length({rows[0]}) / length({rows[1]});",
+            f"vizWide = max(1.0, {glsl.number(stroke.diameter)} * vizSpread",
+            "  / (vizHere.w * lineWidthNVC.y));",
+        ]
+    if joined:
+        lines += [
+            "vec4 vizD = vizDVSOutput[i];",
+            "vec2 vizBend = (vizD.xy * vizHere.w - vizHere.xy * vizD.w) / lineWidthNVC;",
+            "float vizTurn = dot(vizBend, vizWay) / max(length(vizBend), 1e-30);",
+            f"if (abs(vizTurn) > {SHARPEST}) {{",
+            "  vizWay = normalize(vizBend) * sign(vizTurn);",
+            "  vizWide /= abs(vizTurn);",
+            "}",
+        ]
+    lines.append("vec2 vizAcross = vizWide * vec2(-vizWay.y, vizWay.x) * lineWidthNVC;")
+    if stroke.round:
+        lines += [
+            "float vizSide = dot(vizPVSOutput[1] - vizPVSOutput[0], vizTVSOutput[i]);",
+            "vizXGSOutput = (vizSide < 0.0 ? -2.0 : 2.0) * ((j + 1) % 2 - 0.5);",
+        ]
+    # What VTK writes after this place.
+    lines += ["#define lineWidthNVC vizAcross", "#define normal 1.0", ""]
+    return "\n".join(lines)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import struct
 from pathlib import Path
@@ -12,16 +11,15 @@ import numpy as np
 
 from vizlight import _check, files
 from vizlight._version import __version__
-from vizlight.draw.fixed import LEFT_OUT, fixed_colors
+from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
-from vizlight.draw.sources import sources_of, tinted
+from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_of, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
 from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene, View
-from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -103,8 +101,7 @@ def save_gltf(
     path = files.check_output(path, (".glb",))
     blocks.check(mesh)
     _check.instance("scene", scene, Scene, optional=True)
-    known = {field.name for field in dataclasses.fields(LightOptions)} - {"name", "components"}
-    for name in options.keys() - known:
+    for name in options.keys() - LIGHT:
         expected = "an option of vizlight.illuminate"
         raise TypeError(_check.message("options", expected, repr(name)))
     sources, used = sources_of(mesh, scene, options)

@@ -13,7 +13,7 @@ from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import are_colors, values_of
 from vizlight.mesh import blocks, point_arrays
-from vizlight.scene import Light, Material, Scene, View
+from vizlight.scene import Material, Scene, View
 from vizlight.scene.light import default_lights
 from vizlight.scene.vtk import is_light_kit, lights_of
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonCore import vtkCollection
+    from vtkmodules.vtkCommonMath import vtkMatrix4x4
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Vector
@@ -68,23 +69,23 @@ class Live:
         What is lit. Its mesh is the caller's.
     scene : Scene or None
         Scene; None for the lights and the material of the plotter.
-    follow : bool
+    painter : Painter
+        How its light is shown.
+    follow : bool, default: True
         Whether the camera takes the place of the view of the scene.
-    by_surface : bool
-        Whether the outer surface of a mesh of cells is drawn: VTK takes the normals from the mesh
-        where it extracts that surface itself.
     """
 
     def __init__(
-        self, source: relight.Source, scene: Scene | None, *, follow: bool, by_surface: bool
+        self, source: relight.Source, scene: Scene | None, painter: Painter, *, follow: bool = True
     ) -> None:
-        self.source, self.scene, self.follow = source, scene, follow
-        self._by_surface = by_surface and not isinstance(source.mesh, pv.PolyData)
+        self.source, self.scene, self.painter, self.follow = source, scene, painter, follow
+        # VTK takes normals from the mesh of cells where it extracts the outer surface itself.
+        of_cells = not isinstance(source.mesh, pv.PolyData)
+        self._by_surface = painter.light == "fragments" and of_cells
         self._shown: Indices | None = None
         #: Shallow copy of the mesh, or of its outer surface, that is drawn.
         self.drawn: pv.DataSet = pv.PolyData() if self._by_surface else source.mesh.copy(deep=False)
         self._redraw()
-        self.painter: Painter | None = None
         #: Name of the mesh, for a page.
         self.name = ""
         #: Name of the drawn array that gives the colours, and of the one it is made of, or None.
@@ -169,19 +170,8 @@ class Live:
         values = points[name] if name in points else self.drawn.cell_data[name]
         return self._component is None and are_colors(np.asarray(values))
 
-    def start(self, renderer: vtkRenderer, actor: vtkActor) -> None:
-        """Light the mesh for the first time.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the scene does not fit.
-        """
-        self._paint(renderer, actor)
-
     def set_scene(self, scene: Scene, actor: vtkActor) -> None:
         """Take another scene, by which the next frame is lit."""
-        assert self.painter is not None
         self.scene, self._state = scene, ()
         self.painter.start(self, actor)
 
@@ -210,14 +200,12 @@ class Live:
 
         What cannot be lit keeps the light it has, with one warning.
         """
-        if self.painter is None:
-            return
         state = self._state_of(renderer, actor)
         if state == self._state:
             return
         try:
             self._read(renderer, actor)
-            self._paint(renderer, actor)
+            self.paint(renderer, actor)
             self._warned = False
         except (KeyError, TypeError, ValueError) as error:
             if not self._warned:
@@ -226,9 +214,14 @@ class Live:
         # Painting itself changes the actor.
         self._state = self._state_of(renderer, actor)
 
-    def _paint(self, renderer: vtkRenderer, actor: vtkActor) -> None:
-        """Show the light of the scene of a frame, dimmed where its lights are now."""
-        assert self.painter is not None
+    def paint(self, renderer: vtkRenderer, actor: vtkActor) -> None:
+        """Show the light of the scene of a frame, dimmed where its lights are now.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the scene does not fit.
+        """
         scene = self.scene_of(renderer, actor)
         source = self.source.dimmed_by(scene)
         if source is not self.source:
@@ -269,8 +262,7 @@ class Live:
         self.source, self._placed = source, None
         self._redraw()
         self._color(values)
-        if self.painter is not None:
-            self.painter.attach(self)
+        self.painter.attach(self)
 
     def scene_of(self, renderer: vtkRenderer, actor: vtkActor) -> Scene:
         """Return the scene of a frame, in the space of the light."""
@@ -339,6 +331,11 @@ def items(collection: vtkCollection) -> Iterator[Foreign]:
         yield collection.GetItemAsObject(i)
 
 
+def matrix_of(matrix: vtkMatrix4x4) -> Array:
+    """Return a matrix of VTK in float64."""
+    return np.asarray(pv.array_from_vtkmatrix(matrix), np.float64)
+
+
 def is_copy(actor: vtkActor) -> bool:
     """Return whether an actor draws what was made for a live light."""
     mapper: Foreign = actor.GetMapper()
@@ -398,8 +395,7 @@ def _lifted_view(view: View, n: int) -> View:
 
 def _elements(actor: vtkActor) -> tuple[float, ...]:
     """Return the matrix by which an actor is placed, row after row."""
-    matrix = actor.GetMatrix()
-    return tuple(matrix.GetElement(i, j) for i in range(4) for j in range(4))
+    return tuple(matrix_of(actor.GetMatrix()).ravel().tolist())
 
 
 def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
@@ -416,12 +412,6 @@ def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
         rows = np.asarray(inputs.normals[:])
         normals = (rows @ np.linalg.inv(linear)).astype(rows.dtype)
     return dataclasses.replace(inputs, points=points, tangents=tangents, normals=normals)
-
-
-def headlight_scene(n: int) -> Scene:
-    """Return a scene by which a source can be checked before there is a frame."""
-    view = View(direction=(0.0, 0.0, 1.0))
-    return lifted(Scene(lights=Light(direction=(0.0, 0.0, 1.0)), view=view), n)
 
 
 def colorless(scene: Scene) -> Scene:

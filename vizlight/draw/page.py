@@ -13,11 +13,10 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.draw import dialects, program
-from vizlight.draw.fixed import LEFT_OUT, fixed_colors, lit_colors
-from vizlight.draw.fragments import Fragments, exact_plan, without_highlight
-from vizlight.draw.live import NORMALS, TANGENTS, items
+from vizlight.draw.live import NORMALS, TANGENTS, items, matrix_of
+from vizlight.draw.painters import Fragments, exact_plan, mapped, without_highlight
+from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.filters.key import TEXTS
-from vizlight.filters.tint import map_colors
 from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.light import WHITE
@@ -149,7 +148,7 @@ class Page:
             made["frame"] = shown.frame
         if prop.GetEdgeVisibility():
             made["edgeColor"] = list(prop.GetEdgeColor())
-        matrix: Array = np.asarray(pv.array_from_vtkmatrix(actor.GetMatrix()), np.float64)
+        matrix = matrix_of(actor.GetMatrix())
         with np.errstate(invalid="ignore", over="ignore"):  # points that are not finite
             # Actors are not moved in the page: their matrix is taken into the points.
             points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T
@@ -194,7 +193,6 @@ class Page:
         """Return the light in fragments: texts, numbers, tangents and normals."""
         rows = self._lights_of(live, scene)
         prop = actor.GetProperty()
-        own = live.scene_of(self.renderer, actor)
         texts, constants, plan = self._written(live, painter, scene, rows)
         self._lines |= not plan.surface
         self._remember(live)
@@ -206,11 +204,11 @@ class Page:
             "surface": plan.surface,
             "sky": plan.occluded,
             "free": any(key.startswith("free ") for key in texts),
-            "material": {name: getattr(own.material, name) for name in _COEFFICIENTS},
+            "material": {name: getattr(scene.material, name) for name in _COEFFICIENTS},
             "ambientColor": [scene.ambient_intensity * c for c in scene.ambient_color or WHITE],
             "specularColor": list(prop.GetSpecularColor()),
         }
-        cue = own.depth_cue
+        cue = scene.depth_cue
         if cue is not None:
             made["cue"] = {
                 "front": cue.front, "back": cue.back, "scales": [cue.front_scale, cue.back_scale]
@@ -224,7 +222,7 @@ class Page:
         if live.scalars is not None:
             of_cells = live.scalars not in arrays
             values = live.drawn.cell_data[live.scalars] if of_cells else arrays[live.scalars]
-            made |= {"colors": _packed(_mapped(values, actor), "u1"), "ofCells": of_cells}
+            made |= {"colors": _packed(mapped(values, actor), "u1"), "ofCells": of_cells}
             made["colored"] = True
         return made
 
@@ -295,7 +293,7 @@ class Page:
         placed = live.source._replace(inputs=live.placed(actor))
         colors = None
         if live.scalars is not None:
-            colors = _mapped(live.drawn.point_data[live.scalars], actor)
+            colors = mapped(live.drawn.point_data[live.scalars], actor)
         if live.own_eye:
             whole = lit_colors(placed, scene, colors)[ids]
             return {"live": False, "colors": _packed(whole, "u1"), "color": [1.0, 1.0, 1.0]}
@@ -320,8 +318,7 @@ class Page:
                 for own in items(self.renderer.GetLights())
                 for light in lights_of([own], self.camera)
             ]
-        own = self.camera.GetViewTransformMatrix()
-        matrix: Array = np.asarray(pv.array_from_vtkmatrix(own), np.float64)
+        matrix = matrix_of(self.camera.GetViewTransformMatrix())
         rows = []
         for light, follows in pairs:
             if light.intensity <= 0:
@@ -333,11 +330,7 @@ class Page:
                 value = matrix[:3, :3] @ value + (matrix[:3, 3] if at else 0.0)
             elif at:
                 value = value - self.origin
-            rows.append({
-                "value": value.tolist(), "position": at, "eye": follows,
-                "intensity": light.intensity, "color": list(light.color or WHITE),
-                "attenuation": list(light.attenuation),
-            })  # fmt: skip
+            rows.append(_lamp(light, value.tolist(), at=at, follows=follows))
         return rows
 
     def _set_of(self, rows: list[dict[str, object]]) -> int:
@@ -360,7 +353,7 @@ class Page:
                 titles.remove(title)
                 self.bars.append(_bar(title, table))
                 if plotter.scalar_bars[title].GetDrawNanAnnotation():
-                    grey = "#" + bytes(round(255 * c) for c in table.GetNanColor()[:3]).hex()
+                    grey = _hex(table.GetNanColor())
                     self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
 
 
@@ -371,6 +364,14 @@ def _unconditioned(source: Source) -> Source:
     return source._replace(inputs=inputs, options=options, sided=None)
 
 
+def _lamp(light: Light, value: list[float], *, at: bool, follows: bool) -> dict[str, object]:
+    """Return a light as the page has it: at a place or in a direction, of the eye or of space."""
+    return {
+        "value": value, "position": at, "eye": follows, "intensity": light.intensity,
+        "color": list(light.color or WHITE), "attenuation": list(light.attenuation),
+    }  # fmt: skip
+
+
 def _looks(*, lines: bool) -> dict[str, object]:
     """Return light by question: lamps of the eye, material, and the words of the key."""
     found: dict[str, object] = {}
@@ -379,13 +380,9 @@ def _looks(*, lines: bool) -> dict[str, object]:
             continue
         scene: Scene = getattr(presets, name)()
         lamps = [
-            {
-                "value": list(light.direction or (0.0, 0.0, 1.0)), "position": False, "eye": True,
-                "intensity": light.intensity, "color": list(light.color or WHITE),
-                "attenuation": list(light.attenuation),
-            }
+            _lamp(light, list(light.direction or (0.0, 0.0, 1.0)), at=False, follows=True)
             for light in scene.lights
-        ]  # fmt: skip
+        ]
         material = {key: getattr(scene.material, key) for key in _COEFFICIENTS}
         words = [] if name == "value" else list(TEXTS[name])
         found[name] = {
@@ -504,14 +501,6 @@ def _directions(rows: Array, linear: Array) -> dict[str, object]:
     turned *= (sizes / np.where(new > 0, new, 1.0))[:, np.newaxis]
     scale = float(np.abs(turned).max(initial=0.0) or 1.0) / 32767
     return _packed(np.rint(turned / scale), "i2") | {"scale": scale}
-
-
-def _mapped(values: NDArray[np.generic], actor: vtkActor) -> NDArray[np.uint8]:
-    """Return the colours of values, as the mapper has them."""
-    if np.ndim(values) == 2:
-        # PyVista keeps colours of its own for an opacity of each point.
-        return np.asarray(values, dtype=np.uint8)
-    return map_colors(actor.GetMapper().GetLookupTable(), values)
 
 
 def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:

@@ -13,8 +13,8 @@ import numpy as np
 
 from vizlight import _check, files
 from vizlight.draw import dialects, program
-from vizlight.draw.fragments import Fragments, unfit, unfit_layout, without_highlight
 from vizlight.draw.live import NORMALS, TANGENTS, Live
+from vizlight.draw.painters import Fragments, unfit, unfit_layout, without_highlight
 from vizlight.draw.sources import sources_of
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
@@ -273,7 +273,8 @@ def save(
     if reason := unfit(source.inputs, source.options, source.mesh):
         raise ValueError(_unfit(reason))
     plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
-    live, painter = Live(source, used, follow=True, by_surface=True), Fragments()
+    painter = Fragments()
+    live = Live(source, used, painter)
     painter.attach(live)
     painter.see(live, source.inputs, used.view)
     written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
@@ -311,7 +312,6 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions, *, data: bool) 
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
-    _check.instance("scene", scene, Scene)
     if reason := unfit_layout(layout, options):
         raise ValueError(_unfit(reason))
     cue = scene.depth_cue

@@ -10,7 +10,6 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw import strokes
 from vizlight.draw.backends import (
     Backend,
     BackendError,
@@ -19,9 +18,9 @@ from vizlight.draw.backends import (
     probe,
     window_class,
 )
-from vizlight.draw.bars import name_no_data
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.draw.corner import CornerKey, ink_on
+from vizlight.draw.dialects import widen
+from vizlight.draw.legends import CornerKey, ink_on, name_no_data
 from vizlight.draw.program import Stroke
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
@@ -462,7 +461,7 @@ def _draw(
             show_scalar_bar=False,
         )
         if diameter is not None:
-            strokes.widen(actor, Stroke(diameter))
+            widen(actor, Stroke(diameter))
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)

@@ -1,4 +1,4 @@
-"""What a caller asks to be lit: sources by the record of a mesh or by options, and its colours."""
+"""What a caller asks to be lit, by a record or by options, and its colours without an eye."""
 
 from __future__ import annotations
 
@@ -9,26 +9,33 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw.live import headlight_scene, lifted
-from vizlight.filters import relight
+from vizlight.draw.live import lifted
+from vizlight.filters import lighting, relight
 from vizlight.filters.sky import SKY, with_sky
-from vizlight.filters.tint import RGB, unlit_colors
+from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
 from vizlight.mesh import blocks, normals, point_arrays, records
 from vizlight.mesh.creases import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.reading.arrays import GridPoints
 from vizlight.reading.cells import GHOSTS
-from vizlight.reading.normals import Sided, computed_normals
+from vizlight.reading.normals import Sided, computed_normals, piece_numbers
 from vizlight.reading.orientation import MANY_SHARP, SHARP
 from vizlight.reading.parts import uses_normals
+from vizlight.scene import Light, Scene, View
+from vizlight.shading.display import NO_DATA, displayable, on_colors
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from vizlight._types import Indices, Keywords
     from vizlight.filters.relight import Source
-    from vizlight.scene import Scene
+    from vizlight.shading.display import Bytes
     from vizlight.shading.options import FeatureAngle
+
+#: Rows of all points.
+EVERY = slice(None)
+#: What is left out, for a page, a file and its reader.
+LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"
 
 
 def sources_of(
@@ -55,10 +62,13 @@ def sources_of(
         if asked.positions is not None and asked.positions in block.point_data
     }
     n = max(spaces, default=3)
-    provisional = headlight_scene(n) if scene is None else lifted(scene, n)
+    # Sources are checked before there is a frame.
+    ahead = (0.0, 0.0, 1.0)
+    seen = lifted(Scene(lights=Light(direction=ahead), view=View(direction=ahead)), n)
+    provisional = seen if scene is None else lifted(scene, n)
     if provisional.view is None and provisional.n in (None, n):
         # Which side of an open surface is lit is then the camera's to say.
-        provisional = provisional.replace(view=headlight_scene(n).view)
+        provisional = provisional.replace(view=seen.view)
     return relight.from_options(mesh, provisional, asked), scene
 
 
@@ -168,3 +178,78 @@ def _sheet(size: Indices, steps: Indices, u: int, v: int) -> Indices:
     """Return numbers of the places of a grid along two axes, from the first one."""
     found: Indices = np.add.outer(np.arange(size[u]) * steps[u], np.arange(size[v]) * steps[v])
     return found
+
+
+def fixed_colors(
+    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
+) -> tuple[Bytes, str]:
+    """Return colours in light that stays as it is when the eye moves.
+
+    Parameters
+    ----------
+    source : Source
+    scene : Scene
+        Scene; its view is used only where ambient and diffuse light cannot do without one.
+    colors : ndarray of uint8, shape (M, 4), or None
+        Colours of data; None for the material's.
+    ids : ndarray of int, shape (M,), optional
+        Point of the source that each colour belongs to. Default: all points, one after the other.
+
+    Returns
+    -------
+    colors : ndarray of uint8, shape (M, 4)
+        Colours in ambient and diffuse light.
+    from_view : str
+        What was computed as the view of the scene sees it, in words; empty if nothing was.
+    """
+    seen = []
+    following = [light for light in scene.lights if light.follows_view and light.intensity > 0]
+    if any(light.is_headlight for light in following):
+        seen.append("the headlight")
+    if not all(light.is_headlight for light in following):
+        seen.append("the light that follows the view")
+    if source.options.model == "cylinder":
+        seen.append("the diffuse light of cylinders")
+    if source.inputs.fur_height is not None:
+        seen.append("the way of light out of the fur")
+    if source.sided is not None:
+        seen.append("the lit side of open surfaces")
+    bare = scene.replace(
+        material=dataclasses.replace(scene.material, specular=0.0),
+        depth_cue=None,
+        view=scene.view if seen else None,
+    )
+    return lit_colors(_on_one_side(source, bare.view), bare, colors, ids), " and ".join(seen)
+
+
+def lit_colors(
+    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
+) -> Bytes:
+    """Return colours of data, or of the material, in light, as bytes of shape (M, 4)."""
+    if colors is not None:
+        light, valid = light_on_colors([source], scene)[0]
+        return on_colors(colors, light[ids], valid[ids])
+    inputs = source.seen_from(scene.view, source.inputs)
+    parts = [(inputs, source.options)]
+    (shading,), _ = lighting.light(parts, scene, progress_bar=False)
+    rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
+    shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
+    shown[~shading.valid] = NO_DATA
+    return np.insert(255.0 * shown + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
+
+
+def _on_one_side(source: Source, view: View | None) -> Source:
+    """Return a source whose open pieces are lit on the side that most of their points show.
+
+    Turned point by point they would be dark where the eye of the file's reader is not expected.
+    """
+    own = source.inputs.normals
+    turned = source.seen_from(view, source.inputs).normals
+    if source.sided is None or own is None or turned is None:
+        return source
+    vectors = np.asarray(own[:])
+    piece = piece_numbers(source.mesh)
+    same = np.sign(np.einsum("ij,ij->i", vectors, np.asarray(turned[:])))
+    averted = np.bincount(piece, same)[piece] < 0
+    sides = np.where(averted[:, np.newaxis], -vectors, vectors)
+    return source._replace(inputs=dataclasses.replace(source.inputs, normals=sides), sided=None)

@@ -17,7 +17,7 @@ from vizlight.mesh import blocks, records, splitting
 from vizlight.mesh.batches import part_of
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.visible import Drawn, rays, visible, weights
+from vizlight.observers.visible import rays, visible, weights
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
 from vizlight.shading import engine
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike, NDArray
+    from vtkmodules.vtkCommonCore import vtkPoints
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.scene.vtk import AnyView
@@ -149,7 +150,7 @@ def sample(part: Part, cells: Indices, at: Array, camera: pv.Camera, scene: Scen
     m, s = cells.shape
     ids = cells.ravel()
     corners = rows_of(part.inputs.points, ids).astype(np.float64).reshape(m, s, 3)
-    share = weights(corners, rays(camera, at))
+    share = weights(corners, *rays(camera, at))
     places = Places(np.arange(m * s).reshape(m, s), share)
     points = interpolated(corners.reshape(-1, 3), places)
     toward = _toward_eye(camera, points)
@@ -271,11 +272,11 @@ class Part:
     values: NDArray[np.generic] | None
 
     @property
-    def drawn(self) -> Drawn:
+    def drawn(self) -> tuple[vtkPoints, Indices]:
         """Points and cells to draw."""
         if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):
-            return Drawn(self.mesh.GetPoints(), self.cells)
-        return Drawn(pv.vtk_points(np.asarray(self.inputs.points[:])), self.cells)
+            return self.mesh.GetPoints(), self.cells
+        return pv.vtk_points(np.asarray(self.inputs.points[:])), self.cells
 
 
 def parts_of(

@@ -30,13 +30,6 @@ LINE, POINT = 2.0, 4.0
 BITS = 24
 
 
-class Drawn(NamedTuple):
-    """What is drawn of one mesh: its points, and cells of 1, 2 or 3 of them, shape (C, s)."""
-
-    points: vtkPoints
-    cells: Indices
-
-
 class Pixels(NamedTuple):
     """Visible pixels.
 
@@ -55,13 +48,15 @@ class Pixels(NamedTuple):
     at: Array
 
 
-def visible(parts: Sequence[Drawn], camera: pv.Camera, backend: Backend | None) -> Pixels:
+def visible(
+    parts: Sequence[tuple[vtkPoints, Indices]], camera: pv.Camera, backend: Backend | None
+) -> Pixels:
     """Return the pixels of a picture that show a cell, and which.
 
     Parameters
     ----------
-    parts : sequence of Drawn
-        Meshes.
+    parts : sequence of (vtkPoints, ndarray of int, shape (C, s))
+        Points of each mesh, and cells of 1, 2 or 3 of them.
     camera : pyvista.Camera
         Camera of the picture; its clipping range is set to show all.
     backend : {"egl", "osmesa"} or None
@@ -71,7 +66,7 @@ def visible(parts: Sequence[Drawn], camera: pv.Camera, backend: Backend | None) 
     -------
     Pixels
     """
-    starts = np.cumsum([0, *(len(part.cells) for part in parts)])
+    starts = np.cumsum([0, *(len(cells) for _, cells in parts)])
     with window_class(backend):
         window = vtkRenderWindow()
     window.SetOffScreenRendering(True)
@@ -84,8 +79,8 @@ def visible(parts: Sequence[Drawn], camera: pv.Camera, backend: Backend | None) 
     number = np.zeros(SIZE[0] * SIZE[1], dtype=np.int64)
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
         renderer.RemoveAllViewProps()
-        for part, start in zip(parts, starts.tolist(), strict=False):
-            renderer.AddActor(_actor(part, start, shift))
+        for (points, cells), start in zip(parts, starts.tolist(), strict=False):
+            renderer.AddActor(_actor(points, cells, start, shift))
         renderer.ResetCameraClippingRange()
         window.Render()
         pixels = vtkUnsignedCharArray()
@@ -101,16 +96,15 @@ def visible(parts: Sequence[Drawn], camera: pv.Camera, backend: Backend | None) 
     return Pixels(which, cell - starts[which], at)
 
 
-def _actor(part: Drawn, start: int, shift: int) -> vtkActor:
+def _actor(points: vtkPoints, corners: Indices, start: int, shift: int) -> vtkActor:
     """Return a mesh whose cells have their numbers, from 1, as flat colours; 0 is background."""
-    size = part.cells.shape[1]
-    count = len(part.cells)
+    count, size = corners.shape
     number = np.arange(start + 1, start + 1 + count) >> shift
     colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)
     cells = vtkCellArray()
-    cells.SetData(size, as_vtk(part.cells.ravel()))
+    cells.SetData(size, as_vtk(corners.ravel()))
     mesh = vtkPolyData()
-    mesh.SetPoints(part.points)
+    mesh.SetPoints(points)
     (mesh.SetVerts, mesh.SetLines, mesh.SetPolys)[size - 1](cells)
     mesh.GetCellData().SetScalars(as_vtk(colors, "number"))
     mapper = vtkPolyDataMapper()
@@ -126,15 +120,11 @@ def _actor(part: Drawn, start: int, shift: int) -> vtkActor:
     return actor
 
 
-class Rays(NamedTuple):
-    """Lines of sight: a point on each, and the unit direction away from the eye."""
+def rays(camera: pv.Camera, at: Array) -> tuple[Array, Array]:
+    """Return a point on each line of sight through places of a picture, ``Pixels.at``, and its way.
 
-    origin: Array
-    way: Array
-
-
-def rays(camera: pv.Camera, at: Array) -> Rays:
-    """Return the lines of sight through places of a picture, ``Pixels.at``."""
+    The way is the unit direction away from the eye.
+    """
     away = np.array(camera.GetDirectionOfProjection())
     right = np.cross(away, camera.GetViewUp())
     right /= np.linalg.norm(right)
@@ -142,20 +132,21 @@ def rays(camera: pv.Camera, at: Array) -> Rays:
     eye = np.array(camera.GetPosition())
     if camera.GetParallelProjection():
         scale = camera.GetParallelScale()
-        return Rays(eye + scale * across, np.broadcast_to(away, across.shape))
+        return eye + scale * across, np.broadcast_to(away, across.shape)
     way = away + np.tan(np.radians(camera.GetViewAngle() / 2)) * across
     way /= np.linalg.norm(way, axis=1, keepdims=True)
-    return Rays(np.broadcast_to(eye, way.shape), way)
+    return np.broadcast_to(eye, way.shape), way
 
 
-def weights(corners: Array, sight: Rays) -> Array:
+def weights(corners: Array, origin: Array, way: Array) -> Array:
     """Return where lines of sight meet cells, as the share of each corner.
 
     Parameters
     ----------
     corners : ndarray, shape (M, s, 3)
         Corners of a triangle, a segment or a point for each line of sight.
-    sight : Rays
+    origin, way : ndarray, shape (M, 3)
+        Lines of sight, as :func:`rays` returns them.
 
     Returns
     -------
@@ -165,12 +156,9 @@ def weights(corners: Array, sight: Rays) -> Array:
     m, s, _ = corners.shape
     if s == 1:
         return np.ones((m, 1))
-    start = sight.origin - corners[:, 0]
+    start = origin - corners[:, 0]
     # What lies along the line of sight has no part in where it meets a cell.
-    flat = [
-        _across(x, sight.way)
-        for x in (start, *(corners[:, i] - corners[:, 0] for i in range(1, s)))
-    ]
+    flat = [_across(x, way) for x in (start, *(corners[:, i] - corners[:, 0] for i in range(1, s)))]
     if s == 2:
         p, u = flat
         second = np.clip(_ratio(_dots(p, u), _dots(u, u)), 0.0, 1.0)

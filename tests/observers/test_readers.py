@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_cases import CASES
 
-from vizlight.observers import colors, direction, shape, slope, value
+from vizlight.observers import readers
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -28,45 +28,46 @@ class Unturned:
 
 
 def ties_favor_the_truth(monkeypatch):
-    real = direction.ideal
-    monkeypatch.setattr(direction, "ideal", lambda s, r, noise: real(s, Unturned(r), noise))
+    real = readers.find_direction
+    monkeypatch.setattr(readers, "find_direction", lambda s, r, noise: real(s, Unturned(r), noise))
 
 
 def likely_is_unlikely(monkeypatch):
+    real = readers.posterior
+
     def flipped(observed, table, noise):
-        inverse = 1 / np.maximum(colors.posterior(observed, table, noise), 1e-12)
+        inverse = 1 / np.maximum(real(observed, table, noise), 1e-12)
         return inverse / inverse.sum(axis=1, keepdims=True)
 
-    for module in (direction, shape, slope):
-        monkeypatch.setattr(module, "posterior", flipped)
+    monkeypatch.setattr(readers, "posterior", flipped)
 
 
 def noise_is_not_allowed_for(monkeypatch):
-    real = colors.posterior
-    monkeypatch.setattr(colors, "posterior", lambda o, t, _: real(o, t, 1e-5))
+    real = readers.posterior
+    monkeypatch.setattr(readers, "posterior", lambda o, t, _: real(o, t, 1e-5))
 
 
 def slope_is_across_the_eye(monkeypatch):
-    monkeypatch.setattr(slope, "steepness", lambda s: np.abs(s.tangents[:, 0, 0]))
+    monkeypatch.setattr(readers, "steepness", lambda s: np.abs(s.tangents[:, 0, 0]))
 
 
 def normals_have_a_wrong_frame(monkeypatch):
-    real = shape._in_space
-    monkeypatch.setattr(shape, "_in_space", lambda s, local: real(s, local[:, [1, 0, 2]]))
+    real = readers._in_space
+    monkeypatch.setattr(readers, "_in_space", lambda s, local: real(s, local[:, [1, 0, 2]]))
 
 
 def key_is_turned(monkeypatch):
-    real = direction.key
-    monkeypatch.setattr(direction, "key", lambda s, m, angles: real(s, m, angles + 0.1))
+    real = readers.key
+    monkeypatch.setattr(readers, "key", lambda s, m, angles: real(s, m, angles + 0.1))
 
 
 def bar_is_off_by_half_a_step(monkeypatch):
-    real = value.decode
+    real = readers.decode
 
     def shifted(colors, positions, bar):
         return real(colors, positions + 0.5 / len(bar), bar)
 
-    monkeypatch.setattr(value, "decode", shifted)
+    monkeypatch.setattr(readers, "decode", shifted)
 
 
 MUTATIONS = {
@@ -88,12 +89,12 @@ def test_a_broken_meter_is_noticed(monkeypatch, mutate):
 
 
 def test_black_and_white_have_the_ends_of_lightness():
-    np.testing.assert_allclose(colors.lab(np.zeros(3)), 0, atol=1e-12)
-    np.testing.assert_allclose(colors.lab(np.ones(3)), [100, 0, 0], atol=0.01)
+    np.testing.assert_allclose(readers.lab(np.zeros(3)), 0, atol=1e-12)
+    np.testing.assert_allclose(readers.lab(np.ones(3)), [100, 0, 0], atol=0.01)
 
 
 def test_candidates_of_tangents_are_turned_evenly():
-    normals, tangents = shape._disc(5, 8, 0.3)
+    normals, tangents = readers._disc(5, 8, 0.3)
     tangents = tangents.reshape(8, 5, 3)
     np.testing.assert_allclose(
         np.einsum("ij,ij->i", normals, tangents.reshape(-1, 3)), 0, atol=1e-12

@@ -1,4 +1,4 @@
-"""Light in each fragment: the plan as GLSL by shader replacement on an actor."""
+"""Two ways to show light: in each fragment, by GLSL on an actor, or as colours of the points."""
 
 from __future__ import annotations
 
@@ -8,21 +8,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.draw import dialects, glsl, program, strokes
-from vizlight.draw.live import NORMALS, TANGENTS
+from vizlight import _check
+from vizlight.draw import dialects, glsl, program
+from vizlight.draw.live import COLORS, LUMINANCE, NORMALS, TANGENTS, matrix_of
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
+from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.mesh import blocks, point_arrays
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
+from vizlight.shading.display import NO_DATA, displayable, on_colors
 from vizlight.shading.inputs import Layout
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from numpy.typing import NDArray
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import Array, Bools, Indices, Keywords
@@ -36,6 +40,8 @@ if TYPE_CHECKING:
 
 #: Share of the edges along which the tangent may reverse before its sign counts as arbitrary.
 REVERSED = 0.02
+#: Fragment shader that draws the colours of the points.
+AS_IT_IS = "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n"
 
 
 def unfit(
@@ -244,8 +250,8 @@ class Fragments:
             written = program.write(plan, turned=turned, stroke=stroke, data=data)
             texts = dialects.VTK.replacements(written, given)
             if stroke != Stroke():
-                texts = strokes.widened(actor, texts, stroke)
-            strokes.replace(actor, texts)
+                texts = dialects.widened(actor, texts, stroke)
+            dialects.replace(actor, texts)
             self._key, self._plan = key, plan
         _set_uniforms(given, renderer, actor)
 
@@ -329,7 +335,7 @@ def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkAct
     """Set what a program is given, in the coordinates of the camera."""
     # VTK lights in view coordinates, where the eye is at the origin: float32 holds these well even
     # if the mesh is far from the origin of the world.
-    view = pv.array_from_vtkmatrix(renderer.GetActiveCamera().GetViewTransformMatrix())
+    view = matrix_of(renderer.GetActiveCamera().GetViewTransformMatrix())
     uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
     for name, kind, value, space in given:
         numbers = list(value)
@@ -342,3 +348,118 @@ def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkAct
             uniforms.SetUniformf(name, numbers[0])
         else:
             getattr(uniforms, f"SetUniform{len(numbers)}f")(name, numbers)
+
+
+class Points:
+    """Light as a point array of the drawn mesh, the same numbers as a filter attaches.
+
+    Parameters
+    ----------
+    reason : str
+        Why the light is not computed in each fragment.
+    diameter : float, optional
+        Diameter of lines in the unit of the mesh.
+    """
+
+    light = "points"
+
+    def __init__(self, reason: str, diameter: float | None = None) -> None:
+        self.reason, self._diameter = reason, diameter
+
+    def attach(self, live: Live) -> None:
+        """Give the drawn mesh an array; the first frame fills it."""
+        count = live.drawn.n_points
+        point_arrays.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
+        channels = 3 if live.scalars is None else 4
+        kind = np.float64 if live.scalars is None else np.uint8
+        point_arrays.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
+        if self._diameter is not None:
+            live.attach(NORMALS, polylines.line_tangents(live.source.mesh).astype(np.float32))
+            live.drawn.GetPointData().SetActiveNormals(NORMALS)
+
+    def drawing(self, live: Live, drawing: Keywords) -> Keywords:
+        """Return the keywords of ``plotter.add_mesh``."""
+        if live.scalars is not None:
+            return drawing | {"lighting": False}
+        color = drawing.pop("color", None)
+        if color is not None and live.scene is not None:
+            channels = _check.color("color", color)
+            material = dataclasses.replace(live.scene.material, color=channels)
+            live.scene = live.scene.replace(material=material)
+        plain = {"lighting": False, "show_scalar_bar": False}
+        if live.scene is not None and not live.scene.colored:
+            gray = {"scalars": LUMINANCE, "cmap": "gray", "clim": (0.0, 1.0)}
+            return drawing | plain | gray
+        own = True if color is None else color
+        return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
+
+    def start(self, live: Live, actor: vtkActor) -> None:
+        """Let an actor draw lit colours as they are, in place of the data's."""
+        prop = actor.GetProperty()
+        if self._diameter is not None:
+            dialects.widen(actor, Stroke(self._diameter))
+        if live.scene is None:
+            # Without lights VTK multiplies by the sum of both coefficients, which are the material.
+            actor.GetShaderProperty().AddFragmentShaderReplacement(
+                "//VTK::Light::Impl", True, AS_IT_IS, False
+            )
+        else:
+            prop.SetAmbient(1.0)
+            prop.SetDiffuse(0.0)
+        if live.scalars is None:
+            return
+        mapper = actor.GetMapper()
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(COLORS)
+        mapper.SetColorModeToDirectScalars()
+        mapper.SetInterpolateScalarsBeforeMapping(False)
+
+    def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:  # noqa: ARG002
+        """Light the points and draw them with the result."""
+        inputs = live.source.seen_from(scene.view, live.placed(actor))
+        source = live.source._replace(inputs=inputs, sided=None)
+        if live.scalars is not None:
+            (light,) = light_on_colors([source], scene)
+            colors = mapped(live.drawn.point_data[live.scalars], actor)
+            if colors.shape[1] == 3:
+                colors = np.insert(colors, 3, 255, axis=1)
+            _write(live.drawn, COLORS, on_colors(colors, *light))
+            return
+        parts = [(source.inputs, source.options)]
+        (shading,), _ = lighting.light(parts, scene, progress_bar=False)
+        if live.scene is None or live.scene.colored:
+            rgb = shading.rgb
+            if rgb is None:
+                rgb = np.repeat(shading.luminance[:, np.newaxis], 3, axis=1)
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            shown = displayable(rgb)
+            shown[~shading.valid] = NO_DATA
+            _write(live.drawn, COLORS, shown)
+        else:
+            _write(live.drawn, LUMINANCE, np.where(shading.valid, shading.luminance, NO_DATA[0]))
+
+    def explain(self, live: Live, scene: Scene) -> str:
+        """Return why the light is computed at the points, and what of it."""
+        fitted = lighting.fit_depth_cue(scene, [live.source.inputs])
+        plan = decide(fitted, live.source.inputs.layout, live.source.options)
+        return f"light at the points: {self.reason}\n{plan.explain()}"
+
+
+def mapped(values: NDArray[np.generic], actor: vtkActor) -> NDArray[np.uint8]:
+    """Return the colours of values as the mapper of an actor has them, or colours as they are."""
+    if np.ndim(values) == 2:
+        # Colours as they were given, or PyVista's own for an opacity of each point.
+        return np.asarray(values).astype(np.uint8)
+    return map_colors(actor.GetMapper().GetLookupTable(), values)
+
+
+def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
+    """Write values to an array of a mesh, in place where they fit."""
+    if name in mesh.point_data:
+        array = mesh.point_data[name]
+        if array.shape == values.shape and array.dtype == values.dtype:
+            np.copyto(array, values)
+            mesh.GetPointData().GetAbstractArray(name).Modified()
+            mesh.Modified()
+            return
+    point_arrays.attach_rows(mesh, name, values)
