@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
+from vizlight import cli, files
 from vizlight.mesh import polylines
 
 VIEW = vizlight.View(direction=(0, 0, 1))
@@ -266,6 +266,17 @@ def test_depths_are_below_the_surface(tmp_path):
     grid = vizlight.read(tmp_path / "sea.nc")
     assert (grid.bounds.z_min, grid.bounds.z_max) == (-90, -5)
     assert grid["warmth"][np.argmax(grid.points[:, 2])] == 0
+
+
+def test_a_volume_in_degrees_is_no_needle_in_pictures(tmp_path, capsys):
+    xarray = pytest.importorskip("xarray")
+    axes = {"level": [1.0, 2, 3, 4], "grid_latitude": [0.1, 0.2, 0.3], "grid_longitude": [1.1, 1.2]}
+    air = xarray.Dataset({"warmth": ([*axes], np.zeros((4, 3, 2)))}, coords=axes)
+    air.to_netcdf(tmp_path / "air.nc", engine="scipy")
+    assert cli.main(["light", str(tmp_path / "air.nc"), "-o", str(tmp_path / "lit.vtp")]) == 0
+    assert "its z taken 200 times" in capsys.readouterr().out
+    size = pv.read(tmp_path / "lit.vtp").bounds_size
+    assert size[2] == pytest.approx(600)
 
 
 def test_a_mesh_of_ugrid_is_no_grid(tmp_path):

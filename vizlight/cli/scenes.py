@@ -95,10 +95,13 @@ def times(file: Path, target: Part) -> list[float | str | None]:
 
 def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    from vizlight.mesh import steps
+    from vizlight.mesh import georeference, steps
 
     mesh = Step("data", "vizlight.read", file, **_given({"time": time, "overlay": target.overlay}))
     mesh.note = "" if time is not None else steps.note(mesh.run())
+    if (factor := georeference.stretch(mesh.run())) != 1:
+        mesh = Step("stretched", "files.stretched", mesh, factor)
+        mesh.note = f"the volume is in metres over its map, its z taken {factor:g} times"
     warp = target.warp if isinstance(target, Shape) else None
     if isinstance(target, Shape) and warp is not None:
         mesh = warped("raised", mesh, warp, target.exaggeration)
