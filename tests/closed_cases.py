@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vizlight import Light, Material, Scene, View
-from vizlight.observers import direction, matching, shape, slope, value
+from vizlight.observers import colors, direction, shape, slope, value
 from vizlight.observers.colors import lab, seen
-from vizlight.observers.parts import Shares
-from vizlight.observers.samples import Sample
+from vizlight.observers.samples import Sample, Shares
 from vizlight.shading.options import ShadingOptions
 
 MATTE = Material(ambient=0.1, diffuse=0.8, specular=0)
@@ -144,7 +143,7 @@ def two_grays_tell_what_the_binary_channel_does():
     observed = table[random.integers(0, 2, 100_000)] + random.normal(0, noise, (100_000, 3))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
     lost = (weight * np.log2(1 + np.exp(-2 * (1 + z)))).sum() / np.sqrt(2 * np.pi)
-    bits = matching.information(matching.posterior(observed, table, noise)).mean()
+    bits = colors.information(colors.posterior(observed, table, noise)).mean()
     near(bits, 1 - lost, 0.005)
 
 

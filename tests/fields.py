@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from vizlight.geometry.relief import marching
+from vizlight.geometry.relief import walks
 
 METHODS = ("fast", "exact")
 X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
@@ -81,7 +81,7 @@ def by_cells(field, start, way):
     """Return lengths by NumPy, through every cell."""
     count = start.shape[1]
     ways = np.repeat(way[:, None], count, axis=1)
-    return marching.march(field, start, ways, np.full(count, marching.FAR), coarse=False)
+    return walks.march(field, start, ways, np.full(count, walks.FAR), coarse=False)
 
 
 def swatches(rows=6, columns=8):

@@ -34,14 +34,13 @@ from vizlight.mesh import (
     foreign_files,
     georeference,
     height_grids,
-    hull,
     point_arrays,
+    series,
     short_files,
-    steps,
     welding,
 )
 from vizlight.reading.cells import check_whole
-from vizlight.reading.edges import place_numbers
+from vizlight.reading.topology import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -180,7 +179,7 @@ def read(
             if lacking := short_files.contradiction(found, path):
                 raise FileError(lacking)
             mesh = _whole(found, path.suffix.lower(), overlays)
-        except steps.NoStepError:
+        except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
@@ -258,7 +257,7 @@ def _found(path: Path, time: object) -> pv.DataObject:
     """Return what the first reader that knows a file makes of it."""
     found: pv.DataObject | None = foreign_files.read(path, time)
     if found is None:
-        found = steps.read(path, time)
+        found = series.read(path, time)
     found = _by_vtk(path) if found is None else found
     if path.suffix.lower() in _MESHERS:
         found = pv.MultiBlock({"cells of lower dimension": found})
@@ -299,7 +298,7 @@ def _first_line(error: Exception | str) -> str:
 
 def _by_vtk(path: Path) -> pv.DataObject:
     """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
-    reader = steps.reader_of(path)
+    reader = series.reader_of(path)
     try:
         found: pv.DataObject = pv.read(path) if reader is None else reader.read()
     except OSError as error:
@@ -420,7 +419,7 @@ def surface_of(
     if contour is None:
         if isinstance(mesh, pv.PolyData):
             return mesh
-        return hull.outer_surface(mesh)[0]
+        return blocks.outer_surface(mesh)[0]
     mesh = point_arrays.averaged(mesh, contour)
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]

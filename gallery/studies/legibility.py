@@ -18,18 +18,16 @@ from studies._readable import LINES, VIEWS, known
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate
 from vizlight.filters import lighting
 from vizlight.filters.tint import color_table
-from vizlight.observers import figures
+from vizlight.observers import record
 from vizlight.observers.colors import shown
-from vizlight.observers.parts import parts_of
-from vizlight.observers.places import places_of, seen_from
+from vizlight.observers.samples import parts_of, places_of, seen_from
 from vizlight.scene.presets import PRESETS, brightest_normal
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from vizlight.observers.parts import Part
-    from vizlight.observers.samples import Sample
+    from vizlight.observers.samples import Part, Sample
 
 NOISE = 2 / 255
 #: Gain of an error that is not one of the sample: share, degrees, bits.
@@ -198,22 +196,22 @@ def error(
     gray = float(255 * np.mean([shown(one.own_light()).mean() for one in samples]))
     notes: list[str] = []
     if question in ("direction", "key"):
-        found = figures.of_direction(samples, 0, noise, notes)
+        found = record.of_direction(samples, 0, noise, notes)
         assert found is not None
         assert found.legend_median is not None
         return (1 - found.within_10 if question == "direction" else found.legend_median), gray
     if question in ("slope", "heading"):
-        steep = figures.of_slope(samples, 0, noise, notes)
+        steep = record.of_slope(samples, 0, noise, notes)
         assert steep is not None
         assert steep.median is not None
         return (4 - steep.bits if question == "slope" else steep.median), gray
     if question == "shape":
-        normals = figures.of_shape(samples, 0, noise, notes)
+        normals = record.of_shape(samples, 0, noise, notes)
         assert normals is not None
         return normals.median, gray
     values = [np.asarray(part.values) for _, part in taken]
     cmap = "viridis" if question.endswith("viridis") else None
-    read = figures.of_value(taken, color_table(values, cmap=cmap), notes)
+    read = record.of_value(taken, color_table(values, cmap=cmap), notes)
     assert read is not None
     return read.p95, gray
 

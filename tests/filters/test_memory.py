@@ -207,7 +207,7 @@ print((status("VmHWM") - before) / size)
         "grid(300, 20, 300)",
         "creased(1000) with feature_angle",
         "waves(500) as bands",
-        "waves(500).strip() as bands",
+        "waves(1100).strip() as bands",
         "surface(900) as bands",
     ],
 )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from closed_cases import CASES
 
-from vizlight.observers import colors, direction, matching, shape, slope, value
+from vizlight.observers import colors, direction, shape, slope, value
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -34,7 +34,7 @@ def ties_favor_the_truth(monkeypatch):
 
 def likely_is_unlikely(monkeypatch):
     def flipped(observed, table, noise):
-        inverse = 1 / np.maximum(matching.posterior(observed, table, noise), 1e-12)
+        inverse = 1 / np.maximum(colors.posterior(observed, table, noise), 1e-12)
         return inverse / inverse.sum(axis=1, keepdims=True)
 
     for module in (direction, shape, slope):
@@ -42,8 +42,8 @@ def likely_is_unlikely(monkeypatch):
 
 
 def noise_is_not_allowed_for(monkeypatch):
-    real = matching.posterior
-    monkeypatch.setattr(matching, "posterior", lambda o, t, _: real(o, t, 1e-5))
+    real = colors.posterior
+    monkeypatch.setattr(colors, "posterior", lambda o, t, _: real(o, t, 1e-5))
 
 
 def slope_is_across_the_eye(monkeypatch):

@@ -13,7 +13,7 @@ import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.draw.backends import BackendError
 from vizlight.draw.cameras import camera_on
-from vizlight.observers import places
+from vizlight.observers import samples
 
 pytestmark = pytest.mark.opengl
 
@@ -219,7 +219,7 @@ def test_without_opengl_points_that_face_the_eye_are_read(monkeypatch):
     def none():
         raise BackendError("no picture")
 
-    monkeypatch.setattr(places, "choose_backend", none)
+    monkeypatch.setattr(samples, "choose_backend", none)
     found = vizlight.legibility(ball, ring(height=1.0), **how)
     assert drawn.drawn
     assert not found.drawn

@@ -8,7 +8,7 @@ import pyvista as pv
 
 from vizlight import Light, Scene, View
 from vizlight.observers import samples
-from vizlight.observers.parts import parts_of
+from vizlight.observers.samples import parts_of
 from vizlight.shading.options import LightOptions
 
 

@@ -72,14 +72,14 @@ def times(file: Path, target: Part) -> list[float | str | None]:
     ValueError
         If the file has none of them.
     """
-    from vizlight.mesh import steps
+    from vizlight.mesh import series
 
     if target.times is None:
         text = target.time
         number = arguments.numbers(text or "", (1,))
         return [*number] if number else [text]
     expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
-    there = steps.of(vizlight.read(file))
+    there = series.of(vizlight.read(file))
     try:
         asked = slice(None)
         if target.times != "all":
@@ -95,10 +95,10 @@ def times(file: Path, target: Part) -> list[float | str | None]:
 
 def data(file: Path, target: Part, time: float | str | None = None) -> Step:
     """Return the step that reads a file, after those that raise and cut what is in it."""
-    from vizlight.mesh import georeference, steps
+    from vizlight.mesh import georeference, series
 
     mesh = Step("data", "vizlight.read", file, **_given({"time": time, "overlay": target.overlay}))
-    mesh.note = "" if time is not None else steps.note(mesh.run())
+    mesh.note = "" if time is not None else series.note(mesh.run())
     if (factor := georeference.stretch(mesh.run())) != 1:
         mesh = Step("stretched", "files.stretched", mesh, factor)
         mesh.note = f"the volume is in metres over its map, its z taken {factor:g} times"
@@ -151,20 +151,22 @@ def check_flow(file: Path, mesh: pv.DataSet, vectors: str | tuple[str, str] | No
         If only others have, which the message lists.
     """
     from vizlight.filters.streamlines import vectors_by_default
-    from vizlight.mesh import steps
+    from vizlight.mesh import series
 
     if vectors is None:
         vectors = vectors_by_default(mesh)
     names = [vectors] if isinstance(vectors, str) else vectors or ()
-    times = steps.of(mesh)
+    times = series.of(mesh)
     if all(_moves(mesh, name) for name in names) or len(times) < 2:
         return
     others = {time: vizlight.read(file, time=time) for time in times}
     having = [time for time, one in others.items() if all(_moves(one, name) for name in names)]
     if having:
         expected = f"a step in which {' and '.join(map(repr, names))} is not zero everywhere"
-        remedy = f"pass --time with one of {steps.listed(having)}"
-        raise ValueError(message("--time", expected, f"{mesh.field_data[steps.TIME][0]:g}", remedy))
+        remedy = f"pass --time with one of {series.listed(having)}"
+        raise ValueError(
+            message("--time", expected, f"{mesh.field_data[series.TIME][0]:g}", remedy)
+        )
 
 
 def _moves(mesh: pv.DataSet, name: str) -> bool:

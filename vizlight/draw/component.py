@@ -58,6 +58,7 @@ class Component:
     """
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
+        # Weak both ways: neither the plotter nor a removed actor is kept alive by its light.
         self._plotter = weakref.ref(plotter)
         self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
         self._observed: list[tuple[vtkRenderer, int]] = []
@@ -157,6 +158,8 @@ class Component:
             line_diameter = _check.positive("line_diameter", line_diameter)
         if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
             mesh = mesh.copy(deep=False)
+        # Some styles are PyVista's own shading: the mesh is added as it would be without this
+        # component.
         why = keywords.left_to_pyvista(drawing)
         if why is not None:
             if why:
@@ -170,12 +173,14 @@ class Component:
         mesh, chosen = keywords.colored(mesh, scalars, drawing)
         angle = keywords.shading_of(drawing)
         several, named = isinstance(mesh, pv.MultiBlock), list(blocks.named_blocks(mesh))
+        # Points without vectors have no side that light could fall on.
         clouds = [keywords.is_cloud(block, own) for block, _ in named]
         if any(clouds):
             mesh = pv.MultiBlock()
             for (block, path), is_cloud in zip(named, clouds, strict=True):
                 if not is_cloud:
                     mesh.append(block, path.lstrip("/"))
+        # All blocks are read before one is drawn: an error leaves the plotter as it was.
         sources, used = sources_of(mesh, scene, own, angle)
         if getattr(plotter, "notebook", False):
             guard()
@@ -185,6 +190,7 @@ class Component:
             keywords_of = drawing | next(colors)
             if several and drawing.get("name") is not None:
                 keywords_of["name"] = f"{drawing['name']}-{number}"
+            # A block without the array has the colour of the material.
             lacks = several and chosen not in (*block.point_data, *block.cell_data)
             here = None if lacks else chosen
             if is_cloud:
@@ -277,6 +283,7 @@ class Component:
             if live is not None:
                 lit_by = live.scene_of(plotter.renderer, actor)
                 options: Keywords = {"exponent": live.source.options.exponent}
+                # A page or key reads the colours that are drawn, whatever map made them.
                 table = actor.GetMapper().GetLookupTable()
                 valued = live.scalars is not None and isinstance(table, pv.LookupTable)
                 # The default light is made for values; without values it tells the shape.
@@ -447,6 +454,8 @@ class Component:
         drawing = dict(drawing)
         stroke = _stroke(source, drawing)
         reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
+        # In fragments VTK interpolates the drawn copy's own tangents and normals, so that it must
+        # be a surface; light at the points is drawn on the mesh as it is.
         live = Live(source, scene, follow=follow, by_surface=not reason)
         if light == "fragments" and reason:
             _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
@@ -464,16 +473,24 @@ class Component:
         painter: Points | Fragments = (
             Points(reason, stroke.diameter) if reason else Fragments(stroke)
         )
+        # Light at points has no normal across a line: VTK's own tubes are drawn instead.
         if stroke.round and reason and stroke.diameter is None:
             drawing["render_lines_as_tubes"] = True
         live.painter = painter
         painter.attach(live)
         drawing = painter.drawing(live, drawing)
         actor: pv.Actor = plotter.add_mesh(
-            live.drawn, smooth_shading=False, split_sharp_edges=False, render=False, **drawing
+            # Normals of PyVista would take the place of those attached.
+            live.drawn,
+            smooth_shading=False,
+            split_sharp_edges=False,
+            render=False,
+            **drawing,
         )
         if scene is None and not drawing.keys() & keywords.MATERIAL:
             own, default = actor.prop, Material()
+            # PyVista's own defaults are nobody's choice: the material of this package stands in
+            # for them.
             if (own.ambient, own.diffuse, own.specular) == UNTOUCHED:
                 own.ambient, own.diffuse = default.ambient, default.diffuse
                 own.specular = default.specular
@@ -524,6 +541,7 @@ class Component:
 
     def _update(self, renderer: vtkRenderer) -> None:
         """Light what a renderer is about to draw, and say once what does not show."""
+        # Called at the beginning of each frame: at first light, then the picture.
         lost, any_live = set(), False
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)

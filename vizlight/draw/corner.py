@@ -85,12 +85,14 @@ class CornerKey:
             return
         self._pixels, short = (width, height), min(width, height)
         half, letters, margin = self._size * short / 2, LETTERS * short, MARGIN * short
+        # A picture's shorter side is the measure of all: keys look alike in wide and tall windows.
         half *= 1 + self._bar  # A bar is twice as wide, for a word at each end.
         tall = half * np.ptp(self._flat[:, 1]) / 2
         # The words stand below and may be wider than the key.
         words = [len(text.GetInput()) for text in self.words]
         title = len(words) > 2
         below = words[0] + words[-1] + 2 if self._bar else words[0]
+        # Letters of Arial are about 0.6 of their height wide, half of that on either side.
         wide = max(half, 0.3 * letters * max(below, *words))
         line = 1.6 * letters
         box = np.array([2 * wide, 2 * tall + line * (1 + title)])
@@ -101,6 +103,7 @@ class CornerKey:
         low = margin if not upper else height - margin - box[1]
         moved = vtkPoints()
         y = low + line + tall
+        # The key is drawn in pixels of the viewport, over all that the camera sees.
         for point in self._flat * half + (x, y, 0):
             moved.InsertNextPoint(*point)
         self._mesh.SetPoints(moved)
@@ -159,9 +162,12 @@ def _on_screen(renderer: vtkRenderer) -> Array:
         if not actor.GetVisibility() or data is None or not data.GetNumberOfPoints():
             continue
         points = np.asarray(pv.wrap(data).points, dtype=np.float64)
+        # Some thousand points tell a free corner as well as all do.
         points = points[:: max(len(points) // MOST, 1)]
         own: Array = np.asarray(pv.array_from_vtkmatrix(actor.GetMatrix()), np.float64)
         whole = matrix @ own
+        # Homogeneous coordinates: behind the eye the divisor turns negative, which is out of every
+        # box.
         seen = np.column_stack([points, np.ones(len(points))]) @ whole.T
         with np.errstate(all="ignore"):
             found.append((seen[:, :2] / seen[:, 3:] + 1) / 2 * (width, height))

@@ -68,6 +68,7 @@ class Dialect:
     def passing(self, varyings: Iterable[Varying]) -> list[Replacement]:
         """Return what passes values from the vertices to the fragments."""
         varyings = tuple(varyings)
+        # VTK's own name for an output of the vertex shader ends so; a geometry shader renames it.
         names = [(v.kind, suffixed(v.name)) for v in varyings]
         values = {
             "position": "(MCVCMatrix * vertexMC).xyz",
@@ -84,6 +85,7 @@ class Dialect:
         if "{tangent}" in read or "{size}" in read:
             attributes += f"{self.attribute} vec3 {self.tangent};\n"
         out = "".join(f"{self.output} {kind} {name};\n" for kind, name in names)
+        # VTK declares these only where its own light needs them; twice is allowed in GLSL.
         matrices = f"uniform mat4 {self.clip};\nuniform mat4 MCVCMatrix;\n"
         if WORLD in read:
             matrices += f"uniform mat4 {WORLD};\n"
@@ -100,6 +102,8 @@ class Dialect:
                 "".join(f"  {suffixed(v.name)} = {v.value.format(**values)};\n" for v in varyings),
             ),
         ]
+        # Where lines are drawn as tubes VTK puts a geometry shader between: it must hand values
+        # on.
         if self.geometry:
             passed = [(kind, name, name.replace("VSOutput", "GSOutput")) for kind, name in names]
             declared = "".join(f"in {k} {name}[];\nout {k} {own};\n" for k, name, own in passed)
@@ -123,6 +127,8 @@ class Dialect:
         """
         given, varyings = list(numbers), list(program.varyings)
         constants = ""
+        # ParaView 5.11 has no uniforms of our own: numbers stand in the text, and what turns with
+        # the camera is turned in the vertex shader by VTK's matrices.
         if self.constant:
             varyings += [_turned(uniform) for uniform in given if uniform.space]
             constants = "".join(map(_constant, given))
@@ -134,6 +140,7 @@ class Dialect:
             Replacement("Fragment", "//VTK::Normal::Dec", into),
             Replacement("Fragment", "//VTK::Normal::Impl", ""),
             Replacement("Fragment", "//VTK::Light::Dec", f"{uniforms}{program.functions}\n"),
+            # In place of VTK's light; what comes after, such as depth peeling, stays VTK's.
             Replacement("Fragment", "//VTK::Light::Impl", written),
         ]
 
@@ -142,6 +149,7 @@ def _constant(uniform: Uniform) -> str:
     """Return the statement that gives a number its value in the fragment shader."""
     name, kind, value, space = uniform
     text = glsl.vector(value)
+    # Perspective: the eye is the origin of view coordinates.
     if name == "vizEye":
         text = f"cameraParallel == 1 ? {text} : vec4(0.0, 0.0, 0.0, 1.0)"
     elif space:

@@ -12,7 +12,7 @@ from vizlight.draw import dialects, glsl, program, strokes
 from vizlight.draw.live import NORMALS, TANGENTS
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
-from vizlight.mesh import hull, point_arrays
+from vizlight.mesh import blocks, point_arrays
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
@@ -61,10 +61,12 @@ def unfit(
     """
     layout = inputs.layout
     alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
+    # A round line has the normals of a cylinder, made in the shader: there is no room for others.
     if stroke.round and (options.conditioned or not alone):
         return "only lines that are lit by their tangents alone can be round"
     reason = unfit_layout(layout, options, stroke)
     lines = inputs.tangents is not None and inputs.dimensions is None
+    # Between opposite tangents the interpolated one passes through 0 and tells no direction.
     if not reason and lines and _reverses(inputs, mesh):
         return "the tangents reverse from point to point, so their sign is arbitrary"
     return reason
@@ -105,13 +107,15 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     """Return the points at both ends of consecutive corners of the cells that are drawn."""
     surface = mesh if isinstance(mesh, pv.PolyData) else None
     if surface is None:
-        shell, ids = hull.outer_surface(mesh)
+        shell, ids = blocks.outer_surface(mesh)
         starts, ends = (ids[corners] for corners in _edges(shell))
         inside = (starts >= 0) & (ends >= 0)
         return starts[inside], ends[inside]
     pairs = []
     for cells in (surface.GetLines(), surface.GetPolys(), surface.GetStrips()):
         ids = pv.convert_array(cells.GetConnectivityArray())
+        # The last corner of a cell has no next one: cells follow each other in one list of
+        # corners.
         inside = np.ones(len(ids), dtype=np.bool_)
         inside[pv.convert_array(cells.GetOffsetsArray())[1:] - 1] = False
         first = np.flatnonzero(inside)
@@ -150,10 +154,13 @@ class Fragments:
         if inputs.occlusion is not None:
             # The length of a tangent, which a surface does not have, carries the ambient share.
             share = live.picked(np.asarray(inputs.occlusion[:], dtype=np.float64))
+            # From 1 to 2, never 0: a vector of length 0 would lose its direction between points.
             share = 1 + np.where(share >= 0, share, 1.0)
             along = np.array([[1.0, 0.0, 0.0]]) if tangents is None else tangents
             carried = share[:, np.newaxis] * along
         if inputs.dimensions is not None and carried is not None:
+            # Two numbers in one length: the share in 0 to 1 above a step of LENGTHS for the
+            # dimension.
             less = 2 - live.picked(np.asarray(inputs.dimensions[:]))
             carried = carried + program.LENGTHS * less[:, np.newaxis] * kernels.unit_rows(carried)
         if carried is not None:
@@ -162,6 +169,8 @@ class Fragments:
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
             normals = tangents
+            # A stroke is widened across the line's own direction, whatever the light takes for its
+            # tangent.
             if self._stroke != Stroke():
                 normals = live.picked(polylines.line_tangents(live.source.mesh))
         elif inputs.fur_height is not None:
@@ -170,6 +179,8 @@ class Fragments:
             self.tallest = float(np.max(height, initial=0.0)) or 1.0
             normals = normals * (1 + height[:, np.newaxis] / self.tallest)
         elif (sided := live.source.sided) is not None:
+            # Before the first frame there is no eye: height fields are then taken as seen from
+            # above.
             if len(self._averted) <= np.max(sided.open, initial=1):
                 self._averted = sided.averted_fields(inputs.points, None)
             lean = live.picked(_lean_lengths(live.source, self._averted))
@@ -185,6 +196,7 @@ class Fragments:
             own = None if live.scene is None else (live.scene.material.color or WHITE)
             given = drawing.get("color")
             self._colored = given is None
+            # A texture multiplies the actor's colour: white leaves it as it is.
             usual = WHITE if drawing.get("texture") is not None else True
             drawing["color"] = (usual if own is None else own) if given is None else given
         return drawing
@@ -198,6 +210,8 @@ class Fragments:
         material = live.scene.material
         if self._colored:
             prop.SetColor(*(material.color or WHITE))
+        # VTK clamps coefficients to 1 and shininess to its own largest; the rest is a uniform, a
+        # gain.
         prop.SetAmbient(min(material.ambient, 1.0))
         prop.SetDiffuse(min(material.diffuse, 1.0))
         prop.SetSpecular(min(material.specular, 1.0))
@@ -206,12 +220,15 @@ class Fragments:
 
     def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Write the shader of a scene if it is another one, and set its uniforms."""
+        # The camera may have crossed to the other side of a height field.
         self.see(live, live.placed(actor), scene.view)
         scene = lighting.fit_depth_cue(scene, [live.placed(actor)])
+        # Colours of data have no highlight.
         data = live.scalars is not None
         if data:
             scene = without_highlight(scene)
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+        # A new text costs a compilation, some 0.1 s; moved lamps and cameras only set uniforms.
         key, prop = _structure(scene, lights, live.source), actor.GetProperty()
         stroke, renew = self._stroke, key != self._key or self._plan is None
         plan = self._plan
@@ -310,12 +327,15 @@ def _lean_lengths(source: Source, averted: Bools) -> Array:
 
 def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:
     """Set what a program is given, in the coordinates of the camera."""
+    # VTK lights in view coordinates, where the eye is at the origin: float32 holds these well even
+    # if the mesh is far from the origin of the world.
     view = pv.array_from_vtkmatrix(renderer.GetActiveCamera().GetViewTransformMatrix())
     uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
     for name, kind, value, space in given:
         numbers = list(value)
         if space:
             moved = view[:3, :3] @ np.asarray(value[:3], dtype=np.float64)
+            # A camera's matrix may scale; directions stay unit vectors.
             moved = moved / np.linalg.norm(moved) if space == "direction" else moved + view[:3, 3]
             numbers[:3] = moved.tolist()
         if kind == "float":

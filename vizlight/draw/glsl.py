@@ -86,6 +86,7 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
         coordinates, ``vizShare``, the renderer's ``ambientColor`` and ``diffuseColor``, and
         uniforms.
     """
+    # The terms write themselves: each operation on a symbol appends a line to the shader.
     w = Shader(plan, data=data)
     light(w, w.plan)
     body = _EYE + (_TURN if turned else "") + w.body()
@@ -98,10 +99,12 @@ class Shader(Writer):
     prefix = "viz"
 
     def __init__(self, plan: Plan, *, data: bool = False) -> None:
+        # A uniform, so that a slider can change it without a new program.
         shininess: Value = Symbol(self, "vizShininess", "float")
         self.plain = all(is_plain(h.shininess) for h in plan.highlights) and plan.exponent > 0
         # Half vectors are the same at all points only while the eye and the lamps stay.
         highlights = tuple(h._replace(shininess=shininess, half=None) for h in plan.highlights)
+        # White light on colours of data would move them along the colour map.
         specular = plan.specular and not data
         super().__init__(dataclasses.replace(plan, highlights=highlights, specular=specular), None)
         self.data, self.colored = data, True
@@ -124,6 +127,7 @@ class Shader(Writer):
 
     def call(self, name: str, *args: Value) -> Value:
         """Return a function of numbers or vectors."""
+        # GLSL's functions take vectors and numbers alike, as NumPy's do.
         texts = ", ".join(self.text(a, "float") for a in args)
         return self.named(f"{_CALLS.get(name, name)}({texts})", self.kind(*args))
 
@@ -131,6 +135,7 @@ class Shader(Writer):
         """Return one of two values."""
         kind = self.kind(yes, no)
         pair = [self.text(x, kind) for x in (yes, no)]
+        # Both sides are evaluated; a branch would cost more on most cards.
         return self.named(f"{test.text} ? {pair[0]} : {pair[1]}", kind)
 
     def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
@@ -146,11 +151,14 @@ class Shader(Writer):
     def has(self, name: str) -> bool:
         """Return whether the fragment has an input."""
         plan = self.plan
+        # Shares inside bundles and cos-theta shadows are known at the points and never come here.
         return name == "normals" and (plan.surface or plan.conditioned or plan.fur > 0)
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an interpolated input; vectors have unit length."""
         del lamp
+        # The body's first lines have normalised them: interpolated unit vectors are shorter than
+        # 1.
         return Symbol(self, *_INPUTS[name])
 
     def direction(self, name: str) -> Value:
@@ -160,6 +168,8 @@ class Shader(Writer):
     def frame(self, name: str, k: int) -> list[Value]:
         """Return the one tangent."""
         del k
+        # One tangent needs no Gram-Schmidt; two do not interpolate, and `unfit_layout` has refused
+        # them.
         return [self.read(name)]
 
     def number(self, value: Value) -> Value:
@@ -191,6 +201,7 @@ class Shader(Writer):
             i = lamp.number
             place: Value = Symbol(self, f"vizLight{i}", "vec3")
             color: Value = Symbol(self, f"vizColor{i}", "vec3")
+            # The intensity is in the colour, which is then one uniform for each lamp.
             lamp.intensity, lamp.color = 1.0, color
             if lamp.position is None:
                 lamp.direction = place
@@ -207,6 +218,7 @@ class Shader(Writer):
     def depth(self) -> tuple[Value, Sequence[Value]]:
         """Return the depth along the axis, or from the eye, and the cue's ends and scales."""
         away = self.named("vizFrom - vizP", "vec3")
+        # w tells a parallel view, whose depth is along its axis, from an eye at a point.
         text = f"vizAxis.w == 0.0 ? dot(vizAxis.xyz, {away.text}) : length({away.text})"
         return self.named(text, "float"), self._parts("vizCueEnds", "xyzw")
 
@@ -222,9 +234,12 @@ class Shader(Writer):
         """Return a coefficient times the renderer's colour, which holds its own coefficient."""
         del coefficient
         kind = "float" if term == "diffuse" else "vec3"
+        # VTK's ambientColor and diffuseColor hold its own coefficients; a gain turns them into
+        # ours.
         gain: Value = Symbol(self, f"viz{term.capitalize()}Gain", kind)
         if term == "specular":
             return gain
+        # On colours of data the ambient gain has a floor, so that no value turns black.
         if self.data:
             least = Symbol(self, "vizLeastGain", "vec3")
             return self.call("maximum", gain, least) if term == "ambient" else gain
@@ -241,6 +256,7 @@ class Shader(Writer):
 
     def unit(self, v: Value) -> tuple[Value, Value]:
         """Return a unit vector and the length."""
+        # 1e-30 is within float32 and far below any length that is shown.
         size = self.named(f"length({v.text})", "float")
         return self.named(f"{v.text} / max({size.text}, 1e-30)", "vec3"), size
 
@@ -274,6 +290,7 @@ class Shader(Writer):
         """Return the statements that set the colour as :mod:`vizlight.shading.display` shows it."""
         color = self.made["rgb"]
         shown: Value
+        # Light is a factor on the data's colour, as in `display.py`: hue and order of values stay.
         if self.data:
             luma = self.named(f"dot({color.text}, {vector(formulas.LUMA)})", "float")
             own = self.named("vizColorGain * (ambientColor + diffuseColor)", "vec3")
@@ -281,5 +298,7 @@ class Shader(Writer):
         else:
             most = self.named(f"max(max({color.text}.r, {color.text}.g), {color.text}.b)", "float")
             shown = formulas.in_range(color, most)
+        # Points that could not be lit have the colour of missing data. Lines that nothing needs
+        # are left out, since a compiler on a browser's main thread takes its time.
         last = f"  vec3 vizColor = vizGood ? {shown.text} : {vector(display.NO_DATA)};"
         return "\n".join([*needed(self.lines, r"\s*\w+ (\w+) = ", [last]), last])

@@ -16,7 +16,7 @@ from vizlight.draw.fixed import LEFT_OUT, fixed_colors
 from vizlight.draw.live import lifted
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
-from vizlight.mesh import blocks, hull
+from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
 from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.cells import has_faces
@@ -141,7 +141,7 @@ def _drawn(mesh: pv.DataSet, scalars: str | None) -> tuple[pv.PolyData, Indices]
 
     Points are split where cells of different values meet.
     """
-    surface, ids = hull.outer_surface(mesh)
+    surface, ids = blocks.outer_surface(mesh)
     if scalars is None or not is_of_cells(surface, scalars) or not has_faces(surface):
         return surface, ids
     split, origin = split_values(surface, scalars)

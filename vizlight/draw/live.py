@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import are_colors, values_of
-from vizlight.mesh import hull, point_arrays
+from vizlight.mesh import blocks, point_arrays
 from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.light import default_lights
 from vizlight.scene.vtk import is_light_kit, lights_of
@@ -112,7 +112,7 @@ class Live:
         """Draw the mesh as it is now."""
         mesh = self.source.mesh
         if self._by_surface:
-            mesh, self._shown = hull.outer_surface(mesh)
+            mesh, self._shown = blocks.outer_surface(mesh)
         self.drawn.shallow_copy(mesh)
 
     def picked(self, rows: NDArray[Number]) -> NDArray[Number]:
@@ -310,6 +310,7 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     """
     camera = renderer.GetActiveCamera()
     view = View.from_camera(camera)
+    # PyVista's default lights are a kit for plain shading; ours stand in for it.
     given = list(items(renderer.GetLights()))
     lights = default_lights(view) if is_light_kit(given) else tuple(lights_of(given, camera))
     kind = "phong" if model == "phong" else "blinn"
@@ -320,12 +321,14 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
 
 def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
     """Return points with the means of a cell array over the cells that meet there."""
+    # Without its other arrays, which VTK would average too.
     bare = mesh.copy(deep=False)
     bare.clear_data()
     values = np.asarray(mesh.cell_data[name])
     bare.cell_data[name] = values.astype(np.float64)
     points: pv.DataSet = bare.cell_data_to_point_data()
     if values.dtype == np.uint8:
+        # Means of colours are rounded, not cut.
         points.point_data[name] = np.rint(points.point_data[name]).astype(np.uint8)
     return points
 
@@ -348,6 +351,7 @@ def is_copy(actor: vtkActor) -> bool:
 
 def has_pass(renderer: vtkRenderer, kind: str) -> bool:
     """Return whether a renderer draws by a pass of a class of VTK, at any depth."""
+    # Passes nest: SSAO, for instance, holds the pass that draws.
     waiting: list[Foreign] = [renderer.GetPass()]
     while waiting:
         step = waiting.pop()
@@ -365,6 +369,7 @@ def has_pass(renderer: vtkRenderer, kind: str) -> bool:
 
 def lifted(scene: Scene, n: int) -> Scene:
     """Return a scene of 3-space in the hyperplane of the first three axes of n-space."""
+    # Without a rotation the picture shows the first three axes, so lamps and eye stand there too.
     if n <= 3 or scene.n != 3:
         return scene
     fixed = (light if light.is_headlight else light.seen_from(scene.view) for light in scene.lights)
@@ -399,6 +404,8 @@ def _elements(actor: vtkActor) -> tuple[float, ...]:
 
 def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
     """Return inputs in 3-space moved by a matrix; normals stay across the surface."""
+    # Points move by the matrix, tangents by its linear part, normals by the inverse transpose
+    # (here on the right, as rows), so that they stay across a surface that is scaled unevenly.
     linear, offset = matrix[:3, :3], matrix[:3, 3]
     points = np.asarray(inputs.points[:], dtype=np.float64) @ linear.T + offset
     tangents = normals = None

@@ -18,7 +18,7 @@ from vizlight.draw.fragments import Fragments, exact_plan, without_highlight
 from vizlight.draw.live import NORMALS, TANGENTS, items
 from vizlight.filters.key import TEXTS
 from vizlight.filters.tint import map_colors
-from vizlight.mesh import hull, records
+from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.light import WHITE
 from vizlight.scene.vtk import lights_of
@@ -83,6 +83,7 @@ class Page:
         self.renderer, self.camera = renderer, renderer.GetActiveCamera()
         self.background = renderer.GetBackground()
         #: Point from which all places are measured, so that float32 has digits for them.
+        # Places on Earth have seven digits before the point, more than float32 holds.
         self.origin = np.asarray(self.camera.GetFocalPoint(), dtype=np.float64)
         self.meshes: list[dict[str, object]] = []
         self.lights: list[list[dict[str, object]]] = []
@@ -96,6 +97,7 @@ class Page:
     def content(self) -> dict[str, object]:
         """Return the whole page."""
         camera = self.camera
+        # The shaders of all combinations of lamps are much alike and shrink to a few kB.
         texts = zlib.compress(json.dumps(self._texts).encode(), 9)
         maps = {name: pv.LookupTable(name, n_values=256).values for name in MAPS}
         return {
@@ -132,6 +134,7 @@ class Page:
     def add(self, shown: Shown) -> None:
         """Add a mesh with its light."""
         live, actor = shown.live, shown.actor
+        # A page has surfaces, lines and points; of a volume its outer surface.
         surface, ids = _surface(live)
         prop = actor.GetProperty()
         made: dict[str, object] = {
@@ -148,6 +151,7 @@ class Page:
             made["edgeColor"] = list(prop.GetEdgeColor())
         matrix: Array = np.asarray(pv.array_from_vtkmatrix(actor.GetMatrix()), np.float64)
         with np.errstate(invalid="ignore", over="ignore"):  # points that are not finite
+            # Actors are not moved in the page: their matrix is taken into the points.
             points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T
             made["points"] = _places(points + matrix[:3, 3] - self.origin)
         for key, name in _CELLS.items():
@@ -233,6 +237,7 @@ class Page:
         it where colours come from data, "free " where the light of conditioned tangents leaves the
         surface out.
         """
+        # All numbers of lamps that a reader can reach by the panel have their shader in the page.
         near = sum(bool(row["position"]) for row in rows)
         far = max(MOST_LAMPS, len(rows))
         # Sliders raise what is 0 now, so the texts have all terms.
@@ -259,6 +264,7 @@ class Page:
             key = f"{'data ' if data else ''}{free}{i} {j}{' cue' if ended else ''}"
             turned = source.sided is not None
             written = program.write(plan, turned=turned, data=data, sky=plan.occluded)
+            # Equal texts are stored once and named by their number.
             text = [list(each) for each in dialects.VTK_JS.replacements(written, given)]
             if text not in self._texts:
                 self._texts.append(text)
@@ -295,6 +301,7 @@ class Page:
             return {"live": False, "colors": _packed(whole, "u1"), "color": [1.0, 1.0, 1.0]}
         lit, seen = fixed_colors(placed, scene, colors)
         lit = lit[ids]
+        # Points of the surface that are none of the mesh.
         lit[ids < 0] = 0
         reason = getattr(live.painter, "reason", "")
         why = "" if reason == "asked for" else f", because {reason}"
@@ -445,7 +452,7 @@ def _surface(live: Live) -> tuple[pv.PolyData, Indices]:
     """Return what is drawn as cells of PolyData, and the index of each of its points."""
     if isinstance(live.drawn, pv.PolyData):
         return live.drawn, np.arange(live.drawn.n_points)
-    return hull.outer_surface(live.drawn)
+    return blocks.outer_surface(live.drawn)
 
 
 def _ended(cue: DepthCue | None) -> DepthCue | None:

@@ -166,18 +166,24 @@ def write(
     -------
     Program
     """
+    # Varyings are declared only where the body reads them: the least that WebGL has are eight.
     functions, body = glsl.fragment(plan, turned=turned, data=data)
     mixed = plan.line_exponent is not None
     names = [Varying("vizP", "vec3", "{position}")]
+    # vizGood turns false where a vector has no length; such fragments show no data.
     read = f"  vec3 vizP = {suffixed('vizP')};\n  bool vizGood = true;\n"
     if (plan.surface and not stroke.round) or plan.conditioned or plan.fur:
         names.append(Varying("vizN", "vec3", "{normal}"))
         read += _unit("vizN") + _TOWARD[toward]
     elif stroke != Stroke():
+        # A stroke without normals needs the direction of the line, by which VTK's geometry is
+        # widened.
         names.append(ALONG)
     if plan.fur or turned:
         names.append(Varying("vizH", "float", "{length} - 1.0"))
     if plan.occluded:
+        # The dimension of the point is in the same length, in steps of LENGTHS: they are taken
+        # off.
         past = f" - {2 * LENGTHS:.1f} + {LENGTHS:.1f} * {DIMENSION}" if mixed else ""
         names.append(Varying("vizS", "float", "{size} - 1.0" + past))
         share = suffixed("vizS")
@@ -190,8 +196,11 @@ def write(
         read += _unit("vizT")
     if stroke.round:
         names.append(Varying("vizX", "float", "0.0"))
+        # The eye sees half of a cylinder: the place across it in -1 to 1 is the sine of the
+        # normal's angle.
         read += CYLINDER_NORMAL
     if turned:
+        # The length came as 1 to 2: back to a lean of -1 to 1.
         read += f"  float vizLean = 2.0 * {suffixed('vizH')} - 1.0;\n"
     if plan.fur:
         read += f"  float vizHeight = vizTallest * max({suffixed('vizH')}, 0.0);\n"
@@ -246,10 +255,12 @@ def numbers(
         least = scene.ambient_intensity * LEAST
         around = tuple(least * c for c in scene.ambient_color or WHITE)
         found.append(Uniform("vizLeastGain", "vec3", around))
+        # VTK multiplies a scalar colour by ambient and diffuse before the light sees it.
         gain = _ratio(1.0, shown.ambient + shown.diffuse)
         found.append(Uniform("vizColorGain", "float", (gain,)))
     if fur:
         # Fur of density 1 lets through what is less than any float.
+        # log(1 - density): density 1 would be -inf, which GLSL has not.
         rate = float(np.log1p(-min(fur, 1 - 1e-12)))
         found.append(Uniform("vizFurRate", "float", (rate,)))
         found.append(Uniform("vizTallest", "float", (tallest,)))
@@ -271,9 +282,11 @@ def _of_lights(lights: Sequence[Light]) -> list[Uniform]:
     for i, light in enumerate(lights):
         if light.position is not None:
             found.append(Uniform(f"vizLight{i}", "vec3", light.position, "position"))
+            # Only a lamp at a place fades with distance.
             found.append(Uniform(f"vizFade{i}", "vec3", light.attenuation))
         elif light.direction is not None:
             found.append(Uniform(f"vizLight{i}", "vec3", light.direction, "direction"))
+        # Intensity and colour are one vector; a lamp without a colour is white.
         color = tuple(light.intensity * c for c in light.color or WHITE)
         found.append(Uniform(f"vizColor{i}", "vec3", color))
     return found
@@ -301,6 +314,7 @@ def _ratio(wanted: float, shown: float) -> float:
 def _of_view(cue: DepthCue | None, view: View | None) -> list[Uniform]:
     """Return the eye, as a point or as a direction with 0 after it, and the depth cue."""
     eye = Uniform("vizEye", "vec4", (0.0, 0.0, 1.0, 0.0))
+    # w = 0 is a direction, w = 1 a point: one text serves both projections.
     if view is not None and view.parallel and view.direction is not None:
         eye = Uniform("vizEye", "vec4", (*view.direction, 0.0), "direction")
     elif view is not None and view.position is not None:

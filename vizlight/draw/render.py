@@ -195,6 +195,7 @@ def make_plotter(
     _check_options(camera, cmap, clim, anti_aliasing)
     _check.text("bar", bar, expected="a title")
     _check.choice("light", light, get_args(PictureLight))
+    # A colour map of the light, or other limits, shows the numbers: no light in fragments then.
     plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
@@ -214,6 +215,7 @@ def make_plotter(
     if anti_aliasing == "auto":
         thin = any(has_lines_only(mesh) for panel in shown for mesh in all_blocks(panel.mesh))
         anti_aliasing = "ssaa" if thin else "msaa"
+    # Older VTK puts all supersampled panels where the first one is.
     if anti_aliasing == "ssaa" and len(shown) > 1 and pv.vtk_version_info < (9, 7):
         anti_aliasing = "msaa"
     try:
@@ -227,6 +229,7 @@ def make_plotter(
             # PyVista supersamples for FXAA too where the driver lacks that.
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
+            # Supersampling draws a picture that many times as wide and shrinks it.
             lines = {"line_width": line_width * pixel, "line_diameter": line_diameter}
             lines["render_lines_as_tubes"] = tubes
             lit = light == "auto" and plain
@@ -425,6 +428,7 @@ def _draw(
     of_lines = [has_lines_only(mesh) for mesh in blocks]
     size = LIFT * max((mesh.length for mesh in blocks), default=0.0)
     for mesh, lines in zip(blocks, of_lines, strict=True):
+        # A shallow copy: the caller's mesh gets neither points nor arrays of ours.
         shown = mesh.copy(deep=False)
         if lines and not all(of_lines):
             # Assigning to shown.points would move the points that it shares with the mesh.
@@ -433,6 +437,7 @@ def _draw(
             continue
         diameter = width["line_diameter"] if lines else None
         if diameter is not None:
+            # VTK hands a shader no other vector of lines than their normals.
             shown["vizlight along"] = polylines.line_tangents(mesh).astype(np.float32)
             shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data

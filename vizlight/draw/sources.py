@@ -13,7 +13,7 @@ from vizlight.draw.live import headlight_scene, lifted
 from vizlight.filters import relight
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, unlit_colors
-from vizlight.mesh import blocks, hull, records
+from vizlight.mesh import blocks, records
 from vizlight.mesh.boxes import box
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
@@ -74,7 +74,7 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
         return sides
     surface = bare
     if isinstance(bare, pv.UnstructuredGrid) or bare.GetMaxSpatialDimension() == 3:
-        surface = hull.outer_surface(bare)[0]
+        surface = blocks.outer_surface(bare)[0]
     if not isinstance(surface, pv.PolyData):
         return mesh
     split = split_where_computed(surface, asked.feature_angle)

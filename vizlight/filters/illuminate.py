@@ -200,6 +200,7 @@ def light_mesh(
         named, options.name, components=options.components, colored=scene.colored,
         bundle=bool(options.bundle),
     )  # fmt: skip
+    # Points are split first: normals, sky and light then belong to the points of the result.
     taken, known = [], []
     for block, path in named:
         own, sided = _split(block, path, options)
@@ -215,6 +216,7 @@ def light_mesh(
     ]
     taken = skied
     # Each mesh is refined alone, and has shares of light inside its own bundle.
+    # Small blocks are joined, so that many cost little more than one.
     groups, parts = batches.parts_of(
         taken, [path for _, path in named], scene, early,
         join=not (error or options.bundle), known=known, told=told,
@@ -235,6 +237,7 @@ def light_mesh(
             part._replace(inputs=occluded(part.inputs, own, options.occlusion))
             for part, own in zip(parts, taken, strict=True)
         ]
+    # Refinement has made new meshes with parts of their own.
     inputs = [part.inputs for part in parts]
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
@@ -247,6 +250,7 @@ def light_mesh(
         scene,
         progress_bar=progress_bar,
     )
+    # Back from batches to the meshes that they were joined from.
     results = batches.split(groups, shadings)
     sides = batches.split(groups, [part.sided for part in parts])
     sides = [normals.to_keep(own, sided) for own, sided in zip(taken, sides, strict=True)]

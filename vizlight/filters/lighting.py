@@ -42,6 +42,7 @@ def light(
     Scene
         Scene with both ends of its depth cue.
     """
+    # One range of depth for all parts: a cue that began anew in each block would lie.
     fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts if not inputs.generated])
     results: list[engine.Shading] = []
     total, done = sum(inputs.count for inputs, _ in parts), 0
@@ -142,6 +143,7 @@ def finish(
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
         plan = id(shading.plan)
         record: Record = {"points": shading.valid.size, "invalid": shading.invalid}
+        # Blocks that share a plan share most of their record: it is written as text once.
         if plan not in shared:
             all_of = of_light(shading, filter_name, scene, options)
             shared[plan] = json.dumps({k: v for k, v in all_of.items() if k not in record})

@@ -14,8 +14,7 @@ from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import point_arrays
 from vizlight.mesh.particles import Carrier, Rows
-from vizlight.mesh.series import Series
-from vizlight.mesh.steps import TIME
+from vizlight.mesh.series import TIME, Series
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightOptions, named
 

@@ -12,7 +12,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.mesh import blocks, hull, point_arrays, records, surfaces, tracers
+from vizlight.mesh import blocks, point_arrays, records, surfaces, tracers
 from vizlight.mesh.normals import onlooker
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
@@ -303,7 +303,7 @@ def _as_surface(mesh: object) -> pv.PolyData | None:
     """Return a grid of points whose cells are faces as a surface; others as they are."""
     grid = isinstance(mesh, pv.StructuredGrid | pv.UnstructuredGrid)
     if grid and mesh.n_cells and mesh.GetMaxSpatialDimension() == 2:  # type: ignore[attr-defined]
-        return hull.outer_surface(mesh)[0]  # type: ignore[arg-type]
+        return blocks.outer_surface(mesh)[0]  # type: ignore[arg-type]
     return mesh  # type: ignore[return-value]
 
 

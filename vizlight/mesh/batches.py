@@ -84,6 +84,7 @@ def parts_of(
     ``known`` are the normals of their surfaces, of those where they were computed already, and
     ``told`` is what the whole decides of the sides of a single mesh that is a part of it.
     """
+    # A thousand small blocks cost a thousand calls of VTK; joined they cost one.
     groups = _batches(meshes, options) if join else _alone(meshes, range(len(meshes)))
     made, parts = [], []
     while groups:
@@ -101,6 +102,7 @@ def parts_of(
         sided = part.sided
         # Some of the meshes may have two sides, which only counts without a view.
         differ = sided is not None and sided.any_open and not np.all(sided.open)
+        # Without a view open and closed surfaces are lit differently: each must be asked alone.
         if group.starts is not None and scene.view is None and differ:
             groups += _alone(meshes, group.members)
             continue
@@ -145,6 +147,7 @@ def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]
     found: dict[Key, list[int]] = {}
     size: dict[Key, int] = {}
     alone, made = [], []
+    # Values that are passed without a name belong to one mesh and cannot be joined.
     names = _names(options) if len(meshes) > 1 else None
     for i, mesh in enumerate(meshes):
         key = None if names is None else _key(mesh, names)
@@ -153,6 +156,7 @@ def _batches(meshes: Sequence[pv.DataSet], options: LightOptions) -> list[Batch]
             continue
         count = point_count(mesh)
         size[key] = size.get(key, 0) + count
+        # A full batch is closed and a new one begun.
         if size[key] > LARGEST:
             made.append(_joined(meshes, found.pop(key), names or ()))
             size[key] = count
@@ -187,6 +191,7 @@ def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     arrays += [vtk_points(mesh).GetData()]
     if (carried := data.GetNormals()) is not None:
         arrays.append(carried)
+    # VTK's arrays are laid end to end only if name, type and number of components agree.
     forms = ((a.GetName(), a.GetDataType(), a.GetNumberOfComponents()) for a in arrays)
     return (*kinds, *forms)
 

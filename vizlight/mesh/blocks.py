@@ -9,7 +9,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
 
 from vizlight import _check
-from vizlight.mesh import hull
+from vizlight.reading import hull
 from vizlight.reading.cells import check_whole, has_faces
 
 if TYPE_CHECKING:
@@ -33,6 +33,12 @@ def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
     return named
 
 
+def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
+    """Return the outer surface; see :func:`vizlight.reading.hull.outer_surface`."""
+    surface, ids = hull.outer_surface(mesh)
+    return pv.PolyData(surface), ids
+
+
 def surface(mesh: object, name: str) -> pv.PolyData:
     """Return a mesh with faces: the mesh itself, or the outer surface of another or of its blocks.
 
@@ -48,7 +54,7 @@ def surface(mesh: object, name: str) -> pv.PolyData:
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message(name, "a PyVista surface", type(mesh).__name__, _way(mesh)))
     check_whole(mesh, name)
-    found = mesh if isinstance(mesh, pv.PolyData) else hull.outer_surface(mesh)[0]
+    found = mesh if isinstance(mesh, pv.PolyData) else outer_surface(mesh)[0]
     if not has_faces(found):
         got = f"a {type(mesh).__name__} mesh without faces"
         raise ValueError(_check.message(name, "a surface with faces", got))
@@ -72,6 +78,7 @@ def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     grid = joined(mesh)
     kinds, first = np.unique(grid.celltypes, return_index=True)
     dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
+    # OpenFOAM and Exodus have side sets beside the volume that they bound.
     if len(set(dimensions)) > 1:
         keep = kinds[dimensions == dimensions.max()]
         cells: Foreign = np.flatnonzero(np.isin(grid.celltypes, keep))

@@ -134,6 +134,7 @@ class _FieldCaster:
         upright = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
         self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
+        # The oracle follows single rays; it knows fields as they are, not resampled ones.
         field = self._field
         size = max(field.x[-1], field.y[-1], field.top)
         if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * size:
@@ -147,6 +148,7 @@ class _FieldCaster:
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
         turn = np.eye(3) if self._turn is None else self._turn
+        # Lamps are turned into the frame of the grid's rows and columns.
         way, end = (
             None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
         )
@@ -163,6 +165,7 @@ class _FieldCaster:
     def reference(self, point: int, light: Light) -> float:
         field, turn = self._field, np.eye(3) if self._turn is None else self._turn
         way = None if light.direction is None else turn @ np.array(light.direction)
+        # Below the horizon every ray is inside for ever; the oracle does not integrate that.
         if not self.effort or (way is not None and way[2] <= 0):
             return math.nan
         return rays.relief_ratio(
@@ -191,6 +194,7 @@ class _SolidCaster:
             if not thickness:
                 raise ValueError(_check.message("thickness", "more than 0", thickness))
             body = closed_meshes.shell(mesh, thickness, self.normals)
+        # All bodies at once: lengths inside overlapping ones count once.
         bodies = [body] + [closed_meshes.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
         # Lengths are in units of the size of the surface, so that products neither overflow nor
         # underflow.
@@ -208,11 +212,13 @@ class _SolidCaster:
         good = self.valid
         depth = self.depth / self._unit
         limit = depth <= shadowing.LEAST_DEPTH
+        # At depth 0 the limit of t is the cosine where the way is free, else 0.
         inset = 1e-7 if limit else depth
         # For depth 0 rays start just outside the surface, so that they miss their own facet.
         place = (self.points[good] - self._origin) / self._unit
         normal = self.normals[good]
         start = place + inset * normal if limit else place - inset * normal
+        # A lamp at a place ends its rays; what stands behind it casts no shadow here.
         way, reach = self._toward(light, start)
         length = closed_meshes.inside_length(self._solids, start, way, reach, report)
         t = np.zeros(len(good))

@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, georeference, polylines, rasters, steps
+from vizlight.mesh import brains, georeference, polylines, series
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -39,7 +39,7 @@ PACKAGES = {
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
-) | dict.fromkeys(rasters.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
+) | dict.fromkeys(georeference.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
@@ -76,8 +76,8 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return _tracts_of_trx(path)
     if suffix in (".nc", ".cdf"):
         return _grid(path, time)
-    if suffix in rasters.SUFFIXES:
-        return rasters.read(path)
+    if suffix in georeference.SUFFIXES:
+        return georeference.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".inp" and _begins(path, b"*"):
@@ -302,7 +302,7 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
         step, ticking = 0, [0.0]
         if clock is not None and file.sizes[clock] > 1:
             ticking = [float(tick) for tick in file[clock].values]
-            step = steps.chosen(ticking, time)
+            step = series.chosen(ticking, time)
         for name, variable in file.data_vars.items():
             if variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size:
                 times = [dim for dim in variable.dims if _is_time(file, dim)]
@@ -334,7 +334,7 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
                 grid.point_data[name] = np.flip(field.values, turned).ravel()
         if all(_is_degrees(file, dim, words) for dim, words in zip(dims[-2:], _EARTH, strict=True)):
             grid.field_data[georeference.UNIT] = [georeference.DEGREE]
-        return steps.marked(grid, ticking, step) if len(ticking) > 1 else grid
+        return series.marked(grid, ticking, step) if len(ticking) > 1 else grid
 
 
 #: Words with which the units and the names of the axes of latitude and of longitude begin.

@@ -1,22 +1,29 @@
-"""Maps: grids in degrees of longitude and latitude in metres, and the exaggeration of heights."""
+"""Rasters, and where on the Earth they lie."""
 
 from __future__ import annotations
 
 import math
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
-    import pyvista as pv
+    from pathlib import Path
 
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Foreign
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "UNIT", "exaggeration", "in_metres", "is_degrees", "seem_degrees", "stretch",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "is_degrees", "read", "seem_degrees",
+    "stretch",
 ]  # fmt: skip
+
 
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
@@ -124,3 +131,115 @@ def _spread(mesh: pv.DataSet, heights: str) -> float:
     values = np.asarray(mesh.point_data[heights], dtype=np.float64)
     values = values[np.isfinite(values)]
     return float(np.ptp(np.percentile(values, RANGE))) if values.size else 0.0
+
+
+#: File name extensions of the rasters that are read by rasterio.
+SUFFIXES = (
+    ".tif", ".tiff", ".gtiff", ".asc", ".hgt", ".bil", ".dt0", ".dt1", ".dt2", ".adf", ".vrt",
+    ".flt", ".grd", ".kea",
+)  # fmt: skip
+#: Channels of a picture in colour.
+_COLORS = ("red", "green", "blue")
+
+
+def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
+    """Return the bands of a raster at the centres of its pixels, x east and y north.
+
+    A band is a point array of its description, or ``elevation`` where it is the only one, else
+    ``band_1``, ``band_2``, ...; red, green and blue are ``rgb``. What the file marks as missing is
+    NaN. The field data have its reference system as ``crs``, and its unit.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+
+    Returns
+    -------
+    pyvista.ImageData or pyvista.StructuredGrid
+        A structured grid where rows and columns are not along the axes.
+
+    Raises
+    ------
+    ValueError, rasterio.errors.RasterioError
+        If there is no band of numbers, or a part of the file is missing.
+    """
+    import rasterio
+
+    with warnings.catch_warnings():
+        # A raster without a place is a grid of pixels.
+        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+        with rasterio.open(path) as file:
+            arrays = _bands(file)
+            grid, turned = _grid(file)
+            crs = file.crs
+    for name, rows in arrays.items():
+        # Copied, since the arrays of a mesh are in the order of its points.
+        grid.point_data[name] = np.ascontiguousarray(rows[turned]).reshape(grid.n_points, -1)[
+            :, slice(None) if name == "rgb" else 0
+        ]
+    grid.set_active_scalars(next(iter(arrays)))
+    if crs is not None:
+        grid.field_data["crs"] = [crs.to_wkt()]
+        unit = DEGREE if crs.is_geographic else crs.linear_units
+        grid.field_data[UNIT] = [unit]
+    elif seem_degrees(grid, next(iter(arrays))):
+        grid.field_data[UNIT] = [DEGREE]
+    return grid
+
+
+def _bands(file: Foreign) -> dict[str, NDArray[np.generic]]:
+    """Return the bands by name, each with the shape (rows, columns) or (rows, columns, 3)."""
+    count = file.count
+    found = {}
+    for i in range(count):
+        if np.dtype(file.dtypes[i]).kind not in "iuf":
+            continue
+        name = file.descriptions[i] or ("elevation" if count == 1 else f"band_{i + 1}")
+        found[name] = _band(file, i)
+    if not found:
+        raise ValueError("no band of numbers")
+    kinds = [kind.name for kind in file.colorinterp[:3]]
+    if kinds == [*_COLORS] and all(file.dtypes[i] == "uint8" for i in range(3)):
+        colors = [*found.values()]
+        rest = dict([*found.items()][3:])
+        return {"rgb": np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)} | rest
+    return found
+
+
+def _band(file: Foreign, i: int) -> NDArray[np.generic]:
+    """Return the values of a band in the file's unit, NaN where they are missing."""
+    rows = file.read(i + 1, masked=True)
+    scale, offset = file.scales[i], file.offsets[i]
+    holes = np.ma.getmaskarray(rows)
+    if scale == 1 and offset == 0 and not holes.any():
+        return np.asarray(rows.data)
+    # 24 bits hold integers of 16, not of 32.
+    wide = rows.dtype.itemsize > (4 if rows.dtype.kind == "f" else 2)
+    values = rows.data.astype(np.float64 if wide else np.float32) * scale + offset
+    values[holes] = np.nan
+    return np.asarray(values)
+
+
+def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[slice, slice]]:
+    """Return the grid of a raster, and the order of rows and columns along which x and y rise."""
+    a, b, c, d, e, f = tuple(file.transform)[:6]
+    if file.transform.is_identity:
+        e, f = -1.0, float(file.height)  # a picture, whose first row is its top
+    columns, rows = np.arange(file.width) + 0.5, np.arange(file.height) + 0.5
+    if b == d == 0:
+        turned = slice(None, None, -1 if e < 0 else 1), slice(None, None, -1 if a < 0 else 1)
+        x: Array = (c + a * columns)[turned[1]]
+        y: Array = (f + e * rows)[turned[0]]
+        image = pv.ImageData(
+            dimensions=(file.width, file.height, 1),
+            spacing=(abs(a), abs(e), 1.0),
+            origin=(x[0], y[0], 0.0),
+        )
+        return image, turned
+    u, v = np.meshgrid(columns, rows)
+    points = np.stack([a * u + b * v + c, d * u + e * v + f, np.zeros_like(u)], axis=-1)
+    grid = pv.StructuredGrid()
+    grid.dimensions = (file.width, file.height, 1)
+    grid.points = points.reshape(-1, 3)
+    return grid, (slice(None), slice(None))

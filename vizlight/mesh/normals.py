@@ -93,6 +93,8 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
     for mesh in meshes:
         if isinstance(mesh, pv.PointSet | pv.PolyData) and mesh.points.dtype == np.float32:
             middle, side = blocks.box(mesh)
+            # Distance of neighbouring float32 numbers there, against the mean spacing of points on
+            # a surface.
             step = float(np.spacing(np.float32(np.abs(middle).max() + side / 2)))
             worst = max(worst, step * mesh.n_points**0.5 / side)
     if worst > ROUNDED:
@@ -115,11 +117,13 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
         if rows is None:
             continue
         corners = triangles(mesh)
+        # A sample: the test is for a mesh as a whole, not for each of its points.
         corners = corners[:: max(len(corners) // MOST_FACES, 1)]
         a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
         with np.errstate(all="ignore"):
             faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
             area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
+            # cos 60 degrees is 1/2; the sign is left out, as light takes the side that is seen.
             off = np.abs(np.einsum("ij,ij->i", faces, own)) < area * size / 2
             share = float(np.sum(area, where=off) / np.sum(area))
         if share > CONTRADICT:
@@ -135,6 +139,7 @@ def onlooker(scene: Scene) -> View | None:
     """Return the view that an open surface faces: the scene's, or one from its first light."""
     if scene.view is not None:
         return scene.view
+    # Without a view an open surface faces its first lamp, so that it is not dark.
     light = next((light for light in scene.lights if not light.follows_view), None)
     if light is None:
         return None
@@ -161,6 +166,7 @@ def warn_of_idle(mesh: pv.DataSet, angle: FeatureAngle) -> None:
         return
     if mesh.point_data.active_normals is None or not has_faces(mesh):
         return
+    # Only where the angle would have split something is there anything to tell.
     if split_edges(pv.PolyData(faces_only(mesh)), angle).n_points > mesh.n_points:
         _check.warn(
             "feature_angle has no effect on normals that the mesh has, and sharp edges look round; "
@@ -214,11 +220,13 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
     ids, ends, _ = _corners(mesh, mesh)
     _, kind = np.unique(values, axis=0, return_inverse=True)
+    # A point and a value of cells there make one new point.
     code = ids * (kind.max(initial=0) + 1) + np.repeat(kind.reshape(-1), np.diff(ends))
     _, first, number = np.unique(code, return_index=True, return_inverse=True)
     # Of the values at a point the first leaves it as it is.
     own = ids[first]
     more = np.diff(own, prepend=-1) == 0
+    # The first value keeps the point's index, so that arrays of the mesh stay in their place.
     place = np.where(more, mesh.n_points - 1 + np.cumsum(more), own)
     origin = np.concatenate([np.arange(mesh.n_points), own[more]])
     found = _at(mesh, place[number.reshape(-1)], ends, origin)
@@ -346,6 +354,7 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     if source is None:
         return
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
+    # One array, so that it travels with the mesh through files as a whole or not at all.
     rows[:, :3], rows[:, 3], rows[:, 4] = normals.vectors, normals.lean, normals.open
     point_arrays.attach_rows(mesh, KEPT, rows)
     record: Record = {
@@ -364,6 +373,7 @@ def kept(mesh: pv.DataSet) -> Sided | None:
     rows = np.asarray(mesh.point_data[KEPT])
     if rows.shape != (mesh.n_points, 5) or rows.dtype != np.float32:
         return None
+    # Moved points or other cells: the normals are of another surface.
     if record.get("source") != fingerprint(mesh):
         return None
     return Sided(

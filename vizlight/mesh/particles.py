@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
-from vizlight.geometry.lines.columns import Columns
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.mesh import point_arrays, polylines
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
-from vizlight.mesh import blocks, steps
+from vizlight.mesh import blocks, series
 from vizlight.reading.cells import POLYDATA, connectivity
 
 if TYPE_CHECKING:
@@ -254,7 +254,7 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
 #: Largest number of points of a mesh: half of the addresses that processors have.
 _MOST_POINTS = 1 << 40
 #: Field arrays that a reader adds.
-_ADDED = (steps.TIME, steps.STEPS)
+_ADDED = (series.TIME, series.STEPS)
 #: Words of a text that stand for numbers.
 _NO_NUMBERS = (b"nan", b"inf", b"infinity")
 #: Number of points of a cell, by VTK's number of its type; other types have any number.

@@ -116,6 +116,7 @@ def skies(
     found: dict[int, Sky] = {}
     shapes: dict[int, pv.DataSet] = {}
     for number, mesh in enumerate(meshes):
+        # Fields know their own horizon exactly; all other meshes hide one another's sky.
         field = _field(mesh, elevation, factor)
         if field is None:
             shapes[number] = mesh
@@ -171,6 +172,7 @@ def _of_field(
         "method": "horizons" if made.near else "horizons by NumPy",
         "error": made.error, "directions": made.azimuths, "rays": made.azimuths * share.size,
     }  # fmt: skip
+    # Told only where it takes long enough to be noticed.
     if (reason := _compiled.why_not()) and share.size > SLOW:
         _check.warn(f"the sky takes ten times as long by NumPy: {reason}")
     points = field.points()
@@ -182,6 +184,7 @@ def _filled(share: Array, valid: Bools, points: Array) -> Array:
     if valid.all():
         return share
     share = np.where(valid, share, 1.0).astype(np.float32)
+    # Points too far out would break the search and keep an open sky.
     lost = ~valid & (np.abs(points) <= _check.FARTHEST).all(axis=1)
     if valid.any() and lost.any():
         _, nearest = scipy.spatial.cKDTree(points[valid]).query(points[lost])
@@ -206,6 +209,8 @@ def _by_rays(
     if lines and (diameter is None or error >= VOXELS):
         medium, thick = bundles.medium_of(bundles.joined(lines), Bundle(diameter=diameter))
     thick = thick if diameter is None else diameter
+    # A bundle seen from inside is a medium: voxels are faster than rays where the error allows
+    # them.
     among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
     if among and medium is not None and medium.middles.shape[1] > MANY:
         return [_in_medium(mesh, medium, thick) for mesh in meshes]
@@ -214,6 +219,7 @@ def _by_rays(
     hidden = _occluders(shapes)
     if among and medium is not None:
         found = [_in_medium(mesh, medium, thick) for mesh in meshes]
+        # The medium's error is not known beforehand: rays from some points measure it.
         worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
         if max(worst) <= error:
             return [
@@ -234,6 +240,7 @@ def _by_rays(
         share = np.zeros(mesh.n_points, np.float32)
         valid = np.zeros(mesh.n_points, np.bool_)
         own = shape.ids >= 0
+        # Points of the surface that are none of the mesh have looked for the error only.
         share[shape.ids[own]], valid[shape.ids[own]] = seen.share[own], seen.valid[own]
         record: Record = {
             "method": hidden.tracer.name, "error": seen.error, "rays": seen.rays,
@@ -271,6 +278,7 @@ def _between(
     at = between.interpolated(shape.points, places)
     ways = sky_rays.facing(shape.points, places.corners, np.asarray(shape.places.ways))
     axis = None if up is None else np.array(up, np.float64)
+    # The light between the points is interpolated; rays from there tell what that misses.
     true = hidden.seen(sky_rays.Places(at, ways), error=VOXELS / 4, up=axis)
     off = np.abs(true.share - between.interpolated(seen.share, places))[true.valid]
     return float(np.quantile(off, 0.95)) if len(off) else 0.0
@@ -330,6 +338,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     """
     if polylines.has_lines_only(mesh):
         points, ids, offsets = polylines.cells_of(mesh)
+        # A line has no area that could hide anything: tubes of its diameter stand for it.
         vertices, faces = sky_rays.tubes(points, ids, offsets, thick / 2)
         ways = polylines.line_tangents(mesh)
         places = sky_rays.Places(np.asarray(mesh.points), ways, thick / 2)
@@ -344,6 +353,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     view = None if up is None else View(direction=up)
     ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
     outward = np.where((ids >= 0)[:, np.newaxis], ways[ids], 0.0)
+    # A ray must not meet the faces around its own start.
     beside = sky_rays.beside(points, faces, outward)
     return _Shape(points, faces, sky_rays.Places(points, outward, beside=beside), ids)
 

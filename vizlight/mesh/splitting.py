@@ -10,7 +10,7 @@ import scipy
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import hull, normals, point_arrays, records
+from vizlight.mesh import blocks, normals, point_arrays, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.reading.cells import connectivity, has_faces
@@ -51,7 +51,7 @@ def simplices(mesh: pv.DataSet) -> Indices:
     if isinstance(mesh, pv.PolyData):
         surface, origin = mesh, None
     else:
-        surface, origin = hull.outer_surface(mesh)
+        surface, origin = blocks.outer_surface(mesh)
     if has_faces(surface):
         found, _ = triangles(surface)
     else:
@@ -78,7 +78,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
     if isinstance(mesh, pv.PolyData):
         found = mesh
     else:
-        surface, origin = hull.outer_surface(mesh)
+        surface, origin = blocks.outer_surface(mesh)
         if (origin < 0).any():
             remedy = "take the mesh's extract_surface()"
             raise ValueError(_check.message("mesh", "flat cells", "curved cells", remedy))
@@ -132,6 +132,8 @@ class Cells:
         self.count, self.size = len(points), parents.shape[1]
         self.parents = self.corners = parents
         self.parent = np.arange(len(parents))
+        # By place, so that triangles which share no index are split alike and no gap opens between
+        # them.
         _, twin = np.unique(points, axis=0, return_inverse=True)
         self.twin = np.asarray(twin.reshape(-1), dtype=np.intp)
         self.steps: list[Places] = []
@@ -163,7 +165,10 @@ class Cells:
             Where each edge is split, from its end of the smaller number.
         """
         touched = np.zeros(self.twin.max() + 1, np.bool_)
+        # Both ends of an edge are packed in its number.
         touched[chosen >> HALF] = touched[chosen & ((1 << HALF) - 1)] = True
+        # Only parts with two touched corners can have a chosen edge: a cheap test before the exact
+        # one.
         near = np.flatnonzero(np.count_nonzero(touched[self.twin[self.corners]], axis=1) > 1)
         codes, reverse = self.edges(near)
         at = np.minimum(np.searchsorted(chosen, codes), len(chosen) - 1)
@@ -173,6 +178,7 @@ class Cells:
         own, side = np.nonzero(marked)
         edge = at[own, side]
         ends = self.corners[rows[own], side], self.corners[rows[own], (side + 1) % self.size]
+        # A share counts from the end of the smaller number; the part may run the other way.
         t = np.where(reverse[own, side], 1 - share[edge], share[edge])
         # A point for each pair of ends, a twin for each edge.
         _, first, point = np.unique(_pairs(*ends), return_index=True, return_inverse=True)
@@ -216,6 +222,8 @@ class Cells:
             weights = np.asarray(step.weights.ravel(), dtype=np.float64)
             ends = np.arange(0, len(weights) + 1, 2)
             size = len(step.corners), found.shape[0]
+            # New points lie between earlier ones, which may be new themselves: products of the
+            # weights lead back to the points of the mesh.
             between = scipy.sparse.csr_array((weights, step.corners.ravel(), ends), shape=size)
             found = scipy.sparse.csr_array(
                 scipy.sparse.vstack([found, between @ found], format="csr")
@@ -297,6 +305,7 @@ def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
     fresh = np.arange(len(parents))
     while len(fresh):
         numbers, _ = cells.edges(fresh)
+        # Only new parts can still be too long.
         corners = places[cells.corners[fresh]]
         away = corners - np.roll(corners, -1, axis=1)
         chosen = np.unique(numbers[np.einsum("ijk,ijk->ij", away, away) > most * most])
@@ -316,6 +325,8 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_arr
         return own
     ids, offsets = connectivity(lines)
     # The segments of a line stand one after the other; its last point follows.
+    # How far along its segment each part begins: the share of the segment's end in its first
+    # point.
     along = shares[parts.corners[:, 0], parts.parents[parts.parent, 1]]
     order = np.lexsort((np.asarray(along).ravel(), parts.parent))
     start = parts.corners[order, 0]
@@ -324,6 +335,7 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_arr
     owner = np.concatenate([line[parts.parent[order]], np.flatnonzero(size)])
     points = np.concatenate([start, ids[offsets[1:][size > 0] - 1]])
     last = np.arange(len(points)) >= len(start)
+    # The last point of each line comes after its parts.
     place = np.lexsort((last, owner))
     ends = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=len(size)))])
     return pv.CellArray.from_arrays(
@@ -338,6 +350,7 @@ def _interpolated(
 
     Places are not directions, although they may have the length 1, as on a sphere.
     """
+    # Bytes with three or four components are colours; other integers may be labels.
     colour = rows.dtype == np.uint8 and rows.ndim == 2 and rows.shape[1] in (3, 4)
     if rows.dtype.kind != "f" and not colour:
         order = np.lexsort(

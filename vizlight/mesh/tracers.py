@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
-from vizlight.geometry.lines import crosses, even, evenness, fur, samples
+from vizlight.geometry.lines import even, evenness, fur, tracing
 from vizlight.geometry.lines.simplices import Places, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, trace
 from vizlight.mesh import polylines
@@ -110,7 +110,7 @@ class CellTracer:
         rows: Array = np.asarray(mesh.point_data[TRACED])
         self.sheets = rows.shape[1] // 3
         if self.sheets == 2:
-            self.cells, rows = crosses.double_cover(points, cells, rows.reshape(-1, 2, 3))
+            self.cells, rows = tracing.double_cover(points, cells, rows.reshape(-1, 2, 3))
         else:
             self.cells = Simplices(points, cells)
         self.flow = Flow(self.cells, rows, line_field=line_field)
@@ -232,7 +232,7 @@ class CellTracer:
 def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
     """Refuse a spacing that gives more curves than memory holds, or is beyond the mesh."""
     k = tracer.cells.k
-    least = (tracer.cells.extent * samples.SAMPLES / MOST_SAMPLES) ** (1 / k)
+    least = (tracer.cells.extent * even.SAMPLES / MOST_SAMPLES) ** (1 / k)
     if not least <= spacing <= MOST_SPACING:
         ends = f"from {size * least:.3g} to {size * MOST_SPACING:.3g}"
         expected = f"a number {ends} for a mesh of this size"

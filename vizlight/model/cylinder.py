@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import cylinder_kernels, kernels, layout
+from vizlight.model import cylinder_kernels, frames, kernels
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -268,7 +268,7 @@ def _validated(
     """Return the shape of the batch, the tangents as frames, and wi and wo, all validated."""
     light, eye = _check.vectors("wi", wi, n=3), _check.vectors("wo", wo, n=3)
     line = _check.vectors("tangent", tangent, n=3)
-    return layout.batch("tangent", line[..., np.newaxis, :], wi=light, wo=eye)
+    return frames.batch("tangent", line[..., np.newaxis, :], wi=light, wo=eye)
 
 
 def _normal_parts(
@@ -287,4 +287,4 @@ def _normal_parts(
 
 
 def _finish(value: Array, valid: Bools, shape: tuple[int, ...]) -> Array:
-    return layout.result(np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape))
+    return frames.result(np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape))

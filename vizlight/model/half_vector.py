@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import kernels, layout
+from vizlight.model import frames, kernels
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -50,7 +50,7 @@ def reflection_from_half(n_h: ArrayLike, /, *, triple: ArrayLike = 0.0) -> Array
         n_h=_check.floats_in("n_h", n_h, -1.0, 1.0, "cosines"),
         triple=_check.floats_in("triple", triple, -1.0, 1.0, "triple products of unit vectors"),
     )
-    return layout.result(2 * half * half - 1 + 2 * cross * cross)
+    return frames.result(2 * half * half - 1 + 2 * cross * cross)
 
 
 def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) -> Array:
@@ -83,7 +83,7 @@ def reflection_cosine(nu: ArrayLike, /, *, beta: ArrayLike, theta: ArrayLike) ->
             for name, value in (("nu", nu), ("beta", beta), ("theta", theta))
         }
     )
-    return layout.result(np.cos(2 * nu) + 2 * np.square(np.sin(beta) * np.cos(theta)))
+    return frames.result(np.cos(2 * nu) + 2 * np.square(np.sin(beta) * np.cos(theta)))
 
 
 def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
@@ -115,7 +115,7 @@ def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
         triple = kernels.triple(light, half, up)
         value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(triple)
         straight = 2 * kernels.dot(up, light) * kernels.dot(up, eye) - kernels.dot(light, eye)
-    return layout.result(np.where(size > 0, value, straight).reshape(shape))
+    return frames.result(np.where(size > 0, value, straight).reshape(shape))
 
 
 def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
@@ -146,7 +146,7 @@ def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
     le, en, nl = (kernels.dot(a, b) for a, b in ((light, eye), (eye, up), (up, light)))
     value = le * le + en * en + nl * nl - 2 * le * en * nl - 1
     value += np.square(kernels.triple(light, eye, up))
-    return layout.result(value.reshape(shape))
+    return frames.result(value.reshape(shape))
 
 
 def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import formulas, kernels, layout
+from vizlight.model import formulas, frames, kernels
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -53,9 +53,9 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Arr
     infinite, ``(8 eps)^p``. The deviation of the rows from orthonormality adds to it.
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
-    rows = layout.as_frame(frame)
+    rows = frames.as_frame(frame)
     light = _check.vectors("wi", wi, n=rows.shape[-1])
-    shape, rows, (light,) = layout.batch("frame", rows, wi=light)
+    shape, rows, (light,) = frames.batch("frame", rows, wi=light)
     light, size = kernels.unit(light)
     along, sine = kernels.split(light, rows)
     value = np.where(size > 0, formulas.diffuse(sine, kernels.dot(along, along), exponent), 0)
@@ -115,10 +115,10 @@ def specular(
     """
     _check.choice("model", model, get_args(SpecularModel))
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    rows = layout.as_frame(frame)
+    rows = frames.as_frame(frame)
     n = rows.shape[-1]
     light, eye = _check.vectors("wi", wi, n=n), _check.vectors("wo", wo, n=n)
-    shape, rows, (light, eye) = layout.batch("frame", rows, wi=light, wo=eye)
+    shape, rows, (light, eye) = frames.batch("frame", rows, wi=light, wo=eye)
     light, light_size = kernels.unit(light)
     eye, eye_size = kernels.unit(eye)
     if model == "phong":

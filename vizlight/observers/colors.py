@@ -11,6 +11,7 @@ from vizlight.shading.display import displayable
 if TYPE_CHECKING:
     from vizlight._types import Array
 
+
 #: CIE XYZ of linear sRGB (IEC 61966-2-1), and of white D65.
 _XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 _WHITE = _XYZ.sum(axis=1)
@@ -51,4 +52,38 @@ def seen(rgb: Array, random: np.random.Generator, noise: float) -> Array:
     colors = shown(rgb)
     noisy = colors + random.normal(0.0, noise, colors.shape)
     found: Array = np.rint(255 * np.clip(noisy, 0.0, 1.0)) / 255
+    return found
+
+
+def posterior(observed: Array, table: Array, noise: float) -> Array:
+    """Return the probability of each candidate, equally likely before the pixel is seen.
+
+    Parameters
+    ----------
+    observed : ndarray, shape (M, 3)
+        Colours of pixels, from 0 to 1.
+    table : ndarray, shape (A, 3) or (M, A, 3)
+        Colours of the candidates without noise, the same for all pixels or separate for each.
+    noise : float
+        Standard deviation of each channel, to which the deviation of rounding to bytes is added.
+
+    Returns
+    -------
+    ndarray, shape (M, A)
+        Probabilities, with sum 1 in each row.
+    """
+    if table.ndim == 3:
+        square = ((observed[:, np.newaxis] - table) ** 2).sum(axis=-1)
+    else:
+        square = (observed**2).sum(axis=-1)[:, np.newaxis] + (table**2).sum(axis=-1)
+        square = square - 2 * observed @ table.T
+    square -= square.min(axis=1, keepdims=True)
+    found: Array = np.exp(-square / (2 * (noise**2 + ROUNDING)))
+    return np.asarray(found / found.sum(axis=1, keepdims=True))
+
+
+def information(probability: Array) -> Array:
+    """Return the bits that each pixel tells of candidates that were equally likely before."""
+    bits = probability * np.log2(np.maximum(probability, 1e-300))
+    found: Array = np.log2(probability.shape[1]) + bits.sum(axis=1)
     return found

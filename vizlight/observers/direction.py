@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.colors import lab, seen, shown
-from vizlight.observers.matching import information, posterior
+from vizlight.observers.colors import information, lab, posterior, seen, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

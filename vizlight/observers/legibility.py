@@ -10,10 +10,8 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
-from vizlight.observers.figures import of_direction, of_shape, of_slope, of_value
-from vizlight.observers.parts import parts_of
-from vizlight.observers.places import places_of, seen_from
-from vizlight.observers.record import Legibility
+from vizlight.observers.record import Legibility, of_direction, of_shape, of_slope, of_value
+from vizlight.observers.samples import parts_of, places_of, seen_from
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
 

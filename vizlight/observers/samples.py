@@ -4,25 +4,40 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
+import pyvista as pv
 
+from vizlight import _check
+from vizlight.draw.backends import BackendError, choose_backend
+from vizlight.draw.cameras import VIEW_ANGLE, camera_on
+from vizlight.filters.tint import values_of
+from vizlight.mesh import blocks, records, splitting
+from vizlight.mesh.parts import part_of
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.parts import rows_of
-from vizlight.observers.visible import rays, weights
+from vizlight.observers.visible import Drawn, rays, visible, weights
+from vizlight.scene import Scene, View
+from vizlight.scene.view import as_view, is_camera
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.results import DEFAULT_NAME
 from vizlight.verify.between import Places, interpolated, mean_spaces
 
 if TYPE_CHECKING:
-    import pyvista as pv
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    from numpy.typing import ArrayLike, NDArray
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.observers.parts import Kind, Part, Shares
-    from vizlight.scene import Scene
+    from vizlight.scene.vtk import AnyView
+    from vizlight.shading.inputs import ArraySource
+    from vizlight.shading.options import LightOptions
+
+    Kind: TypeAlias = Literal["surface", "line", "point"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,3 +216,234 @@ def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array |
     normals = interpolated(unit_rows(own.normals[ids]), places)
     facts = interpolated(own.facts[ids], places)
     return own.turned(unit_rows(normals), facts, points)
+
+
+#: Rows that are read at once of what has no rows by number.
+BLOCK = 1 << 17
+
+
+class Shares(NamedTuple):
+    """Shares of light that reach points, None where all of it does.
+
+    Attributes
+    ----------
+    transmittance : ndarray, shape (N, L), or None
+        Share of each light of intensity above 0.
+    occlusion : ndarray, shape (N,), or None
+        Share of the ambient light.
+    """
+
+    transmittance: Array | None
+    occlusion: Array | None
+
+    def each(self, function: Callable[[Array], Array]) -> Shares:
+        """Return what a function gives for each array."""
+        return Shares(*(None if rows is None else function(rows) for rows in self))
+
+
+@dataclass(frozen=True)
+class Part:
+    """One mesh of the picture.
+
+    Attributes
+    ----------
+    kind : {"surface", "line", "point"}
+        What its cells are.
+    cells : ndarray of int, shape (C, s)
+        Triangles, segments or points.
+    inputs : ShadingInputs
+        Points, tangents and normals. A surface has normals also where its light does not depend
+        on them: they are what a reader sees as its shape.
+    options : LightOptions
+        How the mesh is lit.
+    shares : Shares
+        Shares of the light that reach the points.
+    values : ndarray, shape (N,), or None
+        Values of the points that colours show.
+    """
+
+    kind: Kind
+    mesh: pv.DataSet
+    cells: Indices
+    inputs: ShadingInputs
+    options: LightOptions
+    shares: Shares
+    values: NDArray[np.generic] | None
+
+    @property
+    def drawn(self) -> Drawn:
+        """Points and cells to draw."""
+        if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):
+            return Drawn(self.mesh.GetPoints(), self.cells)
+        return Drawn(pv.vtk_points(np.asarray(self.inputs.points[:])), self.cells)
+
+
+def parts_of(
+    mesh: pv.DataSet | pv.MultiBlock,
+    scene: Scene,
+    options: LightOptions,
+    scalars: str | ArrayLike | None,
+) -> list[Part]:
+    """Return the meshes of a picture that have points; an error names the block.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array is missing or does not fit, as :func:`vizlight.illuminate`.
+    """
+    return [
+        _part(block, path, scene, options, scalars)
+        for block, path in blocks.check(mesh)
+        if block.n_points
+    ]
+
+
+def _part(
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    scalars: str | ArrayLike | None,
+) -> Part:
+    cells = splitting.simplices(mesh)
+    kind: Kind = "surface" if cells.shape[1] == 3 else "line"
+    if not len(cells):
+        kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
+    known = options
+    if kind == "surface" and options.tangents is not None:
+        known = dataclasses.replace(options, conditioned=True)
+    made = part_of(mesh, path, scene, known)
+    return Part(
+        kind,
+        mesh,
+        cells,
+        made.inputs.of_faces(),
+        options,
+        _shares(mesh, sum(light.intensity > 0 for light in scene.lights)),
+        None if scalars is None else values_of(mesh, scalars),
+    )
+
+
+def _shares(mesh: pv.DataSet, lights: int) -> Shares:
+    """Return the shares of light that a filter found to reach the points of a mesh."""
+    made = records.made(mesh, DEFAULT_NAME)
+    found = Shares(
+        *(np.asarray(mesh.point_data[name]) if name in made else None for name in Shares._fields)
+    )
+    name = (records.read(mesh, DEFAULT_NAME) or {}).get("options", {}).get("occlusion")
+    if isinstance(name, str) and name in mesh.point_data:
+        found = found._replace(occlusion=np.asarray(mesh.point_data[name]))
+    if found.transmittance is None:
+        return found
+    columns = found.transmittance.reshape(mesh.n_points, -1)
+    if columns.shape[1] != lights:
+        expected = f"one column for each of the {lights} lights of the scene"
+        remedy = "light the mesh by this scene first, or delete the array"
+        got = f"{columns.shape[1]} in 'transmittance'"
+        raise ValueError(_check.message("mesh", expected, got, remedy))
+    return found._replace(transmittance=columns)
+
+
+def rows_of(source: ArraySource, ids: Indices) -> NDArray[np.generic]:
+    """Return rows of points or of an array by their numbers."""
+    if isinstance(source, np.ndarray):
+        return np.asarray(source[ids])
+    found = np.empty((len(ids), *source.shape[1:]), source.dtype)
+    for start in range(0, source.shape[0], BLOCK):
+        own = (ids >= start) & (ids < start + BLOCK)
+        if own.any():
+            found[own] = source[start : start + BLOCK][ids[own] - start]
+    return found
+
+
+def seen_from(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene, view: AnyView
+) -> tuple[pv.Camera, Scene]:
+    """Return the camera of the picture, and the scene with its view."""
+    own = as_view(view) or scene.view
+    for name, n in (("scene", scene.n), ("view", None if own is None else Scene(view=own).n)):
+        if n not in (None, 3):
+            remedy = "project the mesh first, vizlight.project, and measure it in 3-space"
+            raise ValueError(_check.message(name, "vectors of 3 components", n, remedy))
+    if is_camera(view):
+        camera = camera_on((-1, 1, -1, 1, -1, 1))
+        camera.DeepCopy(view)
+    elif own is None:
+        camera = camera_on(mesh)
+    else:
+        camera = _camera_of(own, mesh)
+    return camera, scene.replace(view=View.from_camera(camera) if own is None else own)
+
+
+def _camera_of(view: View, mesh: pv.DataSet | pv.MultiBlock) -> pv.Camera:
+    """Return a camera at the eye of a view."""
+    if view.position is None or view.parallel:
+        assert view.direction is not None
+        return camera_on(mesh, view.direction, up=view.axes()[1].tolist(), parallel=view.parallel)
+    position = np.array(view.position)
+    if view.direction is None:
+        toward = position - np.array(camera_on(mesh).focal_point)
+    else:
+        toward = np.array(view.direction)
+    eye = View(direction=toward, up=view.up)
+    camera = camera_on((-1, 1, -1, 1, -1, 1), toward, up=eye.axes()[1].tolist())
+    camera.position = tuple(position)
+    camera.focal_point = tuple(position - toward)
+    camera.view_angle = VIEW_ANGLE
+    return camera
+
+
+def places_of(
+    parts: list[Part],
+    camera: pv.Camera,
+    scene: Scene,
+    most: int,
+    random: np.random.Generator,
+) -> tuple[list[tuple[Sample, Part]], int, bool]:
+    """Return places of the picture with what is there, the number of pixels, and whether drawn."""
+    try:
+        backend = choose_backend()
+    except BackendError:
+        found = _facing(parts, camera, scene, most, random)
+        total = sum(len(one) for one, _ in found)
+        drawn = False
+    else:
+        pixels = visible([part.drawn for part in parts], camera, backend)
+        total, drawn = len(pixels.part), True
+        chosen = np.sort(random.permutation(total)[:most])
+        found = []
+        for number, part in enumerate(parts):
+            own = chosen[pixels.part[chosen] == number]
+            if len(own):
+                corners = part.cells[pixels.cell[own]]
+                found.append((sample(part, corners, pixels.at[own], camera, scene), part))
+    if not total:
+        remedy = "pass view= with a direction, or a camera that looks at the mesh"
+        raise ValueError(_check.message("mesh", "a point that the eye sees", "none", remedy))
+    return found, total, drawn
+
+
+def _facing(
+    parts: list[Part], camera: pv.Camera, scene: Scene, most: int, random: np.random.Generator
+) -> list[tuple[Sample, Part]]:
+    """Return random points that face the eye, each as likely as its surface is large in a picture.
+
+    Points that are even on a surface are then as in a picture without what hides them.
+    """
+    total = sum(part.inputs.count for part in parts)
+    found = []
+    for part in parts:
+        count = part.inputs.count
+        # On a ball half of the points face the eye, and are half as large in the picture.
+        chosen = random.permutation(count)[: max(1, round(4 * most * count / total))]
+        ids: Indices = np.sort(chosen)
+        ids = ids[np.isfinite(rows_of(part.inputs.points, ids)).all(axis=1)]
+        own = sample(part, ids[:, np.newaxis], np.zeros((len(ids), 2)), camera, scene)
+        if own.normals is not None:
+            toward = np.einsum("ij,ij->i", own.normals, own.eye)
+            own = own.take(toward > random.uniform(0.0, 1.0, len(own)))
+        if len(own):
+            found.append((own, part))
+    keep = min(1.0, most / max(1, sum(len(one) for one, _ in found)))
+    few = [random.permutation(len(one))[: max(1, round(keep * len(one)))] for one, _ in found]
+    return [(one.take(np.sort(ids)), part) for ids, (one, part) in zip(few, found, strict=True)]

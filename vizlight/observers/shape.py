@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.colors import seen, shown
+from vizlight.observers.colors import information, posterior, seen, shown
 from vizlight.observers.direction import Found
-from vizlight.observers.matching import information, posterior
 
 if TYPE_CHECKING:
     from vizlight._types import Array

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.colors import seen, shown
+from vizlight.observers.colors import posterior, seen, shown
 from vizlight.observers.direction import ANGLES, BLOCK
-from vizlight.observers.matching import posterior
 
 if TYPE_CHECKING:
     from vizlight._types import Array

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array
-    from vizlight.observers.parts import Part
-    from vizlight.observers.samples import Sample
+    from vizlight.observers.samples import Part, Sample
 
 
 class Read(NamedTuple):

@@ -9,7 +9,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
 from vizlight.reading.cells import GHOSTS
-from vizlight.reading.edges import place_numbers
+from vizlight.reading.topology import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -9,6 +9,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.cells import connectivity, places, triangles
+from vizlight.reading.topology import BLOCK, components
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,11 +19,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
+
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
 #: little more than rounding: it counts the less.
 FLAT = 1e-3
 #: Number of corners that are worked on at once.
-BLOCK = 1 << 17
+CORNERS = 1 << 17
 
 
 def surface_normals(surface: vtkPolyData) -> Array:
@@ -64,7 +66,7 @@ def corner_normals(points: NDArray[np.generic], faces: Iterator[Indices] | list[
     """
     total = np.zeros((3, len(points)))
     for corners in faces:
-        for block in _pool.blocks(len(corners), max(BLOCK // max(corners.shape[1], 1), 1)):
+        for block in _pool.blocks(len(corners), max(CORNERS // max(corners.shape[1], 1), 1)):
             _add(total, points, corners[block])
     return np.ascontiguousarray(kernels.unit(total)[0].T, dtype=np.float32)
 
@@ -94,6 +96,8 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
                 across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
         face, area = kernels.unit(across)
         height = np.minimum(area / (FLAT * longest), 1)
+        # Fourth root of each length: the product of two is the square root of their geometric
+        # mean.
         roots = [np.sqrt(np.sqrt(np.sqrt(square))) for square in squares]
         before = [[part[i - 1] for i in range(s)] for part in (sides, squares, roots)]
         if s > 3 and not all(square.all() for square in squares):
@@ -106,16 +110,116 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
             ahead, behind = sides[i], -before[0][i]
             normal, size = face, area
             if s > 3:
+                # A polygon that is not plane has another normal at each corner.
                 corner, size = kernels.unit(kernels.cross(ahead, behind))
                 inward = kernels.dot(corner, face)
                 flat = size <= FLAT * np.maximum(squares[i], before[1][i])
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
+            # The angle of the corner, exact for sharp and for blunt ones.
             weight = np.arctan2(size, kernels.dot(ahead, behind))
             weight *= height / (roots[i] * before[2][i])
             weight[~np.isfinite(weight)] = 0
             for k in range(3):
+                # Faster than np.add.at, as long as a block has points near each other.
                 sums = np.bincount(at[i] - low, normal[k] * weight, high - low)
                 if used is None:
                     total[k, low:high] += sums
                 else:
                     total[k, used] += sums
+
+
+#: Share of the longest side of a triangle up to which another side joins its ends, and of the
+#: longest of those up to which all points that are joined lie apart.
+NEAR = 1e-3
+
+
+def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
+    """Return the first of the points that slivers join with each.
+
+    A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
+    Points that are joined in a chain, as across a row of slivers, stay apart where the chain is
+    longer than that.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_points, 3)
+    surface : vtkPolyData
+
+    Returns
+    -------
+    ndarray of int, shape (n_points,), or None
+        None where no points are joined.
+    """
+    ids, offsets = connectivity(surface.GetPolys())
+    first = offsets[:-1][np.diff(offsets) == 3]
+    found: list[tuple[Indices, Indices, Array]] = []
+    for block in _pool.blocks(len(first), BLOCK):
+        rows = np.stack([ids[first[block] + i] for i in range(3)], axis=1)
+        corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
+        with np.errstate(invalid="ignore", over="ignore", under="ignore"):
+            sides = [corners[i] - corners[i - 1] for i in range(3)]
+            squares = [kernels.dot(side, side) for side in sides]
+            longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
+            for i, square in enumerate(squares):
+                near = np.flatnonzero(square <= NEAR * NEAR * longest)
+                one, other = rows[near, i], rows[near, i - 1]
+                found.append((np.minimum(one, other), np.maximum(one, other), longest[near]))
+    if not found:
+        return None
+    lower, upper, longest = (np.concatenate(each) for each in zip(*found, strict=True))
+    apart = lower != upper
+    lower, upper, longest = lower[apart], upper[apart], longest[apart]
+    if not len(lower):
+        return None
+    # Chains of slivers have one first point; whether they stay near is tested below.
+    first = components(lower, upper, len(points))
+    reach = np.zeros(len(points))
+    np.maximum.at(reach, first[lower], NEAR * np.sqrt(longest))
+    ends = np.unique(np.concatenate([lower, upper]))
+    low, high = np.full((2, len(points), 3), np.inf)
+    places = points[ends].astype(np.float64)
+    np.minimum.at(low, first[ends], places)
+    # The upper bound as the least of the negative: both arrays start from infinity.
+    np.minimum.at(high, first[ends], -places)
+    with np.errstate(invalid="ignore"):
+        together = (-high - low).max(axis=1) <= reach
+    return np.where(together[first], first, np.arange(len(points)))
+
+
+def common_normals(
+    points: NDArray[np.generic], triangles: Indices, normals: Array, first: Indices, least: float
+) -> tuple[Array, Indices]:
+    """Return normals that points which are joined have in common, where these are nearly the same.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_points, 3)
+    triangles : ndarray of int, shape (n, 3)
+    normals : ndarray, shape (n_points, 3)
+        Unit normals of the points, each by its own triangles.
+    first : ndarray of int, shape (n_points,)
+        First of the points that are joined with each.
+    least : float
+        Least cosine between a point's own normal and the common one.
+
+    Returns
+    -------
+    normals : ndarray, shape (n_points, 3)
+        Of all triangles at joined points but the slivers between these.
+    first : ndarray of int, shape (n_points,)
+        First of the points that are joined and got one normal.
+    """
+    several = np.bincount(first, minlength=len(first))[first] > 1
+    rows = triangles[several[triangles].any(axis=1)]
+    # Slivers have a direction by rounding alone.
+    rows = rows[np.all(first[rows] != first[np.roll(rows, 1, axis=1)], axis=1)]
+    common = corner_normals(points, [first[rows]])[first]
+    normals = np.where(several[:, np.newaxis], corner_normals(points, [rows]), normals)
+    cosine = np.einsum("ij,ij->i", normals, common)
+    apart = several & ~(cosine >= least) & np.any(normals, axis=1)
+    kept = np.ones(len(first), dtype=np.bool_)
+    kept[first[apart]] = False
+    chosen = several & kept[first]
+    found = normals.copy()
+    found[chosen] = common[chosen]
+    return found, np.where(chosen, first, np.arange(len(first)))

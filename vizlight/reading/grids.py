@@ -61,6 +61,7 @@ def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
     # Without two axes along which it extends a grid has no faces.
     if count <= PART or np.count_nonzero(size > 1) < 2:
         return False
+    # A cube has few points on its surface; a sheet has all of them there.
     if count - np.maximum(size - 2, 0).prod() <= FEW * count:
         return False
     return not any(data.HasArray(GHOSTS) for data in (mesh.GetPointData(), mesh.GetCellData()))
@@ -82,6 +83,7 @@ def parts(mesh: Grid) -> Iterator[Part]:
     for start in range(0, count, layers):
         stop = min(start + layers, count)
         low, high = max(start - 1, 0), min(stop + 1, count)
+        # A layer more on either side: normals and borders at the cut are then those of the whole.
         surface, own = outer_surface(_layers(mesh, axis, low, high))
         inner = (*size[:axis], high - low, *size[axis + 1 :])
         index = list(np.unravel_index(own, inner, order="F"))

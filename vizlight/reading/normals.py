@@ -13,7 +13,7 @@ from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
-from vizlight.reading import edges, grids
+from vizlight.reading import grids
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
     as_numpy,
@@ -26,9 +26,8 @@ from vizlight.reading.cells import (
     triangles,
     used,
 )
-from vizlight.reading.corners import surface_normals
+from vizlight.reading.corners import common_normals, joined, surface_normals
 from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.joints import common_normals, joined
 from vizlight.reading.orientation import (
     MOST_LEAN,
     SHARP,
@@ -38,7 +37,15 @@ from vizlight.reading.orientation import (
     crease_share,
     sides_of,
 )
-from vizlight.reading.topology import Owners, is_closed, topology
+from vizlight.reading.topology import (
+    Owners,
+    edge_numbers,
+    inner_edges,
+    is_closed,
+    place_numbers,
+    single_edges,
+    topology,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -124,6 +131,7 @@ class Sided:
         """Return the normals turned to a side; the normals themselves are not changed."""
         if facing not in ("auto", "eye") or view is None or len(self.vectors) == 0:
             return self.vectors
+        # Closed pieces show an eye their outer side alone: nothing to turn.
         if facing == "auto" and not self.any_open:
             return self.vectors
         return Turned(self, points, view, facing, self.averted_fields(points, view))
@@ -143,6 +151,7 @@ class Sided:
         count = len(self.vectors)
         some = slice(0, count, max(count // SEEN, 1))
         number = np.broadcast_to(self.open, count)[some]
+        # A height field shows an eye above it more of its upper side, whatever its borders do.
         shown = facing_of(self.vectors[some], points[some], view)
         found: Bools = np.bincount(number, shown, most + 1) < 0
         found[:2] = False
@@ -166,6 +175,7 @@ class Sided:
         field = number > 1
         if facing != "auto" or not field.any():
             return limited
+        # The side that shows most takes in what leans to it; the other side gives that up.
         own = np.abs(lean)
         return np.where(field, np.where(averted[number], -own, own), limited)
 
@@ -230,6 +240,8 @@ def _averted(vectors: Array, points: NDArray[np.generic], view: View, lean: Arra
     """Return the points whose normals point away from the eye, by more than they lean."""
     if view.parallel:
         toward = np.asarray(view.direction, dtype=np.float64)
+        # Across the lean a normal of a coarse mesh points away while its faces are still seen:
+        # turning it there would draw a dark rim.
         cosine = vectors @ toward / np.linalg.norm(toward)
         least: Array | float = 0.0 if lean is None else -lean
         return np.asarray(cosine < least, dtype=np.bool_)
@@ -269,6 +281,7 @@ def sided_normals(
         return (kept and kept(mesh)) or computed_normals(mesh, starts=starts)
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
+    # These two need no pieces; in n-space there is no order of corners that tells a side.
     if facing in ("eye", "as given") or n != 3:
         return Sided(given)
     if told is None and grids.in_parts(mesh):
@@ -282,6 +295,7 @@ def sided_normals(
     mesh_of = np.repeat(np.arange(owners.count), size)
     if told is None:
         closed, alike = is_closed(surface, owners)
+        # A closed surface whose faces have no common side, such as Boy's, has no outside.
         if np.any(closed & ~alike):
             closed &= ~_inside_out(surface, owners)
         inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
@@ -309,6 +323,7 @@ def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bool
     outward = np.zeros(owners.count)
     if not len(ids):
         return outward < 0
+    # At the outermost points along each axis an outward normal points along it: six votes.
     for axis in range(3):
         for sign in (1, -1):
             along = sign * points[ids, axis]
@@ -325,7 +340,7 @@ def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bool
 def _sided_grid(mesh: Grid, given: Array) -> Sided:
     """Return normals of a grid with their sides, found part by part."""
     # Edges that are not on the border of a sheet have two faces.
-    found = [edges.edge_numbers(x[:-1], x[1:]) for x in map(edges.place_numbers, grids.rim(mesh))]
+    found = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, grids.rim(mesh))]
     if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
         side = int(sides_of(given, None, np.ones(1, dtype=np.bool_))[0])
         if side < 2:
@@ -382,7 +397,7 @@ def computed_normals(
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
     centroid of the piece. Points that slivers join, with a side of at most
-    :data:`~vizlight.reading.joints.NEAR` of the longest, as isosurfaces through nodes of a grid
+    :data:`~vizlight.reading.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
     have them, have one normal, where their own are within
     :data:`~vizlight.reading.orientation.SHARP` degrees of it.
 
@@ -412,6 +427,8 @@ def computed_normals(
     if told is None and grids.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     part = None if told is None else told.side
+    # First normals that agree with each other on each piece, then the side of each piece as a
+    # whole.
     found = wound_normals(mesh, as_wound=as_wound, starts=starts, side=part)
     if found is None and starts is None and is_scan(mesh):
         return _of_cloud(mesh, view)
@@ -439,6 +456,7 @@ def computed_normals(
     if origin is not None:
         if dimension(mesh) == 3:
             size = [count] if starts is None else np.diff(starts)
+            # Points inside a volume have no normal; they are no fault.
             inside = size - owners.counts(np.flatnonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
         number = scattered(number.astype(np.float64), origin, count).astype(np.intp)
@@ -490,6 +508,7 @@ def wound_normals(
             surface = outer if has_faces(outer) else surface
     shape = Shape(surface, Owners(starts, origin), side)
     vectors = surface_normals(_wound(surface, shape, as_wound=as_wound))
+    # Isosurfaces have points a rounding apart; each would have the normal of its own sliver.
     first = joined(shape.points, surface)
     if first is not None:
         least = float(np.cos(np.radians(SHARP)))
@@ -537,8 +556,9 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         total, size = total + points.sum(axis=0), size + len(points)
     middle = total / max(size, 1)
     scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
-    lines = [edges.place_numbers(line) for line in grids.rim(mesh)]
-    single, ends = edges.single_edges(lines)
+    lines = [place_numbers(line) for line in grids.rim(mesh)]
+    # Edges of the rim that one part has alone are a border, unless another part has them too.
+    single, ends = single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in grids.parts(mesh):
         surface, own = finite_faces(part.surface), part.side == 0
@@ -551,7 +571,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
             lean[part.origin[own]] = survey.lean[own]
             counts += shape.edge_counts(survey.faces, survey.full)
         if len(single):
-            single = np.setdiff1d(single, edges.inner_edges(shape.points, shape.triangles, ends))
+            single = np.setdiff1d(single, inner_edges(shape.points, shape.triangles, ends))
     border = np.array([len(single) > 0])
     whole = Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
     if not as_wound and whole.turned(border)[0]:

@@ -10,8 +10,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.reading.cells import faces, places, triangles
-from vizlight.reading.edges import BLOCK
-from vizlight.reading.topology import Owners, ends_of, sorted_edges, topology
+from vizlight.reading.topology import BLOCK, Owners, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

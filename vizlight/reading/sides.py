@@ -10,9 +10,9 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.reading.edges import BLOCK, place_numbers
 from vizlight.reading.normals import Told, facing_of, given_normals, wound_normals
 from vizlight.reading.orientation import crease_share, middles, sides_of
+from vizlight.reading.topology import BLOCK, place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,11 +96,13 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         vectors = given[of_mesh]
         piece, border = np.zeros_like(piece), np.array([shape.open.any()])
     has = np.isfinite(vectors).all(axis=1) & vectors.any(axis=1) & shape.finite
+    # Points that are only in cells of other parts are theirs to tell of.
     has &= (of_mesh >= 0) & (ghosts[of_mesh] < 1)
     own, joint = np.flatnonzero(has), np.flatnonzero(has & (ghosts[of_mesh] > 0))
     points, at, count = shape.points[own], piece[own], len(border)
     normals = vectors[own].astype(np.float64)
     far = np.tile([-np.inf, 0.0], (count, 6, 1))
+    # The outermost point along each half axis, and whether the normal there points outward.
     for i in range(6):
         sign = 1 - 2 * (i % 2)
         along = sign * points[:, i // 2].astype(np.float64)
@@ -135,6 +137,8 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
+        # A piece is a height field if its normals fit in a half space; those that lean most decide
+        # that.
         cosine = normals[rows] @ middle[i]
         along = np.column_stack([normals[rows], cosine])
         if cosine.min() <= 0:
@@ -161,11 +165,14 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     """Return for each part what the whole decides of its pieces."""
     count = [len(one.open) for one in looks]
     start = np.cumsum([0, *count])
+    # Pieces that touch across parts are one piece of the whole, with signs that make them agree.
     group, sign, torn = _joined(looks, start[:-1], int(start[-1]))
     whole = int(group.max(initial=-1)) + 1
     border = np.zeros(whole, dtype=np.bool_)
+    # One open part makes its whole piece open.
     border[group[np.concatenate([one.open for one in looks]) | torn]] = True
     far = np.concatenate([one.far for one in looks])
+    # Closed pieces: turned by the outermost of the outermost points.
     outward = np.zeros(whole)
     for i in range(6):
         most = np.full(whole, -np.inf)
@@ -213,6 +220,8 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
     a, b = np.divmod(pairs, max(total, 1))
     # Each piece stands twice, the second time turned over.
     ends = np.where(agree, b, b + total), np.where(agree, b + total, b)
+    # Two that agree are joined as they are, two that do not with one turned over. A piece that is
+    # joined with its own turned copy has no sides.
     rows, columns = np.concatenate([a, a + total]), np.concatenate(ends)
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * total, 2 * total))
     label = connected_components(graph, directed=False)[1]

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
-from vizlight.reading.cells import places, triangles
-from vizlight.reading.edges import BLOCK, edge_numbers, place_numbers
+from vizlight.reading.cells import mixed, places, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
     from vizlight._types import Bools, Indices
+
 
 #: Least number of edges that are sorted at once, and largest number of parts of these.
 EDGES, PARTS = 1 << 19, 16
@@ -118,6 +118,8 @@ def sorted_edges(
     same : ndarray of int, optional
         Point that stands for each point.
     """
+    # Sorted in ranges of their lower ends: a sort of all edges at once would take memory beyond
+    # the bound of a filter.
     parts = min(-(-3 * len(corners) // EDGES), PARTS)
     blocks = _pool.blocks(len(corners), BLOCK)
     ranges = []
@@ -309,3 +311,49 @@ def is_closed(surface: vtkPolyData, owners: Owners) -> tuple[Bools, Bools]:
             np.bitwise_xor.at(odd, own, edges)
             np.add.at(sums, own, signed)
     return np.asarray(odd == 0), np.asarray(sums == 0)
+
+
+#: Number of points or triangles that are worked on at once.
+BLOCK = 1 << 16
+#: Odd numbers of 64 bits.
+_FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
+
+
+def place_numbers(points: NDArray[np.generic]) -> NDArray[np.uint64]:
+    """Return numbers of 64 bits made of the coordinates of points."""
+    number = np.zeros(len(points), dtype=np.uint64)
+    with np.errstate(all="ignore"):
+        for block in _pool.blocks(len(points), BLOCK):
+            # The sum with 0 makes one of the two zeros.
+            where = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
+            for axis, factor in zip(where.view(np.uint64).T, _FACTORS, strict=True):
+                number[block] = mixed(number[block] ^ (axis * factor))
+    return number
+
+
+def edge_numbers(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Return numbers of edges, made of the numbers of their ends; 0 for edges of no length."""
+    with np.errstate(all="ignore"):
+        return np.where(a == b, np.uint64(0), mixed((a + b) ^ mixed(a ^ b)))
+
+
+def single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], ...]:
+    """Return the edges along lines at whose place there is no other of them, and all places."""
+    none = np.empty(0, dtype=np.uint64)
+    edges = np.concatenate([none, *(edge_numbers(line[:-1], line[1:]) for line in lines)])
+    numbers, times = np.unique(edges, return_counts=True)
+    return numbers[(times == 1) & (numbers != 0)], np.unique(np.concatenate([none, *lines]))
+
+
+def inner_edges(
+    points: NDArray[np.generic], triangles: Indices, ends: NDArray[np.uint64]
+) -> NDArray[np.uint64]:
+    """Return the edges between some places that have two faces."""
+    number, size = place_numbers(points), len(points)
+    near = np.isin(number, ends)
+    rows = triangles[np.count_nonzero(near[triangles], axis=1) > 1]
+    a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
+    keys = np.minimum(a, b).astype(np.int64) * size + np.maximum(a, b)
+    keys, times = np.unique(keys, return_counts=True)
+    lower, upper = np.divmod(keys[times > 1], max(size, 1))
+    return edge_numbers(number[lower], number[upper])

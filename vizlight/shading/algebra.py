@@ -135,6 +135,7 @@ class Algebra:
     def way(self, direction: Vector, *, wide: bool = False) -> Value:
         """Return the unit vector of a direction of the plan."""
         column = np.array(direction, np.float64)
+        # Scaled by its largest component first: squares of 1e-200 or 1e200 would leave float64.
         column /= np.abs(column).max()
         return self.vector((column / np.sqrt(column @ column)).tolist(), wide=wide)
 
@@ -197,11 +198,15 @@ class Algebra:
         for given in self.vectors(name, k):
             v, size = self.unit(given)
             self.need(size > 0.0)
+            # Twice is enough (Kahan): after the first projection what is left may still lean
+            # toward the rows by the rounding that cancellation has laid bare.
             for again in range(2 if rows else 0):
                 for row in rows:
                     v = v - self.dot(row, v) * row
                 v, size = self.unit(v)
                 if not again:
+                    # What is left of a dependent vector is rounding, whose direction means
+                    # nothing.
                     self.need(size > self.apart(v))
             rows.append(v)
         return [self.work(v) for v in rows]
@@ -209,7 +214,9 @@ class Algebra:
     def triple(self, a: Value, b: Value, c: Value) -> Value:
         """Return a x b . c in 3-space."""
         first, second, third = (
-            (a[i] * b[j] - a[j] * b[i]) * c[k] for i, j, k in ((1, 2, 0), (2, 0, 1), (0, 1, 2))
+            # Component by component, since symbols of a program have no cross product.
+            (a[i] * b[j] - a[j] * b[i]) * c[k]
+            for i, j, k in ((1, 2, 0), (2, 0, 1), (0, 1, 2))
         )
         return first + second + third
 
@@ -246,6 +253,8 @@ class Total:
 
     def add(self, value: Value, color: Color | None) -> None:
         """Add the light of one lamp."""
+        # By channel only where a lamp has a colour of its own; else the material's colour times
+        # the white sum is the same for a third of the work.
         self.white = self.w.added(self.white, value)
         if self.tinted:
             self.channels = self.w.added(self.channels, self.w.vector(color or WHITE) * value)

@@ -49,6 +49,8 @@ def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) 
     for name, value in (*w.made.items(), ("valid", valid)):
         own: Array = getattr(output, name)[at]
         # Points of one row stand one after the other.
+        # Arrays of the algebra have the component first, those of a mesh the point: one transposed
+        # write.
         view = own if m == 1 else own.reshape(-1, m, *own.shape[1:])
         view.T[...] = value
 
@@ -75,10 +77,13 @@ class Arrays(Algebra):
         """Return an input component by component, in the wider precision of input and work."""
         source: ArraySource = getattr(self.inputs, name)
         rows, m = self.rows, self.inputs.repeat
+        # One row for each point: the common case, without a second axis.
         if m == 1:
             return columns(source, rows, self.plan.dtype)
+        # One row for all points of a fibre: it broadcasts along the axis of the points.
         if source.shape[0] != self.inputs.count:
             return columns(source, rows, self.plan.dtype)[:, np.newaxis]
+        # Points of a fibre follow each other; the strided slice takes the j-th of every fibre.
         each = [
             columns(source, slice(rows.start * m + j, rows.stop * m, m), self.plan.dtype)
             for j in range(m)
@@ -91,6 +96,7 @@ class Arrays(Algebra):
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an input at the points."""
+        # Normals are read once; shares hold all lamps in one array and are read lamp by lamp.
         if name == "normals":
             return self._columns(name)
         if name not in self._shares:
@@ -122,8 +128,10 @@ class Arrays(Algebra):
         differences lose nothing to the distance from the origin.
         """
         points, at = self._points, self.vector(position, wide=True)
+        # Dekker's split: high is what float32 holds of the position, low the rest.
         high = at.astype(np.float32)
         held = np.isfinite(high) & ((np.abs(high) > SMALLEST_HELD) | (at == 0))
+        # A position out of float32's range has no such split.
         if wide or points.dtype == np.float64 or not held.all():
             return at - points
         difference, low = high - points, (at - high).astype(np.float32)
@@ -142,6 +150,7 @@ class Arrays(Algebra):
     def unit(self, v: Value) -> tuple[Value, Value]:
         """Return unit vectors and finite lengths: 0 of a zero vector, NaN of one not finite."""
         unit, size = kernels.unit(v)
+        # An infinite length is told from NaN, which marks the point: its direction is known.
         if not np.isfinite(size.max(initial=0)):
             size = np.minimum(size, np.finfo(size.dtype).max)
         return unit, size
@@ -158,6 +167,7 @@ class Arrays(Algebra):
 
     def need(self, test: Value) -> None:
         """Take points where a test does not hold for points without light."""
+        # Most blocks have no such point; none then carries a mask through the terms.
         if not test.all():
             self.valid = test if self.valid is None else self.valid & test
 
@@ -179,6 +189,7 @@ class Arrays(Algebra):
         """Return a sum, in place where it has the size."""
         if total is None:
             return value
+        # In place only where nothing broadcasts: a lamp's constant term may meet one per point.
         return total + value if total.size < value.size else np.add(total, value, out=total)
 
     def put(self, name: str, value: Value) -> None:

@@ -43,7 +43,6 @@ __all__ = [
     "Model",
     "Plan",
     "Precision",
-    "Rows",
     "Shading",
     "ShadingInputs",
     "ShadingOptions",
@@ -53,9 +52,6 @@ __all__ = [
     "run",
     "shade",
 ]
-
-#: The earlier name of :class:`ArraySource`.
-Rows = ArraySource
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -293,6 +289,8 @@ def run(
     _check.instance("options", options, ShadingOptions, home="engine")
     _check.function("progress", progress, optional=True)
     inputs.check(sum(light.intensity > 0 for light in scene.lights))
+    # Points far from the origin are stored less a near one; lights and eye move with them, so that
+    # differences keep their digits.
     if inputs.origin is not None:
         scene = scene.moved([-x for x in inputs.origin])
     if options.precision is None:
@@ -302,6 +300,7 @@ def run(
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     output = Output(made, count)
+    # Compiled code where numba is there and the points are many enough to pay for its start-up.
     code, reason = compiled.prepare(made, inputs)
     made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
     light = shade_block if code is None else code.shade_block
@@ -309,6 +308,7 @@ def run(
     step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:
+        # Overflow and NaN of single points are wanted: the terms mark them instead of warning.
         with np.errstate(all="ignore"):
             light(made, rows, inputs, output)
         return int(rows.stop) * repeat
@@ -316,6 +316,7 @@ def run(
     for done in _pool.run(work, _pool.blocks(inputs.rows, step)):
         if progress is not None:
             progress(done, count)
+    # The compiler may have failed at the first block, which NumPy then has lit.
     if code is not None and (reason := _compiled.why_not()):
         made = dataclasses.replace(made, compiled=False, code=reason)
     shading = Shading(
@@ -328,12 +329,14 @@ def run(
         seconds=time.perf_counter() - start,
     )
     if (observer := _OBSERVER.get()) is not None:
+        # An open report looks at each run, whichever filter began it.
         observer(inputs, scene, shading, options)
     return shading
 
 
 def _step(plan: Plan, inputs: ShadingInputs) -> int:
     """Return the rows of a block: all blocks have about one size, as a small one costs as much."""
+    # Ceiling of the number of blocks first, then rows shared out evenly among them.
     count = -(-inputs.rows // max(plan.block // inputs.repeat, 1))
     return max(-(-inputs.rows // max(count, 1)), 1)
 
@@ -368,6 +371,7 @@ def depth_range(
     n = len(scene.view.position or scene.view.direction or ())
     if len(points.shape) != 2 or points.shape[1] != n:
         raise ValueError(_check.message("points", f"shape (N, {n})", f"shape {points.shape}"))
+    # In blocks: points may be made on demand, and a copy in float64 would take twice their memory.
     block = _check.integer("block", block, low=1)
     near, far = np.inf, -np.inf
     for start in range(0, points.shape[0], block):
@@ -382,6 +386,7 @@ def _depth(view: View, points: Array) -> Array:
     """Return the depth of points: along the axis of the view, or from the eye without an axis."""
     origin = np.array(view.position or np.zeros(len(points)), dtype=np.float64)[:, np.newaxis]
     if view.direction is None:
+        # A view by its position alone has no axis.
         return kernels.length(points - origin)
     axis, _ = kernels.unit(np.array(view.direction, dtype=np.float64)[:, np.newaxis])
     return kernels.dot(axis, origin - points)

@@ -8,7 +8,7 @@ from fields import by_cells, hills, places, sun
 
 from vizlight import _compiled
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field, marching, strips, walks
+from vizlight.geometry.relief import height_field, strips, walks
 
 pytestmark = pytest.mark.skipif(not _compiled.active(), reason="numba is not available")
 
@@ -27,7 +27,7 @@ def test_squares_are_the_cells(way, border, random):
     found = np.empty(500)
     ways = np.repeat(way[:, None], 500, axis=1)
     walks.walk(
-        start, ways, np.full(500, marching.FAR), *field.edges, field.corners,
+        start, ways, np.full(500, walks.FAR), *field.edges, field.corners,
         walks.levels(field.bounds), field.top, border == "wall", found,
     )  # fmt: skip
     np.testing.assert_allclose(found, by_cells(field, start, way), atol=1e-11)

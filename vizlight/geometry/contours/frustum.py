@@ -119,11 +119,13 @@ def truncus(
         remedy = "use form='bands' or method='rulings'"
         raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
     spacing.check(levels)
+    # A near lamp has another direction at each point: no ruling has one luminance any more.
     if method == "curves":
         return refinement.draw(
             triangle_mesh.mesh(solid, segments), shade(light, solid.center), levels, low=light.low
         )
     # A near light fades with its distance from the centre.
+    # The source's approximation: one direction and one fading for the whole solid.
     near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))
     if math.isfinite(light.distance):
         fading = light.luminance(np.array(1.0), light.distance) - light.low
@@ -158,6 +160,8 @@ class _Rulings:
         slope = solid.radii[1] - solid.radii[0]
         size = math.hypot(solid.height, slope) or 1.0
         # A side without area (equal radii, height 0) has normals perpendicular to the axis.
+        # The side's normal: across the axis by the height, along it by the difference of the
+        # radii.
         across, along = (solid.height / size, slope / size) if slope or solid.height else (1.0, 0.0)
         self.a = across * max(float(self.first @ light.toward), 0.0)
         self.b = along * float(solid.axis @ light.toward)
@@ -189,6 +193,7 @@ class _Rulings:
         """Return points on the circle of an end."""
         radius = self.solid.radii[0 if first else 1]
         half = (0.5 if first else -0.5) * self.solid.height * self.solid.axis
+        # The circle in the frame whose first axis is the light's part across the axis.
         ring = (
             np.cos(angle)[:, np.newaxis] * self.first + np.sin(angle)[:, np.newaxis] * self.second
         )
@@ -197,6 +202,7 @@ class _Rulings:
 
 def _around(side: _Rulings, steps: Steps, segments: int) -> tuple[Array, Indices]:
     """Return the angles of all rulings around the axis, and the contour of each, or -1."""
+    # Each contour is a pair of rulings, at plus and minus its angle from the light.
     places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
     inside = (places > 0) & (places < np.pi)
     contour = np.concatenate([np.flatnonzero(inside), [-1, -1]])
@@ -218,6 +224,7 @@ def _bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
     """Return the closed surface: strips between rulings, and one polygon per end."""
     angle, contour = _around(side, steps, segments)
     (first, second), height, count = side.solid.radii, side.solid.height, len(angle)
+    # An apex is one point that all strips share.
     top = np.arange(count) if first > 0 else np.zeros(count, int)
     shared = top.max() + 1
     bottom = shared + (np.arange(count) if second > 0 else np.zeros(count, int))
@@ -266,6 +273,7 @@ def _laminae(side: _Rulings, steps: Steps, segments: int) -> Laminae:
     start = lit.max(initial=0.0)
     count = max(math.ceil((np.pi - start) * segments / (2 * np.pi)), 2)
     beyond = np.linspace(start, np.pi, count + 1)[:-1]
+    # Just beyond the last contour, in the band after it.
     beyond[0] += 1e-9
     angle = np.concatenate([lit, beyond])
     values = np.concatenate([values, np.full(len(beyond), float(side.luminance(np.pi)))])

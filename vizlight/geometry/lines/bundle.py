@@ -99,6 +99,7 @@ class Targets(NamedTuple):
         """
         if self.vectors is None:
             return np.ones((2, self.places.shape[1]), np.float32)
+        # A thin cylinder shows a lamp its diameter times the sine of the angle between them.
         cosine = np.einsum("i...,i...->...", toward.reshape(3, -1), self.vectors)
         if self.lengths is None:
             return np.maximum([cosine, -cosine], 0)
@@ -126,6 +127,7 @@ class Targets(NamedTuple):
         """
         if self.lengths is None or self.vectors is None:
             return 0.0
+        # A line that is short as the light sees it fills only a part of its own voxels.
         seen = self.lengths * facing[0]
         share: Array = np.minimum(seen / (2 * width), 1) * np.float32(OWN) / width
         return share
@@ -170,12 +172,14 @@ class Medium:
         """
         places = (points.T.astype(np.float64) - self.origin[:, np.newaxis]) / self.voxel
         known: Bools = np.asarray(np.isfinite(places).all(axis=0))
+        # Beyond this, float32 has no fractions of a voxel left; what is farther is as dark.
         places = np.where(known, np.clip(places, -FARTHEST, FARTHEST), 0).astype(np.float32)
         unit = None
         if vectors is not None:
             rows = vectors.T.astype(np.float64)
             largest = np.abs(rows).max(axis=0, initial=0)
             with np.errstate(invalid="ignore", divide="ignore"):
+                # By the largest component first: squares of tiny or huge vectors leave the range.
                 rows = rows / largest
                 rows /= np.sqrt((rows * rows).sum(axis=0))
             unit = np.where(np.isfinite(rows), rows, 0).astype(np.float32)
@@ -231,6 +235,7 @@ class Medium:
         ndarray of float32, shape (N, L)
             Shares in [0, 1].
         """
+        # Points in the order of blocks read voxels that are in the cache.
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
         targets = targets.ordered(order)
         left = np.empty((targets.places.shape[1], len(lights)), np.float32)
@@ -270,6 +275,7 @@ class Medium:
             found[part.start] = self._pair(targets, thick, ways[part.start], rooms)
             return int(part.start)
 
+        # Each direction serves its opposite too: one grid, summed from either end.
         total = np.zeros((2, targets.places.shape[1]))
         for number in _pool.run(work, _pool.blocks(len(ways), 1)):
             # In the order of the parts, so that sums do not depend on the threads.
@@ -288,6 +294,8 @@ class Medium:
             depth, _ = self.depths(targets.places, toward)
             left = _left(depth, targets.own(targets.facing(toward)), thick)
         else:
+            # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a
+            # box.
             lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
             depth, width = lamps.depths(self.middles, self.vectors, targets.places, lamp, thick)
             way = lamp[:, np.newaxis] - targets.places
@@ -296,6 +304,7 @@ class Medium:
             own = targets.own(targets.facing(way.astype(np.float32)), width) * lamps.crowding(
                 thick / width
             )
+            # More light than all comes of rounding alone.
             left = np.exp(np.minimum(-thick * (depth - own), 0))
         return left
 
@@ -341,12 +350,15 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
     finite: Bools = np.asarray(np.isfinite(ends).all(axis=1))
+    # A segment with an end that is not finite takes no light; its neighbours do.
     first = first[finite[first] & finite[first + 1]]
     origin: Array = np.zeros(3)
     if finite.any():
+        # Half of each before the sum: the sum of two huge coordinates may overflow.
         origin = ends[finite].min(axis=0) / 2 + ends[finite].max(axis=0) / 2
     start = (ends[first] - origin) / voxel
     vector = (ends[first + 1] - origin) / voxel - start
+    # Pieces no longer than a voxel, so that the spread over 8 voxels is a fair hat.
     parts = np.maximum(1, np.ceil(np.linalg.norm(vector, axis=1) - 1e-9)).astype(np.intp)
     middles, vectors = voxels.cut((start + vector / 2).T, vector.T, parts)
     # Pieces near each other are spread one after the other, on voxels that are in the cache.
@@ -366,6 +378,7 @@ def _by_blocks(places: Array) -> Indices:
 def segment_starts(connectivity: Indices, offsets: Indices, /) -> Indices:
     """Return the indices in the connectivity at which a segment starts; the next one is its end."""
     inside = np.ones(len(connectivity), np.bool_)
+    # The last point of each line starts no segment.
     inside[offsets[1:][np.diff(offsets) > 0] - 1] = False
     return np.flatnonzero(inside)
 

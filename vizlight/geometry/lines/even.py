@@ -1,4 +1,4 @@
-"""Evenly spaced integral curves: all grow at once and stop where they come close to another."""
+"""Samples of curves that grow, found by distance."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 
-from vizlight.geometry.lines.samples import SAMPLES, Samples
 from vizlight.geometry.lines.simplices import Places
 from vizlight.geometry.lines.tracing import Curves, Flow, Walkers, passed
 
@@ -16,6 +16,106 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.lines.simplices import Simplices
+
+
+#: Samples of curves per spacing.
+SAMPLES = 4
+#: Cosine above which lines of a cross field are of one family.
+PARALLEL = 0.7
+#: Number of samples that are looked at in addition in a cross field, for curves that cross.
+CROSSING = 24
+#: Number of samples in the small tree, which is made again at every step.
+RECENT = 1500
+
+
+def parallel(a: Array, b: Array) -> Bools:
+    """Return whether unit directions, shape (..., 3), are of one family of a cross field."""
+    return np.asarray(np.abs(np.einsum("...i,...i->...", a, b)) > PARALLEL)
+
+
+class Samples:
+    """Samples of the curves, found by distance."""
+
+    def __init__(self) -> None:
+        self.points = self.along = self.weights = self.embedded = np.empty((0, 3))
+        self.sign = self.length = np.empty(0)
+        self.curve = self.number = self.cell = np.empty(0, dtype=np.intp)
+        self.used = np.empty(0, dtype=np.bool_)
+        self._size = 0
+        # Most samples are in a tree that is seldom made again, the rest in one that often is.
+        self._old: scipy.spatial.cKDTree | None = None
+        self._new: scipy.spatial.cKDTree | None = None
+        self._rows: Indices = np.empty(0, dtype=np.intp)
+        self._recent = self._rows
+        self._whole, self._seen, self._stale = 0, 0, 0
+
+    def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
+        """Add where ends are now."""
+        size, total = self._size, self._size + len(points)
+        new = vars(walkers) | vars(walkers.places)
+        new |= {"points": points, "embedded": embedded, "used": np.ones(len(points), np.bool_)}
+        del new["places"]
+        for name, rows in new.items():
+            known = getattr(self, name)
+            if not size or total > len(known):
+                # Capacity doubles, so that adding is cheap on the whole.
+                known = np.zeros((max(4096, 2 * total), *rows.shape[1:]), rows.dtype)
+                if size:
+                    known[:size] = getattr(self, name)[:size]
+                setattr(self, name, known)
+            known[size:total] = rows
+        self._size = total
+
+    def drop(self, curve: int) -> None:
+        """Forget the samples of a curve."""
+        rows = np.flatnonzero(self.curve[: self._size] == curve)
+        self.used[rows] = False
+        self._seen = -1
+        self._stale += int(np.count_nonzero(rows < self._whole))
+
+    def of(self, curve: int) -> tuple[Places, Array]:
+        """Return the places of a curve's samples, and its directions there."""
+        rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
+        return Places(self.cell[rows], self.weights[rows]), self.along[rows]
+
+    def near(
+        self, embedded: Array, radius: float, count: int, along: Array | None = None
+    ) -> tuple[Array, Indices]:
+        """Return distances and rows of samples within a radius, shape (N, K); infinity for none.
+
+        With directions ``along`` samples of curves that cross them do not count.
+        """
+        if along is not None:
+            # Curves of the other family, which are not counted, can be nearer.
+            count += CROSSING
+        if self._size - self._whole > RECENT or self._stale > RECENT:
+            self._rows = np.flatnonzero(self.used[: self._size])
+            # A balanced tree would cost more to make than its queries save.
+            self._old = scipy.spatial.cKDTree(self.embedded[self._rows], balanced_tree=False)
+            self._whole, self._seen, self._stale = self._size, -1, 0
+            self._recent, self._new = self._rows[:0], None
+        if self._seen != self._size:
+            self._recent = self._whole + np.flatnonzero(self.used[self._whole : self._size])
+            self._new = scipy.spatial.cKDTree(self.embedded[self._recent], balanced_tree=False)
+            self._seen = self._size
+        distances: list[Array] = []
+        numbers: list[Indices] = []
+        for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
+            if tree is None or not len(rows):
+                continue
+            found = tree.query(embedded, k=count, distance_upper_bound=radius)
+            distance = np.asarray(found[0]).reshape(-1, count)
+            row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
+            counted = self.used[row]
+            if along is not None:
+                counted &= parallel(self.along[row], along[:, np.newaxis])
+            distances.append(np.where(counted, distance, np.inf))
+            numbers.append(row)
+        if not distances:
+            empty = np.zeros((len(embedded), 1))
+            return empty + np.inf, empty.astype(np.intp)
+        return np.concatenate(distances, axis=1), np.concatenate(numbers, axis=1)
+
 
 #: Largest number of curves that grow at the same time.
 CROWD = 64
@@ -112,6 +212,7 @@ class Growth:
         #: Whether only wide gaps are still filled.
         self.last_gaps = False
         nowhere = Places(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
+        # Every curve has two ends that grow, one along the field and one against it.
         self.walkers = Walkers.at(flow, nowhere, nowhere.cell)
         #: Of each end: step at which it came back beside its own curve, or -1; length at its last
         #: sample.
@@ -138,10 +239,12 @@ class Growth:
         """
         points = self.flow.mesh.positions(seeds)
         embedded = self.embedded(seeds, points)
+        # Too many at once would grow into each other; too few waste the vectorised step.
         room = CROWD - len(self.growing)
         taken: Bools = ~self.flow.directions(seeds, None, np.ones(len(seeds.cell)))[1]
         moving = np.flatnonzero(~taken)
         chosen = moving[_apart(embedded[moving], self.apart * self.asked.spacing, room)]
+        # Seeds start farther apart at first; where few of them fit, nearer.
         wide = len(chosen) >= room // 4
         self.apart = min(APART, 1.5 * self.apart) if wide else max(NEAR, self.apart / 1.5)
         taken[chosen] = True
@@ -162,6 +265,7 @@ class Growth:
         """Let all ends make one step."""
         walkers, mesh = self.walkers, self.flow.mesh
         sample = self.asked.spacing / SAMPLES
+        # A step is at most the distance of samples, by which curves keep apart.
         size = np.minimum(self.asked.step * mesh.sizes(walkers.places), sample)
         places, along, made, inside = self.flow.advance(
             walkers.places, walkers.along, walkers.sign, size
@@ -177,11 +281,14 @@ class Growth:
         lost = np.isin(ahead.curve, losers)
         made &= ~blocked & ~lost
         self.trail.append(ahead[made])
+        # Samples are set at even lengths; 0.999 absorbs the rounding of summed steps.
         due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
         self.samples.add(ahead[due], points[due], embedded[due])
         self.sampled = np.where(due, ahead.length, self.sampled)
         for row in np.flatnonzero(made & (reached >= 0)).tolist():
             self._close(ahead, row, int(reached[row]))
+        # An end stops at a boundary, at its longest, after its last step, or where its curve is
+        # closed.
         going = made & inside & (ahead.length < self.asked.max_length)
         going &= (ahead.number < self.asked.max_steps) & ~np.isin(ahead.curve, [*self.closed])
         began = np.where(self.returning < 0, walkers.number, self.returning)
@@ -209,6 +316,8 @@ class Growth:
         distance, row = samples.near(embedded, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
+        # The way along the curve between an end and a sample of its own: near ones are no
+        # obstacle.
         between = np.abs(
             samples.sign[row] * samples.length[row] - sign * ahead.length[:, np.newaxis]
         )
@@ -217,6 +326,7 @@ class Growth:
         later = samples.curve[row] > ahead.curve[:, np.newaxis]
         losers = np.unique(samples.curve[row[hit & later]])
         hit &= ~later
+        # Split along and across the end's direction: what lies abreast is beside, not ahead.
         toward = samples.points[row] - points[:, np.newaxis]
         along = np.einsum("nkj,nj->nk", toward, ahead.along)
         lateral = np.linalg.norm(
@@ -253,6 +363,7 @@ class Growth:
         if self.growing[curve]:
             return
         del self.growing[curve]
+        # A curve that two others have cut short is dropped if it is too short to be read.
         cut = self.cut.get(curve, 0)
         # In a gap there is room for half the length on either side of the seed.
         share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
@@ -266,9 +377,11 @@ class Growth:
         """Queue places a spacing beside a curve."""
         places, along = self.samples.of(curve)
         if self.normals is not None:
+            # On a surface the places beside a curve are to its left and right, across the normal.
             u: Array = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
             sides = [u, -u]
         else:
+            # In a volume: four directions around it, turned at random.
             u = np.cross(along, self.random.normal(size=along.shape))
             v: Array = np.cross(along, u)
             sides = [u, -u, v, -v]
@@ -283,6 +396,7 @@ class Growth:
         spacing = self.asked.spacing
         while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
             first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
+            # 0.95: rounding on the way beside a curve must not count as crowded.
             first = first[self.distances(first, 0.95 * spacing) >= 0.95 * spacing]
             if len(first.cell):
                 self.beside = first[~self.start(first)].joined(rest)
@@ -345,6 +459,7 @@ def evenly_spaced(
     growing at the same time.
     """
     random = np.random.default_rng(seed)
+    # Random places all over find what is a spacing from all curves wherever no neighbour does.
     pool = places_of(flow, asked.spacing, random)
     # Parts that are too small for a random place have one of their own.
     pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
@@ -363,6 +478,7 @@ def evenly_spaced(
             kept = growth.count - len(growth.dropped)
             if kept == before:
                 break
+            # Last, with denser places, the gaps that are wide but too small for a whole spacing.
             before, growth.last_gaps = kept, True
             pool = growth.widest(places_of(flow, asked.spacing, random, DENSER**flow.mesh.k))
     report(total)
@@ -389,6 +505,7 @@ def _apart(embedded: Array, distance: float, most: int) -> Indices:
     left = np.arange(len(embedded))
     while len(left) and len(chosen) < most:
         chosen.append(int(left[0]))
+        # Greedy, in order: each row that is kept removes those near to it.
         gap = embedded[left] - embedded[left[0]]
         left = left[np.einsum("ij,ij->i", gap, gap) >= distance**2]
         if left.size and left[0] == chosen[-1]:

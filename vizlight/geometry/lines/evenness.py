@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from vizlight.geometry.lines.columns import Columns
-from vizlight.geometry.lines.even import embedded, with_normals
-from vizlight.geometry.lines.samples import CROSSING, parallel
-from vizlight.geometry.lines.simplices import Places
+from vizlight.geometry.lines.even import CROSSING, embedded, parallel, with_normals
+from vizlight.geometry.lines.simplices import Columns, Places
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -102,6 +102,7 @@ def along_curve(vertices: Array, triangles: Indices) -> Indices:
     if not 0 < side < np.inf:
         return np.arange(len(triangles))
     # Cells of a quarter of the mean distance of triangles on a flat surface.
+    # Enough for 4 cells between neighbours, and no more: sorting grows with the bits.
     bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
     places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
     return np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
@@ -170,6 +171,7 @@ class Draws(NamedTuple):
 
 def draw(total: Array, start: int, count: int, seed: int) -> Draws:
     """Return the random numbers of the block that begins at ``start``, a multiple of SEED_BLOCK."""
+    # A generator for each block: blocks can be made in any order and by any thread.
     random = np.random.default_rng([seed, start // SEED_BLOCK])
     number = np.arange(start, min(start + SEED_BLOCK, count), dtype=np.float64)
     place = number.copy()
@@ -193,6 +195,7 @@ def seed_block(total: Array, draws: Draws) -> tuple[Indices, Array]:
     edges = np.concatenate([[total[first - 1] if first else 0.0], total[first : last + 1]])
     area = np.diff(edges)
     share = (place - np.repeat(edges[:-1], counts)) / np.repeat(np.where(area > 0, area, 1), counts)
+    # The square root of the area before a place makes places uniform in the triangle.
     root = np.sqrt(np.clip(share, 0, 1)).astype(np.float32)
     # Each triangle has its own lattice with a random start, so that no pattern spans triangles.
     number = draws.number + np.repeat(draws.starts, counts)
@@ -248,6 +251,7 @@ def strands(
     """
     kind = directions.dtype
     out = np.zeros((segments + 1, *directions.shape), kind)
+    # Straight fibres need two numbers each, not a walk.
     step = np.asarray(lengths, kind) / segments
     if not (bend and toward is not None) and not curl:
         for j in range(1, segments + 1):
@@ -256,6 +260,7 @@ def strands(
     if curl:
         side, up = _across(directions)
     for j in range(segments):
+        # The direction of a segment is taken at its middle.
         t = (j + 0.5) / segments
         way = directions
         if bend and toward is not None:
@@ -273,6 +278,7 @@ def strands(
 def _across(directions: Array) -> tuple[Array, Array]:
     """Return two unit directions perpendicular to each direction and to each other."""
     least = np.zeros_like(directions)
+    # The axis that a direction has least of is farthest from parallel to it.
     np.put_along_axis(least, np.abs(directions).argmin(axis=0)[np.newaxis], 1, axis=0)
     side: Array = np.cross(directions, least, axis=0)
     size = np.sqrt(np.einsum("ib,ib->b", side, side))

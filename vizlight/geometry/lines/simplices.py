@@ -10,15 +10,37 @@ import numpy as np
 import scipy
 
 from vizlight import _compiled
-from vizlight.geometry.lines.columns import Columns
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
     from vizlight._types import Array, Bools, Indices
 
 #: Largest number of cells that one step crosses.
 MOST_CROSSINGS = 300
 #: Seconds that compiled code saves per walk, and per place of it.
 SAVED = 4e-4, 4e-6
+
+
+@dataclass
+class Columns:
+    """Base class of rows whose fields are arrays, or such rows themselves."""
+
+    def __getitem__(self, rows: Indices | Bools | slice) -> Self:
+        """Return some of the rows."""
+        return type(self)(*(column[rows] for column in vars(self).values()))
+
+    def joined(self, *others: Self) -> Self:
+        """Return these rows and then others."""
+        columns = zip(*(vars(part).values() for part in (self, *others)), strict=True)
+        return type(self)(
+            *(
+                first.joined(*rest)
+                if isinstance(first, Columns)
+                else np.concatenate([first, *rest])
+                for first, *rest in columns
+            )
+        )
 
 
 @dataclass
@@ -73,6 +95,8 @@ class Simplices:
         gram = edges @ np.swapaxes(edges, 1, 2)
         with np.errstate(all="ignore"):
             size = np.einsum("mij,mij->m", edges, edges)
+            # Relative to the size of the cell: slivers have no direction across, whatever their
+            # unit.
             volume = np.linalg.det(gram / np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis])
         self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
         gram[~self.good] = np.eye(self.k)
@@ -86,6 +110,8 @@ class Simplices:
         """Vertices of each cell with one number for each position, shape (M, k + 1)."""
         number = numbered(self.points)
         if self.sheets is not None:
+            # Both sheets of a double cover have their own numbers: a walk never changes sheets by
+            # itself.
             number = 2 * number + self.sheets
         return np.asarray(number[self.cells])
 
@@ -97,6 +123,8 @@ class Simplices:
         """
         k = self.k
         cells = np.flatnonzero(self.good)
+        # The side opposite vertex i has all vertices but i; two equal sides make two cells
+        # neighbours.
         sides = np.stack(
             [np.delete(self.merged[cells], i, axis=1) for i in range(k + 1)], axis=1
         ).reshape(-1, k)
@@ -152,6 +180,7 @@ class Simplices:
             (np.ones(len(own), dtype=np.int8), pairs), shape=(count, count)
         )
         part = scipy.sparse.csgraph.connected_components(graph, directed=False)[1][cells]
+        # The largest cell of a part comes first.
         order = np.lexsort((-self.measures[cells], part))
         first = np.unique(part[order], return_index=True)[1]
         share = np.full((len(first), self.k + 1), 1 / (self.k + 1))
@@ -172,6 +201,7 @@ class Simplices:
         first = self.points[self.cells[cell]]
         middle = first.mean(axis=1)
         share = 1 / (self.k + 1)
+        # Weights are linear: those of the middle plus gradient times the way from there.
         weights = share + np.einsum("nij,nj->ni", self.gradients[cell], positions - middle)
         weights = np.maximum(weights, 0)
         return Places(cell, weights / weights.sum(axis=1, keepdims=True))
@@ -179,8 +209,10 @@ class Simplices:
     def random(self, count: int, random: np.random.Generator) -> Places:
         """Return random places, uniform in area or volume; one in each of ``count`` equal parts."""
         total = np.cumsum(self.measures)
+        # Stratified: one random place in each of equal shares, so there are no large holes.
         at = (np.arange(count) + random.random(count)) * (total[-1] / count)
         cell = np.minimum(np.searchsorted(total, at, side="right"), len(total) - 1)
+        # Normalised exponentials are uniform in a simplex.
         weights = random.standard_exponential((count, self.k + 1))
         return Places(cell, weights / weights.sum(axis=1, keepdims=True))
 
@@ -204,6 +236,8 @@ class Simplices:
         inside : ndarray of bool, shape (N,)
             Whether a step was made whole.
         """
+        # In barycentric coordinates a straight step changes each weight at a constant rate; the
+        # first weight to reach 0 tells the side through which it leaves.
         cell, weights = places.cell.copy(), places.weights.copy()
         inside = np.ones(len(cell), dtype=np.bool_)
         ahead = self._laid(cell, steps)
@@ -223,6 +257,7 @@ class Simplices:
             side = np.argmin(time, axis=1)
             rows = np.arange(len(on))
             share = np.minimum(time[rows, side], 1.0)
+            # Rounding may leave a weight just below 0.
             at = np.maximum(at + share[:, np.newaxis] * change, 0)
             through = time[rows, side] < 1
             at[rows[through], side[through]] = 0
@@ -233,6 +268,8 @@ class Simplices:
             go = through & (beyond >= 0)
             if not go.any():
                 return Places(cell, weights), inside
+            # The rest of the step goes on in the neighbour; steps that are done drop out of the
+            # arrays.
             on, ahead = on[go], ahead[go] * (1 - share[go])[:, np.newaxis]
             cell[on], weights[on], ahead = self._crossed(
                 here[go], side[go], at[go], beyond[go], ahead
@@ -256,10 +293,14 @@ class Simplices:
     ) -> tuple[Indices, Array, Array]:
         """Return cell, weights and the rest of the step beyond the side of a cell."""
         own, other = self.merged[cell], self.merged[beyond]
+        # By number of the position: neighbours may have vertices of their own at the same place.
         shared = other[:, :, np.newaxis] == own[:, np.newaxis, :]
         shared[np.arange(len(cell)), :, side] = False
         found = np.einsum("nij,nj->ni", shared, weights)
         if self.k == 2:
+            # On triangles the step is turned about the common edge as if both were unfolded into
+            # one plane: its part along the edge stays, its part across points toward the new
+            # triangle's third vertex.
             apex = np.argmin(shared.any(axis=2), axis=1)
             inward = self.gradients[beyond, apex]
             inward = inward / np.linalg.norm(inward, axis=1, keepdims=True)

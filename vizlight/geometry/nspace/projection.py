@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import layout
+from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -68,6 +68,7 @@ def plane_rotation(n: int, plane: str | Sequence[int], angle: float, /) -> Array
     angle = _check.number("angle", angle)
     matrix = np.eye(n)
     matrix[i, i] = matrix[j, j] = math.cos(angle)
+    # The first axis turns toward the second.
     matrix[j, i] = math.sin(angle)
     matrix[i, j] = -matrix[j, i]
     return matrix
@@ -106,6 +107,7 @@ def rotation(n: int, turns: object, /) -> Array:
     if isinstance(turns, list) and turns and not all(_is_row(part) for part in turns):
         matrix = np.eye(n)
         for part in turns:
+            # From the left: the first of the list is applied first.
             matrix = rotation(n, part) @ matrix
         return matrix
     return _special_orthogonal(n, turns)
@@ -130,6 +132,8 @@ def _special_orthogonal(n: int, value: object) -> Array:
         raise ValueError(_check.message("rotation", "finite numbers", "NaN or infinity"))
     # Clipped, so that the squares of very large numbers do not overflow.
     small = np.clip(matrix, -2, 2)
+    # R R^T is the unit matrix for rotations and reflections; the sign of the determinant tells
+    # which.
     miss = float(np.abs(small @ small.T - np.eye(n)).max())
     if miss > SLACK:
         got = f"rows off by {miss:.2g}"
@@ -265,6 +269,8 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
         for factor, seen in _steps(positions, check_distance(distance)):
             image = seen
             with np.errstate(all="ignore"):
+                # The factor is d / (d - x): its inverse is the depth in units of the eye's
+                # distance.
                 near = np.minimum(near, 1 / factor)
     return np.array(image[..., :3]), near
 
@@ -312,6 +318,7 @@ def push_forward(
     d = check_distance(distance)
     with np.errstate(all="ignore"):
         for factor, image in _steps(positions, d):
+            # The quotient rule, one projected axis at a time.
             scale = factor[..., np.newaxis, np.newaxis]
             rows = scale * (rows[..., :-1] + image[..., np.newaxis, :] * (rows[..., -1:] / d))
     return np.array(rows)
@@ -360,7 +367,7 @@ def push_frame(
     For orthonormal tangents the space that the rows span is known to 4 eps divided by the smallest
     singular value that is counted.
     """
-    rows = orthonormalize(layout.as_rows("frame", frame, full=True))[0]
+    rows = orthonormalize(frames.as_rows("frame", frame, full=True))[0]
     k, n = rows.shape[-2:]
     points = _check.floats("points", points)
     if points.shape != (*rows.shape[:-2], n):
@@ -373,6 +380,8 @@ def push_frame(
     image = push_forward(rows, points, distance=distance)
     with np.errstate(all="ignore"):
         if distance is not None:
+            # What is left of a vector that points at the eye is rounding, magnified by the
+            # projection: in units of that bound one tolerance holds for all points.
             image /= _rounding(points, check_distance(distance))[..., np.newaxis, np.newaxis]
         found, rank = orthonormalize(image)
         # The volume that the images span is at most the smallest singular value.
@@ -384,6 +393,7 @@ def push_frame(
 
 def _squared_volume(rows: Array) -> Array:
     """Return the square of the volume that 1 to 3 vectors in 3-space span."""
+    # Gram's determinant for one and two vectors; for three the plain one has more digits.
     a, b = rows[..., 0, :], rows[..., -1, :]
     square: Array = np.einsum("...i,...i", a, a)
     if rows.shape[-2] == 3:
@@ -407,6 +417,8 @@ def _rounding(points: Array, distance: float) -> Array:
 def _significant(image: Array, tolerance: float) -> tuple[Array, Indices]:
     """Return frames and ranks of images, where singular values up to a tolerance count as 0."""
     image = np.where(np.all(np.isfinite(image), axis=(-2, -1), keepdims=True), image, 0)
+    # Of a nearly dependent image Gram-Schmidt would make a direction from rounding; singular
+    # values tell how many directions there are.
     left, size, right = np.linalg.svd(image, full_matrices=False)
     large = size > tolerance
     full = np.all(large, axis=-1)
@@ -429,6 +441,7 @@ def _steps(points: Array, distance: float) -> Iterator[tuple[Array, Array]]:
     image = points
     while image.shape[-1] > 3:
         with np.errstate(all="ignore"):
+            # The last axis is seen by an eye on it, at the same distance each time.
             factor = 1 / (1 - image[..., -1] / distance)
             image = image[..., :-1] * factor[..., np.newaxis]
         yield factor, image

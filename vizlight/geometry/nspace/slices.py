@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from vizlight import _check
-from vizlight.model import layout
+from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
     """Return for each pattern of non-negative corners the simplices of the cut, as edges."""
     edges = _EDGES[corners]
     cases: dict[int, tuple[tuple[int, ...], ...]] = {}
+    # All patterns but the two without a cut: every corner above, or every corner below.
     for pattern in range(1, 2**corners - 1):
         cut = [i for i, (a, b) in enumerate(edges) if (pattern >> a & 1) != (pattern >> b & 1)]
         if len(cut) < 4:
@@ -38,6 +39,7 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
         a, b, c, d = cut
         far = next(e for e in (b, c, d) if not set(edges[a]) & set(edges[e]))
         near = [e for e in (b, c, d) if e != far]
+        # A quadrilateral of four cut edges, as two triangles.
         cases[pattern] = ((a, near[0], far), (a, far, near[1]))
     return cases
 
@@ -79,12 +81,14 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     corners = _check.cells("simplices", simplices, len(height), list(_EDGES), of="values")
     size = corners.shape[1]
     corners = corners[np.all(np.isfinite(height[corners]), axis=1)]
+    # 0 counts as above, everywhere alike: neighbours then agree on the points of the cut.
     above = height[corners] >= 0
     pattern = above @ (1 << np.arange(size))
     found = []
     for case, parts in _cases(size).items():
         rows = corners[pattern == case]
         for part in parts:
+            # Corners of an edge in rising order: neighbours find the same point by the same pair.
             pairs = rows[:, np.array([_EDGES[size][edge] for edge in part])]
             found.append(np.sort(pairs, axis=2))
     pairs = np.concatenate(found) if found else np.empty((0, size - 1, 2), np.intp)
@@ -95,6 +99,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     edges, number = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
     cells = np.asarray(number, dtype=np.intp).reshape(-1, size - 1)
     ordered = np.sort(cells, axis=1)
+    # Where the cut passes through a corner, cells shrink to fewer points and are left out.
     whole = np.all(ordered[:, 1:] != ordered[:, :-1], axis=1)
     _, first = np.unique(ordered[whole], axis=0, return_index=True)
     cells = cells[whole][np.sort(first)]
@@ -140,7 +145,7 @@ def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
     is known to 2 eps divided by the cosine of the largest angle between the spaces. Between two
     points of a smooth manifold the error of the mean grows with the square of their distance.
     """
-    rows, _ = orthonormalize(layout.as_rows("frame", frame, full=True))
+    rows, _ = orthonormalize(frames.as_rows("frame", frame, full=True))
     if rows.ndim != 3:
         raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
     count, k, n = rows.shape
@@ -158,8 +163,10 @@ def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
     largest[owner[order]] = parts.indices[order]
     base = rows[largest[owner]]
     other = rows[parts.indices]
+    # The rotation inside its own space that brings a frame nearest to the base one (Procrustes).
     left, cosines, right = np.linalg.svd(base @ other.swapaxes(1, 2))
     turned = (left @ right @ other).reshape(len(owner), k * n)
+    # The same shares, with one column for each turned frame.
     mixing = scipy.sparse.csr_array(
         (parts.data, np.arange(len(owner)), parts.indptr), (len(largest), len(owner))
     )
@@ -200,7 +207,7 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     space that the rows span is known to 2 eps divided by the sine of the angle between manifold and
     hyperplane.
     """
-    rows, rank = orthonormalize(layout.as_rows("frame", frame, full=True))
+    rows, rank = orthonormalize(frames.as_rows("frame", frame, full=True))
     k, n = rows.shape[-2:]
     if k < 2:
         raise ValueError(_check.message("frame", "2 tangents or more", k))
@@ -208,12 +215,14 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     if len(across) != n:
         expected = f"{n} components, like the rows of frame"
         raise ValueError(_check.message("normal", expected, len(across)))
+    # By the largest component first, so that no square overflows.
     across /= np.abs(across).max()
     a = rows @ (across / np.linalg.norm(across))
     size = np.linalg.norm(a, axis=-1)
     rtol = default_rtol(n, rows.dtype) if rtol is None else _check.number("rtol", rtol, low=0.0)
     good = (size > rtol) & (rank == k)
     mirror = a / np.where(good, size, 1)[..., np.newaxis]
+    # Householder's vector, with the sign that does not cancel.
     mirror[..., 0] += np.where(mirror[..., 0] < 0, -1, 1)
     square = np.sum(mirror**2, axis=-1)
     along = np.einsum("...k,...kn->...n", mirror, rows)

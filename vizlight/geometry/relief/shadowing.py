@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import height_field, marching, strips, sweeping, walks
+from vizlight.geometry.relief import height_field, strips, sweeping, walks
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -107,7 +107,9 @@ def inside_length(
     """
     field = height_field.make(x, y, z, border=border)
     starts = _check.vectors("points", points, n=3)
+    # Relative to the field's first node and lowest height: digits of far places are not lost.
     flat = starts.reshape(-1, 3).astype(np.float64) - field.origin
+    # Such rays are followed from 0 and get NaN at the end.
     odd = ~np.all(np.abs(flat) <= _check.FARTHEST, axis=1)
     flat[odd] = 0
     ray = toward(field, direction=direction, position=position)
@@ -201,13 +203,13 @@ class Ray:
         """Return unit directions (3, N) and lengths (N,) of the rays from positions (3, N)."""
         if self.direction is not None:
             way = np.repeat(self.direction[:, np.newaxis], start.shape[1], axis=1)
-            return way, np.full(start.shape[1], marching.FAR)
+            return way, np.full(start.shape[1], walks.FAR)
         assert self.position is not None
         way = self.position[:, np.newaxis] - start
         size = kernels.length(way)
         unit = way / np.where(size > 0, size, 1)
         unit[np.abs(unit) < ROUNDING] = 0
-        return unit, np.minimum(size, marching.FAR)
+        return unit, np.minimum(size, walks.FAR)
 
 
 def toward(
@@ -227,6 +229,7 @@ def toward(
         # The sine of 180 degrees is not 0 in a computer; a ray in a plane of nodes stays there.
         way[np.abs(way) < ROUNDING] = 0
         return Ray(way / np.linalg.norm(way), None)
+    # A lamp may stand on the ground; 1e-9 of the size is rounding.
     place = np.array(vector) - field.origin
     height = float(field.height(place[:1], place[1:2])[0])
     size = max(field.x[-1], field.y[-1], field.top)
@@ -253,6 +256,7 @@ def ratio(
     if depth * LEAST_DEPTH > size:
         expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the size of the field"
         raise ValueError(_check.message("depth", expected, depth))
+    # At depth 0 t is a limit: the cosine where the ray leaves at once, else 0.
     limit = depth <= LEAST_DEPTH * size
     inset = 0.0 if limit else depth
     shape = field.heights.shape
@@ -271,12 +275,14 @@ def ratio(
     t = lengths(field, start, count, ray, method, inset, report)
     if limit:
         step = min(np.diff(field.x).min(), np.diff(field.y).min())
+        # A ray that grazes its own cell by rounding has not been occluded.
         free = t <= 1e-6 * step
         for rows in _pool.blocks(len(t), BLOCK):
             way, _ = ray.from_places(start(np.arange(rows.start, rows.stop)))
             cosine = np.einsum("ij,ji->i", normal.reshape(-1, 3)[rows], way)
             t[rows] = np.where(free[rows], np.clip(cosine, 0, 1), 0)
     else:
+        # t = d / r in place; r of less than d, of a ray that leaves aside, counts as d.
         np.maximum(t, depth, out=t)
         np.divide(depth, t, out=t)
     return t.reshape(shape)
@@ -313,6 +319,7 @@ def _lengths(
     report: Callable[[int], None] | None,
 ) -> Array:
     length = np.empty(count)
+    # A lamp below the horizon of ground without an end: no ray ever leaves it.
     if ray.direction is not None and ray.direction[2] < 0 and field.border == "extend":
         length[:] = np.inf
         return length
@@ -320,11 +327,14 @@ def _lengths(
         if below is None:
             below = _largest_offset(field, start(np.arange(count)))
         if _compiled.active():
+            # All rays of a lamp at infinity are parallel: sorted by strips they share what they
+            # read.
             made = strips.strips(field, ray.direction, below, count)
             if made is not None and strips.lengths.pays(walks.SAVED * count):
                 _by_strip(made, start, length, report)
                 return length
         elif method == "fast":
+            # Without a compiler a resampled field is several times faster than the exact walk.
             profiles = sweeping.profiles(field, ray.direction, below)
             if profiles is not None:
                 _by_profile(profiles, start, length, report)
@@ -338,7 +348,7 @@ def _lengths(
         places = start(np.arange(rows.start, rows.stop))
         way, reach = ray.from_places(places)
         if bounds is None:
-            length[rows] = marching.march(field, places, way, reach, coarse=True)
+            length[rows] = walks.march(field, places, way, reach, coarse=True)
         else:
             walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,

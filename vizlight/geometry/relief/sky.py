@@ -263,6 +263,7 @@ class _Scan:
     def __init__(self, search: _Search, near: int) -> None:
         self.near, self.mode = near, int(search.openness)
         self.shape = search.z.shape
+        # Near cells beyond the border exist, so that a walk through them asks for no bounds.
         wide = np.pad(search.z, near, mode="edge")
         x, y = (_padded(axis, near) for axis in (search.x, search.y))
         self.fields = {False: (wide, x, y), True: (np.ascontiguousarray(wide.T), y, x)}
@@ -281,6 +282,7 @@ class _Scan:
         """Add what the nodes see toward an azimuth to one of two sums."""
         _, x, y = self.fields[False]
         steps = [np.ptp(axis) / (len(axis) - 1) for axis in (x, y)]
+        # Columns lie along the axis on which the azimuth runs faster; else the field is transposed.
         swap = bool(abs(dy) * steps[0] > abs(dx) * steps[1])
         if swap:
             dx, dy = dy, dx
@@ -299,8 +301,10 @@ class _Scan:
         slope = abs(dy) / abs(dx)
         spacing = y[-1] / (rows - 1)
         # Lines from below the last node of the first row to above the first one of the last.
+        # Scan lines are parallel to the azimuth, a row's spacing apart.
         first = -slope * x[-1] - spacing
         count = int((y[-1] - first) / spacing) + 2
+        # Most nodes of a column between two lines: uneven rows may crowd.
         crowd = int(np.max(np.searchsorted(y, y + spacing * (1 + 1e-9)) - np.arange(rows)))
 
         def work(part: slice) -> int:
@@ -326,6 +330,7 @@ def _padded(nodes: Array, near: int) -> Array:
 def slope_of(before: float, here: float, after: float, low: float, high: float) -> float:
     """Return the slope of the parabola through three nodes; of one side next to a hole."""
     one, other = (here - before) / low, (after - here) / high
+    # NaN alone differs from itself: a hole.
     if one != one:
         return 0.0 if other != other else other
     if other != other:
@@ -540,6 +545,7 @@ def azimuth(
             edge_row -= 1
         top = edge
         for b in range(edge + 1):
+            # Seen from the line, nodes of the border's column are at distances along the azimuth.
             hx[b] = (x[columns - 1] + (bx[b] - leaves) / slope) * length
             hz[b] = bz[b]
         r, above, below = rows - 2, rows - 1, rows - 1
@@ -549,11 +555,13 @@ def azimuth(
             side = min(max(start + slope * x[m], y[0]), y[rows - 1])
             while r > 0 and y[r] > side:
                 r -= 1
+            # Heights on the line, between the two nodes of a column.
             v = (side - y[r]) / (y[r + 1] - y[r])
             at = base + r * row + m * column
             place = between(z[at], z[at + row], v)
             if place == place:
                 top = pushed(hx, hz, top, x[m] * length, place)
+            # The node itself lies between two lines; its horizon is taken from both hulls.
             aside = slope * x[i]
             side = side_of(first, spacing, line, aside)
             # Nodes from this line up to the next one, whose horizon on that one is known.
@@ -567,10 +575,14 @@ def azimuth(
                         other = upper[(line + 1) & 1, taken]
                         taken += 1
                         share = (y[k] - side) / spacing
+                        # Where one line meets no ground there is nothing to interpolate with.
                         t = max(t, other) if min(t, other) == NONE else between(t, other, share)
+                        # The hull holds what is beyond the near columns; those are crossed cell by
+                        # cell here.
                         t = crossed(z, way, x, y, i, k, slope, m, t, math.inf)
                         p, q = slopes(z, way, x, y, i, k, near)
                         rise = (p + slope * q) / length
+                        # The integral over elevation from the horizon up is closed.
                         value = seen(t, rise, 1 / math.sqrt(1 + p * p + q * q), mode)
                         out[own[0] + (k - near) * own[1] + (i - near) * own[2]] += value
                     k -= 1

@@ -4,7 +4,7 @@ The rise of the light's rays is subtracted from the heights, so that each ray is
 one strip along the light's azimuth are sorted by their levels, and the columns of the strip are
 gone through once, in the direction of the light. In a column, rays below all of its heights are
 inside, rays above all of them are outside, and the rays between cross its cells: the closed form of
-:mod:`marching` gives their lengths, for several rays at once.
+:mod:`walks` gives their lengths, for several rays at once.
 """
 
 from __future__ import annotations
@@ -15,11 +15,89 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _compiled
-from vizlight.geometry.relief.ranks import below, group, sort
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
     from vizlight.geometry.relief.height_field import Field
+
+
+#: Smallest range of values that is divided into buckets.
+LEAST = 1e-300
+
+
+@_compiled.kernel()
+def group(key: Indices, ends: Indices, order: Indices) -> None:
+    """Write the order of rays by their integer keys, the first ray of each key, and the end."""
+    for k in range(len(ends)):
+        ends[k] = 0
+    for k in range(len(key)):
+        ends[key[k]] += 1
+    total = 0
+    for k in range(len(ends)):
+        total += ends[k]
+        ends[k] = total
+    for k in range(len(key) - 1, -1, -1):
+        ends[key[k]] -= 1
+        order[ends[key[k]]] = k
+
+
+@_compiled.kernel()
+def sort(values: Array, key: Array, order: Indices, ends: Indices) -> float:
+    """Write values in rising order, their old indices, and the first index of each bucket.
+
+    There are as many buckets of equal width as values; return their number per unit of the values.
+    Inside the buckets values are sorted by gaps that are less than the fullest of them.
+    """
+    count = len(values)
+    low, high = math.inf, -math.inf
+    for k in range(count):
+        low, high = min(low, values[k]), max(high, values[k])
+    rate = (count - 1) / (high - low) if high - low > LEAST else 0.0
+    for bucket in range(count + 1):
+        ends[bucket] = 0
+    for k in range(count):
+        ends[int((values[k] - low) * rate)] += 1
+    total, fullest = 0, 0
+    for bucket in range(count + 1):
+        fullest = max(fullest, ends[bucket])
+        total += ends[bucket]
+        ends[bucket] = total
+    for k in range(count - 1, -1, -1):
+        bucket = int((values[k] - low) * rate)
+        ends[bucket] -= 1
+        order[ends[bucket]], key[ends[bucket]] = k, values[k]
+    gap = 1
+    while 3 * gap + 1 < fullest:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for k in range(gap, count):
+            i, value, j = order[k], key[k], k
+            while j >= gap and key[j - gap] > value:
+                order[j], key[j] = order[j - gap], key[j - gap]
+                j -= gap
+            order[j], key[j] = i, value
+        gap //= 3
+    return rate
+
+
+@_compiled.kernel(inline=True)
+def below(key: Array, ends: Indices, rate: float, value: float) -> int:
+    """Return how many of the values that :func:`sort` has written are less than another one."""
+    count = len(key)
+    if value <= key[0]:
+        return 0
+    if value > key[count - 1]:
+        return count
+    bucket = int((value - key[0]) * rate)
+    low, high = int(ends[bucket]), int(ends[bucket + 1])
+    while low < high:
+        middle = (low + high) >> 1
+        if key[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
 
 Triple = tuple[float, float, float]
 #: Heights, sides and columns at which rays start, and their lengths.
@@ -79,6 +157,8 @@ def in_cell(
         enter = max(min((low - side[k]) * inverse, width), begin[k])
         leave = max(min((high - side[k]) * inverse, width), enter)
         u, v = enter * per_column, (side[k] + slope * enter - low) * per_row
+        # In the level frame of the ray, height less level is a quadratic along the way in the
+        # cell.
         f0 = (z - level[k] - rise * enter) + u * a + v * (b + u * c)
         f1 = per_column * (a + v * c) + dv * (b + u * c) - rise
         length[k] += positive(f0, f1, f2, leave - enter)
@@ -106,6 +186,8 @@ def fill(now: int, before: int, place: float, begin: Array, since: Array, length
 
     Rays that begin later are left as they are: their ``since`` is at or after their ``begin``.
     """
+    # Levels are sorted, so the rays inside a column are the first ones: only the change is
+    # handled.
     for k in range(before, now):
         since[k] = max(place, begin[k])
     for k in range(now, before):
@@ -132,6 +214,7 @@ def cross(
     for n in range(count):
         k = own_index[n]
         # Near its start a ray is known best from there.
+        # LANES rays at once, without branches: the compiler makes vector instructions of it.
         aside = side[k] + slope * (place - begin[k])
         low, high = min(low, aside), max(high, aside)
         own_side[n], own_level[n] = aside, height[k] + rise * (place - begin[k])
@@ -143,6 +226,7 @@ def cross(
     for n in range(padded):
         own_length[n] = 0.0
     end = len(rows) - 2
+    # Rows that any of the rays meets in this column.
     while row < end and rows[row + 1] <= low:
         row += 1
     while row <= end and rows[row] <= high + slope * width:
@@ -175,6 +259,7 @@ def follow(
     last, inner = len(columns) - 1, corners.shape[1] - 1
     first = last
     for k in range(len(level)):
+        # The first column that a ray of the strip begins in.
         while first > 0 and columns[first] > begin[k]:
             first -= 1
     inside, from_row, to_row, row = 0, 0, 0, 0
@@ -185,6 +270,7 @@ def follow(
             aside[0] + slope * columns[max(c - 1, 0)],
             aside[1] + slope * columns[min(c + 1, last)], rows, from_row, to_row,
         )  # fmt: skip
+        # Highest and lowest node that the strip covers here, in the frame in which rays are level.
         up, down = -math.inf, math.inf
         for r in range(from_row, to_row + 1):
             height = corners[r, min(c, inner)]
@@ -193,6 +279,8 @@ def follow(
         if c > first:
             # The column between this line of nodes and the one before it.
             place, node = columns[c - 1], min(c - 1, inner)
+            # Below all nodes by more than rounding: inside. Above all: outside. Between: cells are
+            # crossed.
             now = below(level, ends, rate, min(down, low) - slack)
             to = below(level, ends, rate, max(up, high) + slack)
             fill(now, inside, place, begin, since, length)
@@ -204,6 +292,8 @@ def follow(
                     corners, column, rows, per_row, min(row, from_row), way, (now, to), rays, own,
                     own_index,
                 )  # fmt: skip
+            # Beyond the last node heights change no more: once the lowest ray is above them all
+            # are out.
             if c >= inner - 1 and ahead[from_row] - rise * columns[c] + slack <= level[0]:
                 last = c
                 break
@@ -224,6 +314,8 @@ def lengths(
     x, y, z = start[0], start[1], start[2]
     least, largest = math.inf, -math.inf
     for k in range(len(rays)):
+        # A ray's offset across the light's direction tells its strip; it is the same all along the
+        # ray.
         aside = y[k] - slope * x[k]
         least, largest = min(least, aside), max(largest, aside)
     strip: Indices = np.empty(len(rays), np.int32)
@@ -252,7 +344,9 @@ def lengths(
             continue
         for k in range(count):
             i = order[at + k]
+            # The level of a ray where the columns begin: with the rise taken off it is constant.
             keys[k] = z[i] - rise * x[i]
+        # Buckets make the search for a level one step for the usual, even spread.
         rate = sort(keys[:count], level[:count], index, buckets)
         low, high = math.inf, -math.inf
         for k in range(count):
@@ -315,6 +409,8 @@ class Strips:
         self.slope = abs(float(way[self.side])) * self.per_step
         self.rise = float(way[2]) * self.per_step
         corners = field.corners if self.main == 0 else field.corners.T
+        # Mirrored so that the light goes toward rising columns and rows: one case in place of
+        # eight.
         corners = np.ascontiguousarray(corners[:: int(self.signs[1]), :: int(self.signs[0])])
         columns = np.sort(self.signs[0] * nodes[self.main])
         rows = np.sort(self.signs[1] * field.edges[self.side])
@@ -334,6 +430,7 @@ class Strips:
         self.count = int((most - self.first) / self.spacing) + 2
         # Levels are rounded, so bounds are a little wider.
         reach = float(np.abs(self.columns).max())
+        # 16 eps of the largest number that enters a level.
         self.slack = 16 * np.finfo(float).eps * float(field.top + self.rise * reach)
 
     def _beyond(

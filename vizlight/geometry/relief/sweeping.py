@@ -135,6 +135,7 @@ class Profiles:
         rows, nodes = self._rows, len(self._rows)
         offsets = self.first + self.spacing * np.arange(first, first + count)
         place = offsets + self.slope * self.columns[:, np.newaxis]
+        # Heights of the profile are those of the field along one line aside of the columns.
         share = np.interp(place, rows, np.arange(float(nodes)))
         row = share.astype(np.intp)
         share -= row
@@ -147,7 +148,9 @@ class Profiles:
         between = share > 0
         at += between
         level = np.where(between, low + share * (flat[at] - low), low)
+        # The rise of the light is taken off, so that every ray is level and a bound tells at once.
         level -= self.rise * self.columns[:, np.newaxis]
+        # In units near 1 the bounds lose nothing in float32.
         level /= self.unit
         if not self._solid:
             level[own != held] = NO_SOLID
@@ -170,6 +173,7 @@ class _Band:
         coming = np.maximum.accumulate(up[::-1], axis=0)[::-1]
         coming[-1] = NO_SOLID
         self.coming = coming.ravel()
+        # A pyramid over columns: bounds of 2^l steps, from 2^LEAF on.
         largest, least = np.maximum(up[:-1], up[1:]), np.minimum(down[:-1], down[1:])
         bounds: list[tuple[Array, Array]] = []
         while len(bounds) < LEAF + 1 or len(largest) > 1:
@@ -198,6 +202,7 @@ class _Band:
         row = np.arange(len(x))
         # The field itself gives the surface at the start, which matters for a shallow start.
         surface = world.surface(start) - world.rise * x
+        # The first step is partial, from the place of the ray to the next column.
         length += rays.begin(surface / world.unit)
         while True:
             going = np.flatnonzero(rays.going())

@@ -100,6 +100,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         expected, remedy = "a bounded solid", "intersect it with a bounded one"
         raise ValueError(_check.message("solid", expected, solid, remedy))
     if isinstance(solid, Primitive):
+        # A chord of the angle 2 pi / n is r (1 - cos(pi / n)) away from its circle.
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
     tree = _Tree(solid, tolerance)
@@ -108,6 +109,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         chosen = tree.segments(fine)
         count = tree.points(chosen)
         if fine == tolerance and count <= most:
+            # Thin walls between surfaces need facets finer than the wall.
             thin = tree.finer(chosen)
             if thin != chosen:
                 chosen, most = thin, max(PATIENCE, count)
@@ -115,6 +117,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         if count > most:
             break
         made = tree.mesh(chosen, fine)
+        # Else facets have cut through a wall: once more, finer.
         if made.volume_missing <= tree.allowed(made):
             return made
         fine, most = fine / FINER, PATIENCE
@@ -152,6 +155,7 @@ class _Tree:
         self.first = np.cumsum(owned) - owned
         self.signs = np.repeat(_signs(self.solid, 1.0), owned)
         keys = [surface.key(sign) for surface, sign in zip(self.surfaces, self.signs, strict=True)]
+        # Faces that coincide must have one number, or they count as two.
         rows = np.round(np.reshape(keys, (-1, 10)) * EQUAL)
         _, first, which = np.unique(rows, axis=0, return_index=True, return_inverse=True)
         #: Index of the first surface that is equal to each.
@@ -164,6 +168,8 @@ class _Tree:
         with np.errstate(divide="ignore", invalid="ignore"):
             jump = radius[order][1:] > ALIKE * radius[order][:-1]
         group = np.empty(len(radius), np.intp)
+        # Radii that differ little form a group with equal facets, which are parallel in a thin
+        # shell.
         group[order] = np.concatenate([[0], np.cumsum(jump)])
         largest = np.zeros(len(radius))
         np.maximum.at(largest, group, radius)
@@ -219,6 +225,8 @@ class _Tree:
             if part.empty:
                 leaves.append(Manifold())
                 continue
+            # Volume between facets and exact surfaces adds up over the primitives, and bounds the
+            # error.
             leaves.append(_leaf(part, count, self.equal[first:]))
             total += triangle_mesh.missed(part, count, leaves[-1].volume())
             total += ROUNDING * leaves[-1].surface_area()
@@ -235,8 +243,10 @@ class _Tree:
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
         same = np.arange(len(points))
+        # manifold3d splits points whose properties differ; in a closed mesh they are one.
         same[np.asarray(found.merge_from_vert, np.intp)] = found.merge_to_vert
         used, triangles = np.unique(same[triangles], return_inverse=True)
+        # The number of the exact surface that each triangle came from survives the operation.
         patch = np.asarray(found.face_id, np.intp)
         self._check_bounded(patch)
         mesh = Mesh(
@@ -295,6 +305,7 @@ def _leaf(part: Primitive, segments: int, number: Indices) -> manifold3d.Manifol
 
     mesh = triangle_mesh.mesh(part, segments)
     used, triangles = np.unique(mesh.triangles, return_inverse=True)
+    # On a grid of powers of two, so that faces of two solids that coincide do so in every bit.
     points = np.round(mesh.world(mesh.points[used]) * GRID) / GRID
     leaf = Manifold(
         Mesh64(

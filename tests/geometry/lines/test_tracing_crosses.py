@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vizlight.geometry.lines.crosses import double_cover
-from vizlight.geometry.lines.tracing import Flow, trace
+from vizlight.geometry.lines.tracing import Flow, double_cover, trace
 
 OPTIONS = {"step": 0.3, "max_steps": 10_000}
 MINOR = 0.4

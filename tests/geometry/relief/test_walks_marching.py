@@ -11,7 +11,7 @@ from fields import METHODS, hills, places, sun, unit
 from scipy.interpolate import RegularGridInterpolator
 
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field, marching
+from vizlight.geometry.relief import height_field, walks
 
 pytestmark = pytest.mark.usefixtures("each_code")
 
@@ -70,8 +70,8 @@ def test_large_squares_change_nothing(random):
     field = height_field.make(x, y, z, border="extend")
     start = (places(x, y, z, 2000, random) - field.origin).T
     way = np.repeat(sun(12, 215)[:, None], 2000, axis=1)
-    reach = np.full(2000, marching.FAR)
-    one, many = (marching.march(field, start, way, reach, coarse=c) for c in (False, True))
+    reach = np.full(2000, walks.FAR)
+    one, many = (walks.march(field, start, way, reach, coarse=c) for c in (False, True))
     np.testing.assert_allclose(one, many, atol=64 * 2.2e-16 * 10)
     assert one.max() > 3
 

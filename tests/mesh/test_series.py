@@ -10,7 +10,7 @@ from vtkmodules.vtkIOParallel import vtkEnSightWriter
 
 import vizlight
 from vizlight import files
-from vizlight.mesh import steps
+from vizlight.mesh import series
 
 
 def swirl(time, middles):
@@ -79,7 +79,7 @@ def ensight(folder):
 def test_a_step_is_read_by_its_time_or_its_index(make, asked, time, tmp_path):
     mesh = vizlight.read(make(tmp_path), time=asked)
     assert mesh.field_data["TimeValue"][0] == time
-    assert steps.of(mesh) == [0, 0.5, 2]
+    assert series.of(mesh) == [0, 0.5, 2]
     assert mesh["p"].max() == time
 
 
@@ -94,14 +94,14 @@ def test_a_time_of_a_file_without_steps_is_refused(tmp_path):
     pv.Sphere().save(tmp_path / "a.vtp")
     assert vizlight.read(tmp_path / "a.vtp", time="last").n_points
     with pytest.raises(
-        steps.NoStepError, match=r"time: expected a file of several .*, got 'a.vtp'"
+        series.NoStepError, match=r"time: expected a file of several .*, got 'a.vtp'"
     ):
         vizlight.read(tmp_path / "a.vtp", time=3)
 
 
 def test_the_last_step_of_a_case_has_its_fields_at_the_points(case):
     mesh = vizlight.read(case)
-    assert steps.of(mesh) == [0, 0.5, 2]
+    assert series.of(mesh) == [0, 0.5, 2]
     assert mesh.point_data["U"].shape == (125, 3)
     assert np.abs(mesh.point_data["U"]).max() > 0.5
     assert vizlight.streamlines(mesh, seeds=5).n_lines  # of its only vectors
