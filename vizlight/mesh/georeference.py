@@ -115,7 +115,7 @@ def stretch(mesh: pv.DataSet) -> float:
         Mesh.
     """
     x, y, z = in_metres(mesh).bounds_size
-    return _factor(z, math.sqrt(x * y)) if is_degrees(mesh) else 1.0
+    return _factor(z, math.sqrt(x * y) or max(x, y)) if is_degrees(mesh) else 1.0
 
 
 def _factor(spread: float, side: float) -> float:
