@@ -140,6 +140,7 @@ def drawn(**more):
 CALLS = {
     "files.read": lambda: {"path": saved()},
     "files.surface_of": lambda: {"mesh": flow(), "contour": None},
+    "files.stretched": lambda: {"mesh": hills(), "factor": 2.0},
     "files.warped": lambda: {"mesh": hills(), "name": "h", "factor": 1.0},
     "files.with_vectors": lambda: {"mesh": hills(), "names": "h,h"},
     "files.write_mesh": lambda: {"mesh": ball(), "path": Path("out.vtp")},

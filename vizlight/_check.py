@@ -377,6 +377,8 @@ def instance(
     if not (isinstance(value, kind) or (optional and value is None)):
         where = f"vizlight.{home}." if home else "vizlight."
         expected = f"a {where}{kind.__name__}" + (" or None" if optional else "")
+        if not remedy and callable(value) and hasattr(value, "__name__"):
+            remedy = f"call it: {value.__name__}()"
         raise TypeError(message(name, expected, describe(value), remedy))
 
 

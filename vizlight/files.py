@@ -54,7 +54,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign
 
-__all__ = ["FileError", "read", "surface_of", "warped", "with_vectors", "write_mesh"]
+__all__ = [
+    "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
+]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
 FORMATS: dict[str, tuple[str, ...]] = {
@@ -491,6 +493,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     """
     _dataset(mesh)
     mesh = point_arrays.averaged(mesh, name)
+    _check.text("warp", name, expected="the name of a point array")
     rows = np.asarray(mesh.point_data[name]) if name in mesh.point_data else np.empty(0)
     if rows.dtype.kind != "f" or rows.shape[1:] != (3,):
         rows = np.asarray(_scalars(mesh, "warp", name))[:, np.newaxis]
@@ -510,6 +513,30 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         moved = mesh.warp_by_scalar(name, factor=factor)
     found: pv.DataSet = moved
     return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
+
+
+def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
+    """Return a volume over a map in degrees in metres, its z times a factor.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which is not changed.
+    factor : float
+        Factor of z.
+
+    Returns
+    -------
+    pyvista.DataSet
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no dataset, or the factor is not finite.
+    """
+    _dataset(mesh)
+    factor = _check.number("factor", factor)
+    return blocks.moved(georeference.in_metres(mesh), np.zeros(3), np.array([1.0, 1.0, factor]))
 
 
 def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:

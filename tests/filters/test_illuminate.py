@@ -430,6 +430,8 @@ def test_bad_meshes_and_scenes():
         illuminate(np.ones((3, 3)), SCENE)
     with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene or None, got"):
         illuminate(pv.Sphere(), Light(direction=(0, 0, 1)))
+    with pytest.raises(TypeError, match=r"scene: .* got <function shape.*; call it: shape\(\)"):
+        illuminate(pv.Sphere(), vizlight.presets.shape)
     with pytest.raises(
         ValueError, match=r"mesh: expected a surface.*name its tangent vectors by tangents="
     ):

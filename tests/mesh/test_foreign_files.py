@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
+from vizlight import cli, files
 from vizlight.mesh import polylines
 
 VIEW = vizlight.View(direction=(0, 0, 1))
@@ -266,6 +266,22 @@ def test_depths_are_below_the_surface(tmp_path):
     grid = vizlight.read(tmp_path / "sea.nc")
     assert (grid.bounds.z_min, grid.bounds.z_max) == (-90, -5)
     assert grid["warmth"][np.argmax(grid.points[:, 2])] == 0
+
+
+@pytest.mark.parametrize(
+    ("cut", "rise"),
+    [((), 600), (("--clip", "z:3"), 1000), (("--slice", "x:1.15"), 1500)],
+)
+def test_a_volume_in_degrees_is_no_needle_in_pictures(cut, rise, tmp_path, capsys):
+    """Planes that cut it are in the coordinates of the file."""
+    xarray = pytest.importorskip("xarray")
+    axes = {"level": [1.0, 2, 3, 4], "grid_latitude": [0.1, 0.2, 0.3], "grid_longitude": [1.1, 1.2]}
+    air = xarray.Dataset({"warmth": ([*axes], np.zeros((4, 3, 2)))}, coords=axes)
+    air.to_netcdf(tmp_path / "air.nc", engine="scipy")
+    out = str(tmp_path / "lit.vtp")
+    assert cli.main(["light", str(tmp_path / "air.nc"), *cut, "-o", out]) == 0
+    assert "its z taken" in capsys.readouterr().out
+    assert pv.read(out).bounds_size[2] == pytest.approx(rise)
 
 
 def test_a_mesh_of_ugrid_is_no_grid(tmp_path):

@@ -69,6 +69,22 @@ def test_a_relief_that_nobody_sees_is_told_with_its_remedy():
     assert np.ptp(flat) < 1e-3 < 0.1 < np.ptp(raised)
 
 
+def test_a_volume_over_a_map_is_stretched_until_it_can_be_seen():
+    air = pv.ImageData(dimensions=(5, 5, 4), spacing=(0.1, 0.1, 5.0), origin=(11, 50, 0))
+    air.field_data["unit"] = ["degree"]
+    before = np.array(air.points)
+    factor = georeference.stretch(air)
+    x, y, z = vizlight.files.stretched(air, factor).bounds_size
+    assert factor == 100
+    assert (y, z) == pytest.approx((0.4 * 111_195, 1500), rel=1e-3)
+    assert 0.6 < x / y < 0.7  # the cosine of the latitude
+    np.testing.assert_array_equal(air.points, before)
+    air.field_data.clear()
+    assert georeference.stretch(air) == georeference.stretch(pv.Sphere()) == 1
+    flat = chart()
+    assert georeference.stretch(flat) == 1
+
+
 def test_a_raised_map_is_in_metres_without_its_holes():
     grid = chart()
     grid["height"][:7] = np.nan

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene
-from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
+from vizlight.shading.display import NO_DATA, displayable, for_colors, numerals, on_colors
 
 
 def test_light_on_colours_is_a_factor_from_three_tenths_to_one(random):
@@ -84,3 +84,17 @@ def test_colours_to_bring_into_range_are_of_three_components():
         displayable([1.0, 2.0])
     with pytest.raises(TypeError, match="rgb"):
         displayable("red")
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ((682.1, 2543.0), ["682", "2540"]),
+        ((287.2, 287.4), ["287.2", "287.4"]),
+        ((799_500.0, 800_500.0), ["799500", "800500"]),
+        ((-9.87e-7, 0.0, 1.35e7), ["-9.87e-07", "0", "1.35e+07"]),
+        ((3.0, 3.0), ["3", "3"]),
+    ],
+)
+def test_numbers_are_told_apart(numbers, words):
+    assert numerals(numbers) == words

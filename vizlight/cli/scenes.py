@@ -104,7 +104,22 @@ def data(file: Path, target: Part, time: float | str | None = None) -> Step:
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
         mesh = _cut("clipped", "clip", mesh, text)
-    return mesh
+    return _stretched(mesh) if isinstance(target, Shape) and target.slice is None else mesh
+
+
+def _stretched(mesh: Step) -> Step:
+    """Return the step that makes a volume over a map as high as can be seen, where it is needed.
+
+    Planes that cut it are in the coordinates of its file, so they come before.
+    """
+    from vizlight.mesh import georeference
+
+    factor = georeference.stretch(mesh.run())
+    if factor == 1:
+        return mesh
+    step = Step("stretched", "files.stretched", mesh, factor)
+    step.note = f"the volume is in metres over its map, its z taken {factor:g} times"
+    return step
 
 
 def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
@@ -198,7 +213,7 @@ def _cut(name: str, option: str, mesh: Step, text: str) -> Step:
 def surface(mesh: Step, target: Part) -> Step:
     """Return the step that takes the surface, an isosurface or a section of a mesh."""
     if isinstance(target, Shape) and target.slice is not None:
-        return _cut("section", "slice", mesh, target.slice)
+        return _stretched(_cut("section", "slice", mesh, target.slice))
     options = known(contour=target.contour, level=target.level)
     return Step("surface", "files.surface_of", mesh, **options)
 

@@ -21,7 +21,7 @@ from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.light import WHITE
 from vizlight.scene.vtk import lights_of
-from vizlight.shading.display import NO_DATA_NAME
+from vizlight.shading.display import NO_DATA_NAME, numerals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -513,5 +513,5 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
     return {
         "title": title,
         "colors": ["#" + bytes(color).hex() for color in chosen.astype(np.uint8)],
-        "numbers": [f"{x:.3g}" for x in (low, middle, high)],
+        "numbers": numerals((low, middle, high)),
     }

@@ -12,7 +12,7 @@ from vizlight.filters.tint import RGB, color_table
 from vizlight.scene import Scene, View
 from vizlight.scene.presets import PRESETS
 from vizlight.shading import engine
-from vizlight.shading.display import LEAST, displayable, on_colors
+from vizlight.shading.display import LEAST, displayable, numerals, on_colors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,7 +114,7 @@ def key(
     if asked == "value":
         if clim is None and isinstance(cmap, pv.LookupTable):
             clim = cmap.scalar_range
-        words = words if clim is None else [f"{end:.3g}" for end in _check.vector("clim", clim)]
+        words = words if clim is None else numerals(_check.vector("clim", clim))
         words[1:1] = [_check.text("title", title)] if title else []
     made.field_data[WORDS] = words
     return made

@@ -338,7 +338,10 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
 
 
 #: Words with which the units and the names of the axes of latitude and of longitude begin.
-_EARTH = (("degree_n", "degrees_n", "lat"), ("degree_e", "degrees_e", "lon"))
+_EARTH = (
+    ("degree_n", "degrees_n", "lat", "grid_lat"),
+    ("degree_e", "degrees_e", "lon", "grid_lon"),
+)
 
 
 def _is_degrees(file: Foreign, dim: object, words: tuple[str, ...]) -> bool:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Foreign
     from vizlight.mesh.blocks import DataSetT
 
-__all__ = ["DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "read", "seem_degrees"]
+__all__ = [
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "is_degrees", "read", "seem_degrees",
+    "stretch",
+]  # fmt: skip
 
 
 #: Field array with the unit of x and y, and its value for longitude and latitude.
@@ -30,6 +33,11 @@ METRES = math.radians(6_371_008.8)
 ENOUGH = (0.05, 0.5)
 #: Percentiles of the heights that bound their range, so that single wrong heights do not matter.
 RANGE = (1.0, 99.0)
+
+
+def is_degrees(mesh: pv.DataSet) -> bool:
+    """Return whether the x and y of a mesh are said to be in degrees."""
+    return UNIT in mesh.field_data and mesh.field_data[UNIT][0] == DEGREE
 
 
 def in_metres(mesh: DataSetT) -> DataSetT:
@@ -49,7 +57,7 @@ def in_metres(mesh: DataSetT) -> DataSetT:
     pyvista.DataSet
         Copy that shares the arrays, or the mesh itself where it is not in degrees.
     """
-    if UNIT not in mesh.field_data or mesh.field_data[UNIT][0] != DEGREE:
+    if not is_degrees(mesh):
         return mesh
     x, y, _ = mesh.center
     across = METRES * math.cos(math.radians(min(max(y, -89.0), 89.0)))
@@ -92,9 +100,25 @@ def exaggeration(mesh: pv.DataSet, heights: str) -> float:
     heights : str
         Name of a point array of one component.
     """
-    spread = _spread(mesh, heights)
     sides = sorted(in_metres(mesh).bounds_size)
-    side = math.sqrt(sides[1] * sides[2]) or sides[2]
+    return _factor(_spread(mesh, heights), math.sqrt(sides[1] * sides[2]) or sides[2])
+
+
+def stretch(mesh: pv.DataSet) -> float:
+    """Return the factor of z with which a volume over a map in degrees can be seen, 1 for others.
+
+    Air and sea are thin beside their maps, and levels are often numbers; see :func:`exaggeration`.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    """
+    x, y, z = in_metres(mesh).bounds_size
+    return _factor(z, math.sqrt(x * y) or max(x, y)) if is_degrees(mesh) else 1.0
+
+
+def _factor(spread: float, side: float) -> float:
     if not (spread > 0 and side > 0) or ENOUGH[0] <= spread / side <= ENOUGH[1]:
         return 1.0
     wanted = min(max(spread / side, ENOUGH[0]), ENOUGH[1]) * side / spread

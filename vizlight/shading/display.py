@@ -16,6 +16,8 @@ from vizlight import _check
 from vizlight.model import formulas
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from vizlight._types import Array, Bools, Color
@@ -39,6 +41,16 @@ _BLOCK = 1 << 14
 def titled(name: str, *, lacking: bool) -> str:
     """Return the title of a key of values, with the colour of those that are lacking."""
     return f"{name} (grey: {NO_DATA_NAME})" if lacking else name
+
+
+def numerals(numbers: Sequence[float]) -> list[str]:
+    """Return numbers in the fewest digits that tell them apart, at least three."""
+    words = [""]
+    for digits in range(3, 16):
+        words = [f"{float(f'{number:.{digits}g}'):.{max(digits, 6)}g}" for number in numbers]
+        if len(set(words)) == len(set(numbers)):
+            break
+    return words
 
 
 def for_colors(scene: Scene) -> Scene:
