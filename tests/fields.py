@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pyvista as pv
 
@@ -81,7 +83,9 @@ def by_cells(field, start, way):
     """Return lengths by NumPy, through every cell."""
     count = start.shape[1]
     ways = np.repeat(way[:, None], count, axis=1)
-    return walks.march(field, start, ways, np.full(count, walks.FAR), coarse=False)
+    finest = dataclasses.replace(field)
+    vars(finest)["bounds"] = field.bounds[:1]
+    return walks.march(finest, start, ways, np.full(count, walks.FAR))
 
 
 def swatches(rows=6, columns=8):

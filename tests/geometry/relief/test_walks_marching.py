@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fields import METHODS, hills, places, sun, unit
+from fields import METHODS, by_cells, hills, places, sun, unit
 from scipy.interpolate import RegularGridInterpolator
 
 from vizlight.geometry import relief
@@ -69,9 +69,10 @@ def test_large_squares_change_nothing(random):
     x, y, z = hills(70, 41)
     field = height_field.make(x, y, z, border="extend")
     start = (places(x, y, z, 2000, random) - field.origin).T
-    way = np.repeat(sun(12, 215)[:, None], 2000, axis=1)
-    reach = np.full(2000, walks.FAR)
-    one, many = (walks.march(field, start, way, reach, coarse=c) for c in (False, True))
+    way = sun(12, 215)
+    one = by_cells(field, start, way)
+    ways = np.repeat(way[:, None], 2000, axis=1)
+    many = walks.march(field, start, ways, np.full(2000, walks.FAR))
     np.testing.assert_allclose(one, many, atol=64 * 2.2e-16 * 10)
     assert one.max() > 3
 

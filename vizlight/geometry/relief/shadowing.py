@@ -348,7 +348,7 @@ def _lengths(
         places = start(np.arange(rows.start, rows.stop))
         way, reach = ray.from_places(places)
         if bounds is None:
-            length[rows] = walks.march(field, places, way, reach, coarse=True)
+            length[rows] = walks.march(field, places, way, reach)
         else:
             walks.walk(
                 np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,

@@ -3,7 +3,7 @@
 :func:`march` follows many rays at once by NumPy, :func:`walk` one after the other by compiled
 code. Both cross squares of 2^l x 2^l cells at once where all of them are above or below a ray, and
 find the crossings with the bilinear surface of a cell in closed form. :mod:`strips` is faster for
-most lights at infinity.
+most lights at infinity, and its closed form serves the compiled cells here, too.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _compiled
+from vizlight.geometry.relief.strips import Triple, positive
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 FAR = 1e300
 
 
-def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool) -> Array:
+def march(field: Field, start: Array, way: Array, reach: Array) -> Array:
     """Return the length of rays inside the solid; infinity where it is unbounded.
 
     Parameters
@@ -37,14 +38,11 @@ def march(field: Field, start: Array, way: Array, reach: Array, *, coarse: bool)
         Unit directions.
     reach : ndarray, shape (N,)
         Lengths of the rays, at most FAR.
-    coarse : bool
-        Whether to cross 2^l x 2^l cells at once where all of them lie above or below the ray;
-        otherwise rays go through every cell.
     """
     length = np.zeros(start.shape[1])
     first, end = _clip(field, start, way, reach)
     row = np.flatnonzero(first < end)
-    rays = _Rays(field, start[:, row], way[:, row], first[row], end[row], coarse=coarse)
+    rays = _Rays(field, start[:, row], way[:, row], first[row], end[row])
     with np.errstate(divide="ignore", invalid="ignore"):
         while len(row):
             # Each ray has its own row, so no addition is lost.
@@ -72,10 +70,8 @@ def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, 
 class _Rays:
     """Rays in progress, each in a square of 2^l x 2^l cells; every step advances all of them."""
 
-    def __init__(
-        self, field: Field, start: Array, way: Array, s: Array, end: Array, *, coarse: bool
-    ) -> None:
-        levels = field.bounds if coarse else field.bounds[:1]
+    def __init__(self, field: Field, start: Array, way: Array, s: Array, end: Array) -> None:
+        levels = field.bounds
         self.top = len(levels) - 1
         self.columns = np.array([largest.shape[1] for largest, _ in levels], np.int32)
         self.offset = np.cumsum([0] + [largest.size for largest, _ in levels], dtype=np.int32)
@@ -212,27 +208,7 @@ def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
 #: Processor time that a compiled ray saves compared with one of :func:`march`, in seconds.
 SAVED = 5e-6
 
-Triple = tuple[float, float, float]
 Levels = tuple["Array", "Array", "Indices", "Indices"]
-
-
-@_compiled.kernel(inline=True)
-def positive(f0: float, f1: float, f2: float, end: float) -> float:
-    """Return the length of the part of [0, end] where f0 + f1 s + f2 s^2 > 0."""
-    last = f0 + end * (f1 + end * f2)
-    if f0 > 0 and last > 0 and f2 <= 0:
-        return end
-    if f0 < 0 and last < 0 and f2 >= 0:
-        return 0.0
-    square = f1 * f1 - 4 * f0 * f2
-    # Both roots without cancellation; where f2 is 0 one of them is infinite.
-    q = -0.5 * (f1 + math.copysign(math.sqrt(max(square, 0.0)), f1))
-    if square < 0 or q == 0:
-        return end if max(f0, f0 + f2) > 0 else 0.0
-    one, other = f0 / q, q / f2 if f2 != 0 else math.copysign(math.inf, q)
-    low, high = min(one, other), max(one, other)
-    between = min(max(high, 0.0), end) - min(max(low, 0.0), end)
-    return end - between if f2 >= 0 else between
 
 
 @_compiled.kernel(inline=True)
