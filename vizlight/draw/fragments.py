@@ -12,7 +12,7 @@ from vizlight.draw import dialects, glsl, program, strokes
 from vizlight.draw.live import NORMALS, TANGENTS
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
-from vizlight.mesh import blocks, point_arrays
+from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
@@ -164,7 +164,7 @@ class Fragments:
             less = 2 - live.picked(np.asarray(inputs.dimensions[:]))
             carried = carried + program.LENGTHS * less[:, np.newaxis] * kernels.unit_rows(carried)
         if carried is not None:
-            point_arrays.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
+            records.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
             data.SetActiveTangents(TANGENTS)
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
@@ -186,7 +186,7 @@ class Fragments:
             lean = live.picked(_lean_lengths(live.source, self._averted))
             normals = normals * lean[:, np.newaxis]
         if normals is not None:
-            point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
+            records.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
 
     def drawing(self, live: Live, drawing: Keywords) -> Keywords:

@@ -13,7 +13,7 @@ from vizlight.draw.live import COLORS, LUMINANCE, NORMALS
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
 from vizlight.filters.tint import light_on_colors, map_colors
-from vizlight.mesh import point_arrays
+from vizlight.mesh import records
 from vizlight.reading import polylines
 from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, displayable, on_colors
@@ -50,10 +50,10 @@ class Points:
     def attach(self, live: Live) -> None:
         """Give the drawn mesh an array; the first frame fills it."""
         count = live.drawn.n_points
-        point_arrays.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
+        records.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
         channels = 3 if live.scalars is None else 4
         kind = np.float64 if live.scalars is None else np.uint8
-        point_arrays.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
+        records.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
         if self._diameter is not None:
             live.attach(NORMALS, polylines.line_tangents(live.source.mesh).astype(np.float32))
             live.drawn.GetPointData().SetActiveNormals(NORMALS)
@@ -143,4 +143,4 @@ def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
             mesh.GetPointData().GetAbstractArray(name).Modified()
             mesh.Modified()
             return
-    point_arrays.attach_rows(mesh, name, values)
+    records.attach_rows(mesh, name, values)
