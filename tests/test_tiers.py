@@ -147,7 +147,7 @@ def test_every_part_has_a_tier():
         ("vizlight.filters.fur", "from vizlight.mesh.records import _plain", "private _plain"),
         ("vizlight.model.frames", "from vizlight.model import reflection", "circle"),
         ("vizlight.geometry.solids.primitives", "from vizlight.geometry import contours", "circle"),
-        ("vizlight.mesh.cutting", "import vizlight", "whole package"),
+        ("vizlight.mesh.nspace", "import vizlight", "whole package"),
     ],
 )
 def test_each_rule_can_fail(module, line, fault):

@@ -34,10 +34,10 @@ from vizlight.mesh import (
     foreign_files,
     georeference,
     height_grids,
-    point_arrays,
+    normals,
+    records,
     series,
     short_files,
-    welding,
 )
 from vizlight.reading.cells import check_whole
 from vizlight.reading.topology import place_numbers
@@ -227,14 +227,14 @@ def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
     if odd:
         _check.warn(f"file: arrays without a row for each cell are left out: {odd}")
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
-        mesh = welding.welded(blocks.surface(mesh, "file"))
+        mesh = normals.welded(blocks.surface(mesh, "file"))
     for path in overlays:
         for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
-        welding.keep_normals(mesh)
+        normals.keep_normals(mesh)
     return mesh
 
 
@@ -421,7 +421,7 @@ def surface_of(
         if isinstance(mesh, pv.PolyData):
             return mesh
         return blocks.outer_surface(mesh)[0]
-    mesh = point_arrays.averaged(mesh, contour)
+    mesh = records.averaged(mesh, contour)
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
@@ -462,7 +462,7 @@ def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
     every = names.split(",")
     if len(every) not in (2, 3):
         raise ValueError(_check.message("names", "two or three names", repr(names)))
-    found = point_arrays.averaged(mesh, *every).copy(deep=False)
+    found = records.averaged(mesh, *every).copy(deep=False)
     columns = [_scalars(found, "names", name) for name in every]
     columns += [np.zeros_like(columns[0])] * (3 - len(columns))
     found.point_data[names] = np.column_stack(columns)
@@ -492,7 +492,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         If the array does not exist or has no finite value, or the factor is not finite.
     """
     _dataset(mesh)
-    mesh = point_arrays.averaged(mesh, name)
+    mesh = records.averaged(mesh, name)
     _check.text("warp", name, expected="the name of a point array")
     rows = np.asarray(mesh.point_data[name]) if name in mesh.point_data else np.empty(0)
     if rows.dtype.kind != "f" or rows.shape[1:] != (3,):

@@ -17,7 +17,7 @@ import numpy as np
 from studies import Row, Study
 from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.mesh import embree_rays
+from vizlight.mesh import closed_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -122,7 +122,7 @@ def truth(kind: str, points: int) -> Truth:
         If embreex is not installed.
     """
     made, random = tubes(kind, points), np.random.default_rng(4)
-    scene = embree_rays.tree(made.corners)
+    scene = closed_meshes.embree_tree(made.corners)
     if scene is None:
         expected = "embreex for rays (try: pip install 'vizlight[rays]')"
         raise ImportError(_check.message("embreex", expected, "none"))

@@ -12,7 +12,7 @@ import vizlight
 from vizlight import _compiled
 from vizlight.draw import painters
 from vizlight.filters import relight
-from vizlight.mesh import embree_rays, sky
+from vizlight.mesh import closed_meshes, sky
 from vizlight.shading import compiled, engine
 from vizlight.shading.options import LightOptions
 
@@ -380,7 +380,7 @@ def test_constant_heights_missing_heights_and_faces_of_no_size():
 def test_without_embree_it_works_and_says_that_it_is_slow(monkeypatch):
     both = pv.merge(balls(1.05), merge_points=False)
     fast = vizlight.sky(both, error=0.05)["sky"]
-    monkeypatch.setattr(embree_rays, "tree", lambda _: None)
+    monkeypatch.setattr(closed_meshes, "embree_tree", lambda _: None)
     monkeypatch.setattr(sky, "SLOW", 10)
     with pytest.warns(UserWarning, match="20 times as long without embreex"):
         slow = vizlight.sky(both, error=0.05)["sky"]

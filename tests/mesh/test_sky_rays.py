@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import embree_rays, sky_rays
+from vizlight.mesh import closed_meshes, sky_rays
 from vizlight.mesh.sky_rays import Occluders, Places
 
 pytest.importorskip("embreex")
@@ -25,7 +25,7 @@ def disc(radius, z, count=128):
 def tracer(request, monkeypatch):
     """Follow rays by each of the two."""
     if request.param == "vtk":
-        monkeypatch.setattr(embree_rays, "tree", lambda _: None)
+        monkeypatch.setattr(closed_meshes, "embree_tree", lambda _: None)
     return request.param
 
 

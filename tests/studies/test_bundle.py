@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies import bundle
-from vizlight.mesh import embree_rays
+from vizlight.mesh import closed_meshes
 
 
 @pytest.mark.parametrize("kind", ["layered", "along the light"])
@@ -37,7 +37,7 @@ def test_tubes_are_as_wide_as_lines():
 
 
 def test_without_embree_the_study_names_the_extra(monkeypatch):
-    monkeypatch.setattr(embree_rays, "tree", lambda _: None)
+    monkeypatch.setattr(closed_meshes, "embree_tree", lambda _: None)
     bundle.truth.cache_clear()
     with pytest.raises(ImportError, match=r"vizlight\[rays\]"):
         bundle.truth("isotropic", 5)

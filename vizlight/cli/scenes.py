@@ -124,10 +124,10 @@ def _stretched(mesh: Step) -> Step:
 
 def warped(name: str, mesh: Step, heights: str, factor: float | None) -> Step:
     """Return the step that raises a mesh by heights, by a factor with which they can be seen."""
-    from vizlight.mesh import georeference, point_arrays
+    from vizlight.mesh import georeference, records
 
     step = Step(name, "files.warped", mesh, heights, 1.0 if factor is None else factor)
-    found = point_arrays.averaged(mesh.run(), heights)
+    found = records.averaged(mesh.run(), heights)
     if factor is None and heights in found.point_data and found.point_data[heights].ndim == 1:
         factor = georeference.exaggeration(found, heights)
         step.arguments = (mesh, heights, factor)

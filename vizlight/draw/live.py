@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.filters.tint import are_colors, values_of
-from vizlight.mesh import blocks, point_arrays
+from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene, View
 from vizlight.scene.light import default_lights
 from vizlight.scene.vtk import is_light_kit, lights_of
@@ -127,7 +127,7 @@ class Live:
 
     def attach(self, name: str, rows: NDArray[np.generic]) -> None:
         """Attach one row for each point of the mesh to what is drawn."""
-        point_arrays.attach_rows(self.drawn, name, self.picked(rows))
+        records.attach_rows(self.drawn, name, self.picked(rows))
 
     def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
         """Take the colours from an array of the mesh.

@@ -14,7 +14,7 @@ from vizlight.draw.live import COLORS, LUMINANCE, NORMALS, TANGENTS, matrix_of
 from vizlight.draw.program import Stroke
 from vizlight.filters import lighting
 from vizlight.filters.tint import light_on_colors, map_colors
-from vizlight.mesh import blocks, point_arrays
+from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.scene.light import NO_ATTENUATION, WHITE
@@ -170,7 +170,7 @@ class Fragments:
             less = 2 - live.picked(np.asarray(inputs.dimensions[:]))
             carried = carried + program.LENGTHS * less[:, np.newaxis] * kernels.unit_rows(carried)
         if carried is not None:
-            point_arrays.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
+            records.attach_rows(live.drawn, TANGENTS, carried.astype(np.float32))
             data.SetActiveTangents(TANGENTS)
         if normals is None:
             # VTK lights lines, and so draws with a shader for them, only if they have normals.
@@ -192,7 +192,7 @@ class Fragments:
             lean = live.picked(_lean_lengths(live.source, self._averted))
             normals = normals * lean[:, np.newaxis]
         if normals is not None:
-            point_arrays.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
+            records.attach_rows(live.drawn, NORMALS, normals.astype(np.float32))
             data.SetActiveNormals(NORMALS)
 
     def drawing(self, live: Live, drawing: Keywords) -> Keywords:
@@ -369,10 +369,10 @@ class Points:
     def attach(self, live: Live) -> None:
         """Give the drawn mesh an array; the first frame fills it."""
         count = live.drawn.n_points
-        point_arrays.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
+        records.attach_rows(live.drawn, LUMINANCE, np.zeros(count))
         channels = 3 if live.scalars is None else 4
         kind = np.float64 if live.scalars is None else np.uint8
-        point_arrays.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
+        records.attach_rows(live.drawn, COLORS, np.zeros((count, channels), kind))
         if self._diameter is not None:
             live.attach(NORMALS, polylines.line_tangents(live.source.mesh).astype(np.float32))
             live.drawn.GetPointData().SetActiveNormals(NORMALS)
@@ -462,4 +462,4 @@ def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
             mesh.GetPointData().GetAbstractArray(name).Modified()
             mesh.Modified()
             return
-    point_arrays.attach_rows(mesh, name, values)
+    records.attach_rows(mesh, name, values)

@@ -13,8 +13,8 @@ from vizlight.draw.live import lifted
 from vizlight.filters import lighting, relight
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
-from vizlight.mesh import blocks, normals, point_arrays, records
-from vizlight.mesh.creases import cell_array
+from vizlight.mesh import blocks, normals, records
+from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.reading.arrays import GridPoints
@@ -165,10 +165,10 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     corners_of = np.concatenate(quads)
     found.SetPolys(cell_array(corners_of.ravel(), np.arange(0, corners_of.size + 1, 4)))
     for key, array in mesh.point_data.items():
-        point_arrays.attach_rows(found, key, np.asarray(array)[ids])
+        records.attach_rows(found, key, np.asarray(array)[ids])
     for key, array in mesh.cell_data.items():
         found.cell_data[key] = np.asarray(array)[of_cells]
-    point_arrays.carry_active(mesh, found)
+    records.carry_active(mesh, found)
     lean = np.zeros(count, dtype=np.float32)
     normals.keep(found, Sided(np.concatenate(vectors), lean, computed=True))
     return found

@@ -13,8 +13,8 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
-from vizlight.mesh import blocks, bundles, point_arrays, surfaces
-from vizlight.mesh.normals import onlooker, split_where_computed
+from vizlight.mesh import blocks, bundles, records
+from vizlight.mesh.normals import NORMALS, onlooker, split_where_computed, with_normals
 from vizlight.mesh.sky import in_medium
 from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
@@ -81,9 +81,9 @@ class FurOptions(Options):
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
-        point_arrays.refuse_unnamed("vectors", self.vectors)
+        records.refuse_unnamed("vectors", self.vectors)
         if isinstance(self.toward, str):
-            point_arrays.refuse_unnamed("toward", self.toward)
+            records.refuse_unnamed("toward", self.toward)
         if self.bend and self.toward is None:
             raise ValueError(
                 _check.message("toward", "the direction of the bend, with bend=", None)
@@ -253,11 +253,9 @@ def _grow(
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(options.length)
         raise TypeError(_check.message("length", expected, got, remedy))
-    surface = point_arrays.averaged(
-        blocks.surface(surface, "surface"), options.length, options.toward
-    )
+    surface = records.averaged(blocks.surface(surface, "surface"), options.length, options.toward)
     surface = split_where_computed(surface, options.feature_angle)
-    skin = surfaces.with_normals(surface, onlooker(scene), options.feature_angle)
+    skin = with_normals(surface, onlooker(scene), options.feature_angle)
     name = options.name
     lighting.refuse_overwriting(
         [(surface, "")], name, components=False, colored=scene.colored, bundle=bool(options.bundle)
@@ -281,7 +279,7 @@ def _grow(
     )
     below = ShadingInputs(
         points=np.asarray(skin.points),
-        normals=np.asarray(skin.point_data[surfaces.NORMALS]),
+        normals=np.asarray(skin.point_data[NORMALS]),
         fur_height=coat.skin_heights() if through else None,
         fur=through,
     )
@@ -297,7 +295,7 @@ def _grow(
             show=progress_bar,
         )  # fmt: skip
         medium = bundles.medium_of(bundles.joined([lines]), options.bundle)
-        sides = np.asarray(skin.point_data[surfaces.NORMALS])
+        sides = np.asarray(skin.point_data[NORMALS])
         shares = in_medium(lines, medium, None), in_medium(skin, medium, sides)
         fibres, below = (
             dataclasses.replace(given, occlusion=share)
@@ -333,7 +331,7 @@ class _Coat:
         self.faces = faces.take(order, axis=0)
         self._drawn: dict[int, geometry.Draws] = {}
         self._lock = threading.Lock()
-        self.normals = np.asarray(skin.point_data[surfaces.NORMALS], dtype=np.float32)
+        self.normals = np.asarray(skin.point_data[NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
             given = vectors_of(surface, "vectors", options.vectors, 3)

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
-from vizlight.mesh import point_arrays
+from vizlight.mesh import records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.scene import as_scene
@@ -60,7 +60,7 @@ class PathlineOptions(LightOptions):
             step=_check.number("step", self.step, low=1e-3),
             seed=_check.integer("seed", self.seed, low=0),
         )
-        point_arrays.refuse_unnamed("vectors", self.vectors)
+        records.refuse_unnamed("vectors", self.vectors)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
             raise ValueError(_check.message("conditioned", expected, "none"))
@@ -261,7 +261,7 @@ def _lines(
             name = "seeds" if options.tail is None else "seeds, tail"
             raise ValueError(_check.message(name, expected, "no line"))
         if light.tangents in (TANGENTS, OWN_TANGENTS):
-            point_arrays.attach_rows(lines, str(light.tangents), np.asarray(lines.point_data[name]))
+            records.attach_rows(lines, str(light.tangents), np.asarray(lines.point_data[name]))
         lines.field_data[TIME] = [float(times[i])]
         report(i)
         yield lines, light

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, named
@@ -217,10 +217,10 @@ def project(
         for block in named:
             limit = continued(block, frame)
             if limit is not None:
-                point_arrays.attach_rows(block, frame, limit)
+                records.attach_rows(block, frame, limit)
         made = light_mesh(shown, scene, asked.by(frame, positions))
         for block, rows in zip(blocks.all_blocks(made), found, strict=True):
-            point_arrays.attach_rows(block, frame, rows)
+            records.attach_rows(block, frame, rows)
         return made
 
     total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))

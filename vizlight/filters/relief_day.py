@@ -10,7 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.scene import Light, Material, Scene
 from vizlight.shading.options import named
 from vizlight.shading.results import VALID, plain
@@ -126,7 +126,7 @@ def relief_day(
         del record["options"][other]
     record["options"] |= plain(own)
     records.attach(found, name, arrays, record)
-    point_arrays.activate(found, mean)
+    records.activate(found, mean)
     return found
 
 

@@ -14,7 +14,7 @@ from vizlight.filters.illuminate import separate_copy
 from vizlight.filters.lighting import attach, refuse_overwriting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
-from vizlight.mesh import blocks, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.mesh.casters import CasterOptions, caster
 from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
@@ -252,7 +252,7 @@ def relief_shadow(
     _warn_of_wide(own, t, asked.raster)
     records.attach(out, name, arrays, record)
     if asked.lit:
-        point_arrays.activate(out, DEFAULT_NAME)
+        records.activate(out, DEFAULT_NAME)
     return out
 
 

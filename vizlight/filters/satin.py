@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
-from vizlight.mesh import point_arrays
+from vizlight.mesh import records
 from vizlight.reading.arrays import is_of_cells, tangents_of, vectors_of
 from vizlight.shading.options import LightOptions, named
 
@@ -99,7 +99,7 @@ def satin(
         raise ValueError(_check.message("tangents", "the name of a point array", None))
     traced, averaged = surface, False
     if isinstance(surface, pv.DataSet):
-        point_arrays.refuse_unnamed("tangents", asked.tangents)
+        records.refuse_unnamed("tangents", asked.tangents)
         name = str(asked.tangents)
         averaged = is_of_cells(surface, name)
         if averaged:

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkPointSet, vtkPolyData
 from vizlight import _check, _progress
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
-from vizlight.mesh import blocks, normals, point_arrays, records, splitting
+from vizlight.mesh import blocks, normals, records, splitting
 from vizlight.mesh.sky import VOXELS, skies
 from vizlight.model import kernels
 from vizlight.reading.cells import places, point_data
@@ -345,7 +345,7 @@ def _attach(
         records.attach(mesh, asked.name, arrays, record)
         if active is not None:
             # Such as the heights of a flat grid.
-            point_arrays.activate(mesh, active.GetName())
+            records.activate(mesh, active.GetName())
     if lost:
         _check.warn(
             f"{lost} of {total} points have no sky (in a hole, without a normal, or buried inside "

@@ -12,8 +12,8 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.mesh import blocks, point_arrays, records, surfaces, tracers
-from vizlight.mesh.normals import onlooker
+from vizlight.mesh import blocks, records, tracers
+from vizlight.mesh.normals import NORMALS, closest, onlooker, with_normals
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
@@ -77,7 +77,7 @@ class StreamlineOptions(LightOptions):
         if isinstance(given, list | tuple):
             _check.set_fields(self, vectors=_pair(given, line_field=self.line_field))
         else:
-            point_arrays.refuse_unnamed("vectors", given)
+            records.refuse_unnamed("vectors", given)
         _check.integer("seed", self.seed, low=0)
         if self.spacing is not None:
             _check.set_fields(self, spacing=_check.positive("spacing", self.spacing))
@@ -253,7 +253,7 @@ def light_lines(
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
     names = options.vectors if isinstance(options.vectors, tuple) else (options.vectors,)
-    mesh = point_arrays.averaged(mesh, *names)
+    mesh = records.averaged(mesh, *names)
     scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -319,7 +319,7 @@ def _traced(
     surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
-        surface = surfaces.with_normals(options.surface, onlooker(scene), options.feature_angle)
+        surface = with_normals(options.surface, onlooker(scene), options.feature_angle)
     vectors = _field(mesh, surface if confined else None, options)
     if confined and surface is not None:
         traced = surface
@@ -337,12 +337,12 @@ def _traced(
     tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
     if surface is not None:
         if confined:
-            normals = kernels.unit_rows(lines.point_data[surfaces.NORMALS])
+            normals = kernels.unit_rows(lines.point_data[NORMALS])
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
-            normals = surfaces.closest(surface, places)[1]
+            normals = closest(surface, places)[1]
         lines.point_data["Normals"] = normals.astype(np.float32)
-    for key in (surfaces.NORMALS, TRACED):
+    for key in (NORMALS, TRACED):
         if key in lines.point_data:
             del lines.point_data[key]
     name = TANGENTS if TANGENTS not in mesh.point_data else OWN_TANGENTS
@@ -389,7 +389,7 @@ def _lines(
     cells: pv.PolyData | pv.UnstructuredGrid = (
         mesh if isinstance(mesh, pv.PolyData) and mesh.is_all_triangles else mesh.triangulate()
     )
-    normals = surfaces.NORMALS if options.confined else None
+    normals = NORMALS if options.confined else None
     tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
     if not tracer.cells.extent > 0:
         expected = "cells of some area or volume between finite points"
@@ -543,7 +543,7 @@ def _on_surface(
             surface.point_data[name] = rows
             array = _directions(rows)
     array[~np.all(np.isfinite(array), axis=1)] = 0
-    normal = np.asarray(surface.point_data[surfaces.NORMALS], dtype=np.float64)
+    normal = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
     return np.asarray(array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal)
 
 

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
-from vizlight.mesh import blocks, normals, point_arrays, records
+from vizlight.mesh import blocks, normals, records
 from vizlight.reading.arrays import is_of_cells
 from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene
@@ -199,7 +199,7 @@ def values_of(
             raise ValueError(_check.message("scalars", expected, None))
     if isinstance(scalars, str):
         _check.text("scalars", scalars, expected="the name of a point array")
-        mesh = point_arrays.averaged(mesh, scalars)
+        mesh = records.averaged(mesh, scalars)
         if scalars not in mesh.point_data:
             known = _check.one_of([*mesh.point_data, *mesh.cell_data])
             expected = f"a point array or a cell array, {known}"

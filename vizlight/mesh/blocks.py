@@ -192,3 +192,8 @@ def polydata(points: Array, cells: Indices) -> pv.PolyData:
     made = pv.CellArray.from_regular_cells(np.asarray(cells, dtype=int))
     (mesh.SetVerts, mesh.SetLines, mesh.SetPolys, mesh.SetPolys)[cells.shape[1] - 1](made)
     return mesh
+
+
+def cell_array(ids: Indices, ends: Indices) -> pv.CellArray:
+    """Return cells, given their corners, one cell after the other, and where each begins."""
+    return pv.CellArray.from_arrays(np.asarray(ends, dtype=int), np.asarray(ids, dtype=int))

@@ -12,7 +12,7 @@ import scipy
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks, point_arrays
+from vizlight.mesh import blocks, records
 from vizlight.reading.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ def _elevation(grid: Grid | pv.PolyData, name: str | None, z: Array) -> Array:
         curved = isinstance(grid, pv.StructuredGrid | pv.PolyData)
         if curved and (name is None or np.nanmin(z) < np.nanmax(z)):
             return z
-    grid = point_arrays.averaged(grid, name)
+    grid = records.averaged(grid, name)
     there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
     if name not in there:
         expected = f"a point array of one component, {_check.one_of(there)}"

@@ -1,4 +1,7 @@
-"""Normals of a mesh: those that stay with it, and points that are split at its sharp edges."""
+"""Normals of a mesh: those that stay with it, and points that are split at its sharp edges.
+
+Faces with points of their own are welded first; then sharp edges are those of the surface.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +10,30 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import blocks, creases, point_arrays, records
+from vizlight.mesh import blocks, records
+from vizlight.model import kernels
 from vizlight.reading.cells import (
     POLYDATA,
+    around,
     as_numpy,
+    as_vtk,
     connectivity,
     faces_only,
     first_twins,
     has_faces,
+    part_size,
     places,
     point_data,
     triangles,
 )
+from vizlight.reading.hull import NUMBERS
 from vizlight.reading.normals import Sided, computed_normals, given_normals
 from vizlight.reading.orientation import MANY_SHARP, SHARP
+from vizlight.reading.topology import Owners, coincident
 from vizlight.scene import View
 from vizlight.shading.results import digest
 
@@ -39,6 +49,9 @@ if TYPE_CHECKING:
     from vizlight.shading.results import Record
 
     SurfaceT = TypeVar("SurfaceT")
+    from numpy.typing import NDArray
+
+    from vizlight._types import Foreign
 
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and its number of ``Sided.open``.
@@ -203,7 +216,7 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
     One that is split shares no memory with the mesh.
     """
     ids, ends, more = _corners(faces_only(mesh), mesh)
-    split, origin = creases.split(places(mesh), ids, ends, angle)
+    split, origin = split_faces(places(mesh), ids, ends, angle)
     if len(origin) == mesh.n_points:
         return mesh
     if len(ends) - 1 - more < mesh.GetNumberOfPolys():
@@ -259,13 +272,13 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
         own = pv.CellArray()
         own.DeepCopy(cells)
         put(own)
-    found.SetPolys(creases.cell_array(corners, ends))
+    found.SetPolys(blocks.cell_array(corners, ends))
     for key, array in mesh.point_data.items():
-        point_arrays.attach_rows(found, key, np.asarray(array)[origin])
+        records.attach_rows(found, key, np.asarray(array)[origin])
     rows = _rows(mesh)
     for key, array in mesh.cell_data.items():
         found.cell_data[key] = np.asarray(array)[rows]
-    point_arrays.carry_active(mesh, found)
+    records.carry_active(mesh, found)
     found.GetFieldData().DeepCopy(mesh.GetFieldData())
     records.carry(mesh, found)
     return found
@@ -356,7 +369,7 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     # One array, so that it travels with the mesh through files as a whole or not at all.
     rows[:, :3], rows[:, 3], rows[:, 4] = normals.vectors, normals.lean, normals.open
-    point_arrays.attach_rows(mesh, KEPT, rows)
+    records.attach_rows(mesh, KEPT, rows)
     record: Record = {
         "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
         "inside": normals.inside,
@@ -385,3 +398,183 @@ def kept(mesh: pv.DataSet) -> Sided | None:
         computed=True,
         inside=records.count(record, "inside", mesh.n_points),
     )
+
+
+#: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are
+#: those of 30 degrees, are split together or not at all.
+_BEYOND = 0.01
+
+
+def split_faces(
+    points: NDArray[np.generic], ids: Indices, ends: Indices, angle: float, size: int | None = None
+) -> tuple[Indices, Indices]:
+    """Return faces at points that are split, and the point that each point was.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        Points of the surface.
+    ids : ndarray of int
+        Corners of all faces, one face after the other.
+    ends : ndarray of int, shape (M + 1,)
+        Place in ``ids`` at which each face begins, and the end of the last.
+    angle : float
+        Angle in degrees between two faces from which their edge is sharp.
+    size : int, optional
+        Number of points around which faces are split at once.
+
+    Returns
+    -------
+    ndarray of int
+        Corners of the faces, which VTK turns over where they are not wound alike.
+    ndarray of int
+        Point that each point was: first all of the surface, then those that VTK adds.
+    """
+    count = len(points)
+    size = part_size(count) if size is None else size
+    new, added = ids.copy(), [np.arange(count)]
+    total = count
+    for block, part in around(points, ids, ends, size):
+        used, at = part.used, part.corners
+        found, origin = _by_vtk(part.surface, angle)
+        was = used[origin[found]]
+        if not np.array_equal(was, ids[at]):
+            if size < count:
+                # What is turned over depends on all faces.
+                return split_faces(points, ids, ends, angle, count)
+            new[at] = was
+        own = (found >= len(used)) & (was >= block.start) & (was < block.stop)
+        made, number = np.unique(found[own], return_inverse=True)
+        new[at[own]] = total + number.reshape(-1)
+        added.append(used[origin[made]])
+        total += len(made)
+    return new, np.concatenate(added)
+
+
+def _by_vtk(surface: vtkPolyData, angle: float) -> tuple[Indices, Indices]:
+    """Return corners of faces at points that VTK has split, and the point that each was."""
+    numbers = as_vtk(np.arange(surface.GetNumberOfPoints()), NUMBERS)
+    surface.GetPointData().AddArray(numbers)
+    normals = vtkPolyDataNormals()
+    normals.SetFeatureAngle(angle + _BEYOND)
+    normals.NonManifoldTraversalOff()
+    normals.SetInputData(surface)
+    normals.Update()
+    found = normals.GetOutput()
+    origin = as_numpy(found.GetPointData().GetArray(NUMBERS))
+    return connectivity(found.GetPolys())[0].copy(), np.array(origin)
+
+
+#: Name of the point array of normals, chosen not to clash with a user's array.
+NORMALS = "vizlight normals"
+
+
+def with_normals(
+    surface: object, view: View | None, angle: FeatureAngle = None, name: str = "surface"
+) -> pv.PolyData:
+    """Return the triangles of a surface as a new mesh with the unit point normals ``NORMALS``.
+
+    Points are split at edges sharper than the angle; without one a warning is given if normals
+    were averaged across many sharp edges.
+
+    Raises
+    ------
+    TypeError
+        If it is not a PolyData mesh.
+    ValueError
+        If it has no faces.
+    """
+    own = split_where_computed(blocks.surface(surface, name), angle)
+    # Vertices and lines are left out, because every cell must be a triangle.
+    triangles = pv.PolyData(faces_only(own))
+    for key, array in own.point_data.items():
+        if np.asarray(array).dtype.kind in "biuf":
+            triangles.point_data[key] = np.asarray(array)
+    found = normals_of(own, None, 3, view, warn=angle is None)
+    kind = np.result_type(found.dtype, np.float32)
+    triangles.point_data[NORMALS] = kernels.unit_rows(found).astype(kind, copy=False)
+    return triangles if triangles.is_all_triangles else triangles.triangulate()
+
+
+def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
+    """Return the closest points on a mesh of triangles, and its interpolated normals there."""
+    if not len(points):
+        return np.empty((0, 3)), np.empty((0, 3))
+    nearest: Foreign = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+    corners = surface.regular_faces[np.atleast_1d(nearest[0])]
+    places: Array = np.atleast_2d(nearest[1])
+    a, b, c = (np.asarray(surface.points, dtype=np.float64)[corners[:, i]] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    area = np.einsum("ij,ij->i", normal, normal)
+    area = np.where(area > 0, area, 1)[:, np.newaxis]
+    weights = [
+        np.einsum("ij,ij->i", np.cross(q - p, places - p), normal)[:, np.newaxis] / area
+        for p, q in ((b, c), (c, a), (a, b))
+    ]
+    normals = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
+    found = sum(w * normals[corners[:, i]] for i, w in enumerate(weights))
+    return places, np.asarray(found)
+
+
+def welded(mesh: pv.PolyData) -> pv.PolyData:
+    """Return a surface whose points at the same place are one, where all their arrays are equal.
+
+    Points without a face are left out. Normals that are computed are then those of the surface, not
+    of each face; points that differ in a colour or a texture coordinate stay apart.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Surface of polygons alone; anything else is returned as it is.
+    """
+    if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_cells:
+        return mesh
+    parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
+    if any(part.dtype.kind not in "biuf" for part in parts):
+        return mesh
+    rows = [np.ascontiguousarray(part.reshape(len(part), -1)).view(np.uint8) for part in parts]
+    table = np.ascontiguousarray(np.hstack([row.reshape(mesh.n_points, -1) for row in rows]))
+    _, first, same = np.unique(
+        table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
+    )
+    ids, ends = connectivity(mesh.GetPolys())
+    corners = first[same.reshape(-1)][ids]
+    kept = np.zeros(mesh.n_points, dtype=np.bool_)
+    kept[corners] = True
+    if kept.all():
+        return mesh
+    out = pv.PolyData()
+    out.points = np.asarray(mesh.points)[kept]
+    out.SetPolys(blocks.cell_array((np.cumsum(kept) - 1)[corners], ends))
+    for key, array in mesh.point_data.items():
+        records.attach_rows(out, key, np.asarray(array)[kept])
+    out.GetCellData().ShallowCopy(mesh.GetCellData())
+    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
+    records.carry_active(mesh, out)
+    return out
+
+
+def keep_normals(mesh: pv.PolyData) -> None:
+    """Keep the normals of a surface without creases at points that only their arrays tell apart.
+
+    Along the seam of a texture, or where colours differ, light is then as smooth as the surface.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Surface of polygons; where it has no sharp edge, its point normals are set.
+    """
+    if mesh.n_cells != mesh.GetNumberOfPolys() or mesh.n_points < FEWEST:
+        return
+    if not mesh.point_data or mesh.point_data.active_normals is not None:
+        return
+    first = coincident(np.asarray(mesh.points), Owners())
+    if first is None:
+        return
+    ids, ends = connectivity(mesh.GetPolys())
+    whole = pv.PolyData()
+    whole.SetPoints(mesh.GetPoints())
+    whole.SetPolys(blocks.cell_array(first[ids], ends))
+    sided = computed_normals(whole)
+    if not sided.sharp:
+        keep(mesh, sided.part(0, first))

@@ -7,17 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight import _check, _pool
 from vizlight._version import __version__
 from vizlight.geometry.nspace import projection, slices
-from vizlight.mesh import cutting, point_arrays, records
+from vizlight.mesh import blocks, records
 from vizlight.model.frames import default_rtol
+from vizlight.reading import polylines
 from vizlight.reading.arrays import array_of
+from vizlight.reading.cells import has_faces
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from vizlight._types import AnyArray, Array, Bools, Indices, VectorLike
     from vizlight.shading.results import Record
@@ -72,7 +75,7 @@ class Turning:
                 array = _blocks(
                     lambda x, rows=rows: projection.turn(x.reshape(-1, rows, n), matrix), array
                 )
-            point_arrays.attach_rows(out, name, array)
+            records.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
             records.carry(mesh, out)
@@ -136,19 +139,19 @@ class Turning:
             self._count_lost(bad, len(heights), "finite points", lost)
         n = len(normal)
         if self.frame is None:
-            return cutting.cut(mesh, heights)
+            return cut(mesh, heights)
         k = mesh.point_data[self.frame].shape[1] // n
         if k == 1:
             del mesh.point_data[self.frame]
-            return cutting.cut(mesh, heights)
-        out = cutting.cut(mesh, heights, spaces={self.frame: n})
+            return cut(mesh, heights)
+        out = cut(mesh, heights, spaces={self.frame: n})
         tangents = np.asarray(out.point_data[self.frame])
         rtol = default_rtol(n, tangents.dtype)
         rows = _blocks(
             lambda x: slices.slice_frame(x.reshape(-1, k, n), normal, rtol=rtol), tangents, k - 1, n
         )
         del out.point_data[self.frame]
-        point_arrays.attach_rows(out, self.frame, rows)
+        records.attach_rows(out, self.frame, rows)
         return out
 
     def _count_lost(self, count: int, total: int, expected: str, lost: Counter) -> None:
@@ -176,15 +179,13 @@ class Turning:
         out = mesh.copy(deep=False)
         out.SetPoints(pv.vtk_points(points))
         for name in self.vectors:
-            point_arrays.attach_rows(out, PROJECTED + name, self._image(out, name, position))
+            records.attach_rows(out, PROJECTED + name, self._image(out, name, position))
         if self.frame is not None:
             name = PROJECTED + self.frame
             out.point_data.pop(name, None)
             # The image of three tangents is all of 3-space, which light cannot use as a frame.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
-                point_arrays.attach_rows(
-                    out, name, self._image(out, self.frame, position, space=True)
-                )
+                records.attach_rows(out, name, self._image(out, self.frame, position, space=True))
         framed = () if self.frame is None else (self.frame,)
         images = [PROJECTED + name for name in (*self.vectors, *framed)]
         record = records.read(out, RECORD) or {}
@@ -336,7 +337,7 @@ def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
         for name in set(data) - names:
             del data[name]
     for name in before[0] - set(grid.point_data):  # where no point is left
-        point_arrays.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
+        records.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
     for key, value in mesh.field_data.items():
         grid.field_data[key] = value
     return grid
@@ -353,3 +354,149 @@ def _plane(hyperplane: object, n: int) -> tuple[Array, float]:
         raise ValueError(_check.message("hyperplane", expected, got))
     normal /= np.abs(normal).max()
     return normal / np.linalg.norm(normal), _check.number("hyperplane", hyperplane[1])
+
+
+_SIMPLICES = (pv.CellType.TETRA, pv.CellType.TRIANGLE, pv.CellType.LINE)
+#: Six faces of a hexahedron, their corners in cyclic order.
+_FACES = np.array(
+    [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+)
+#: Corners of a voxel in the order of a hexahedron's.
+_VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]
+#: Number of frames that are interpolated at once: each takes about n k numbers.
+FRAMES = 1 << 15
+
+
+def cut(
+    mesh: pv.DataSet, heights: Array, /, *, spaces: Mapping[str, int] | None = None
+) -> pv.PolyData:
+    """Return the part of a mesh where a function of its points is 0, with its point arrays.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of lines, faces or volumes; the cells of highest dimension are cut.
+    heights : ndarray, shape (N,)
+        Values of the function at the points.
+    spaces : mapping of str to int, optional
+        Names of point arrays whose rows span a space, and the number n of components of a row:
+        the mean is one of spaces, independent of the basis at each point.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Points, lines or triangles. Numeric point arrays are interpolated along the cut edges,
+        cell arrays are left out. A hexahedron is cut as 12 tetrahedra around its mean point.
+        Triangles are not consistently oriented.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has neither lines nor faces nor volumes.
+    """
+    simplices, middles = _simplices(mesh)
+    heights = np.concatenate([heights, heights[middles].mean(axis=1)])
+    edges, weights, cells = slices.cut(heights, simplices)
+    count, total = mesh.n_points, mesh.n_points + len(middles)
+    parts = np.stack([1 - weights, weights], axis=1)
+    between = _sparse(parts, edges, total)
+    if len(middles):
+        spread = _sparse(np.full(middles.shape, 1 / middles.shape[1]), middles, count)
+        between = between[:, :count] + between[:, count:] @ spread
+    # A point with weight 0 must not contribute a NaN.
+    between.eliminate_zeros()
+    out = blocks.polydata(between @ np.asarray(mesh.points, dtype=np.float64), cells)
+    for key, value in mesh.point_data.items():
+        array = np.asarray(value)
+        if spaces and key in spaces:
+            records.attach_rows(out, key, _mean_frames(array, between, spaces[key]))
+        elif array.dtype.kind in "biuf":
+            kind = array.dtype if array.dtype.kind == "f" else np.float64
+            records.attach_rows(out, key, (between @ array.astype(np.float64)).astype(kind))
+    for key, value in mesh.field_data.items():
+        out.field_data[key] = value
+    return out
+
+
+def _sparse(parts: Array, columns: Indices, count: int) -> scipy.sparse.csr_array:
+    """Return a sparse array of rows with equally many parts in given columns."""
+    ends = np.arange(0, parts.size + 1, parts.shape[1])
+    made = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
+    made.sum_duplicates()
+    return made
+
+
+def _mean_frames(array: Array, between: scipy.sparse.csr_array, n: int) -> Array:
+    """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
+    found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
+    for block in _pool.blocks(len(found), FRAMES):
+        part = between[block]
+        used, columns = np.unique(part.indices, return_inverse=True)
+        near = scipy.sparse.csr_array(
+            (part.data, columns.reshape(-1), part.indptr), (len(part.indptr) - 1, len(used))
+        )
+        rows = array[used].astype(np.float64).reshape(len(used), -1, n)
+        found[block] = slices.mean_frame(rows, near).reshape(-1, array.shape[1])
+    return found
+
+
+def _triangles(mesh: pv.PolyData) -> Indices:
+    """Return the triangles of faces."""
+    if np.ptp(mesh.points, axis=0).any():
+        return np.asarray(mesh.triangulate().regular_faces, dtype=np.intp)
+    # A manifold that is not projected yet has all points in one place; VTK 9.4 finds nothing there.
+    faces = np.asarray(mesh.regular_faces, dtype=np.intp)
+    fan = [(0, i, i + 1) for i in range(1, faces.shape[1] - 1)]
+    return faces[:, fan].reshape(-1, 3)
+
+
+def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
+    """Return segments, triangles or tetrahedra, and the corners of the hexahedra that are split."""
+    none = np.empty((0, 8), dtype=np.intp)
+    if isinstance(mesh, pv.PolyData):
+        if has_faces(mesh):
+            return _triangles(mesh), none
+        segments = polylines.segments(mesh.GetLines())
+        if len(segments):
+            return segments, none
+    else:
+        grid = mesh.cast_to_unstructured_grid()
+        kinds = _cells(grid)
+        whole = {pv.CellType.TETRA, pv.CellType.HEXAHEDRON, pv.CellType.VOXEL}
+        if kinds and set(kinds) <= whole:
+            return _tetrahedra(kinds, mesh.n_points)
+        kinds = _cells(grid.triangulate()) if kinds else {}
+        for kind in _SIMPLICES:
+            if kind in kinds:
+                return kinds[kind], none
+    expected, got = "lines, faces or volumes to cut", "a mesh of points alone"
+    remedy = "connect the points, for example by delaunay_3d()"
+    raise ValueError(_check.message("mesh", expected, got, remedy))
+
+
+def _cells(grid: pv.UnstructuredGrid) -> dict[int, Indices]:
+    """Return the points of the cells of a grid, by the type of the cells."""
+    kinds = grid.cells_dict if grid.n_cells else {}
+    return {int(kind): np.asarray(cells, dtype=np.intp) for kind, cells in kinds.items()}
+
+
+def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indices]:
+    """Return the tetrahedra of a mesh, 12 around the mean point of each hexahedron.
+
+    Each face is split by the diagonal from its corner of the lowest index, so that both hexahedra
+    at a face split it by the same diagonal and the section has no cracks.
+    """
+    none = np.empty((0, 8), dtype=np.intp)
+    voxels = kinds.get(pv.CellType.VOXEL, none)[:, _VOXEL]
+    corners = np.concatenate([kinds.get(pv.CellType.HEXAHEDRON, none), voxels])
+    faces = corners[:, _FACES]
+    first = np.argmin(faces, axis=2)[..., np.newaxis]
+    ring = np.take_along_axis(faces, (first + np.arange(4)) % 4, axis=2)
+    middle = np.broadcast_to(
+        count + np.arange(len(corners))[:, np.newaxis, np.newaxis], (len(corners), 6, 1)
+    )
+    found = [
+        np.concatenate([ring[..., part], middle], axis=2).reshape(-1, 4)
+        for part in ([0, 1, 2], [0, 2, 3])
+    ]
+    return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *found]), corners

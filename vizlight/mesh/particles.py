@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
 from vizlight.geometry.lines.simplices import Columns
-from vizlight.mesh import point_arrays, polylines
+from vizlight.mesh import polylines, records
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Foreign
@@ -57,8 +57,8 @@ class Rows(Columns):
         there &= before | after
         starts = (there & ~before)[there]
         out = polylines.polydata(places[there], np.append(np.flatnonzero(starts), there.sum()))
-        point_arrays.attach_rows(out, vectors, np.swapaxes(self.vectors, 0, 1)[there])
-        point_arrays.attach_rows(out, time, np.broadcast_to(self.times, there.shape)[there])
+        records.attach_rows(out, vectors, np.swapaxes(self.vectors, 0, 1)[there])
+        records.attach_rows(out, time, np.broadcast_to(self.times, there.shape)[there])
         return out
 
 

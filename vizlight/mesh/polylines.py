@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.mesh import blocks
 from vizlight.reading.cells import connectivity
 from vizlight.reading.polylines import has_lines_only, line_tangents
 
@@ -105,8 +106,7 @@ def polydata(points: Array, ends: Indices, /) -> pv.PolyData:
     out = pv.PolyData()
     if len(points):
         out.points = points
-    numbers = np.asarray(np.arange(len(points)), dtype=int)
-    out.SetLines(pv.CellArray.from_arrays(np.asarray(ends, dtype=int), numbers))
+    out.SetLines(blocks.cell_array(np.arange(len(points)), ends))
     return out
 
 

@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vizlight import _check
 from vizlight.geometry.lines.bundle import segment_starts
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.mesh import blocks, embree_rays
+from vizlight.mesh import blocks, closed_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -156,7 +156,7 @@ class Occluders:
         self.corners = (used - self.middle) / self.size
         a, b, c = self.corners.transpose(1, 0, 2)
         self.normals = np.cross(b - a, c - a)
-        scene = embree_rays.tree(self.corners) if len(used) else None
+        scene = closed_meshes.embree_tree(self.corners) if len(used) else None
         self.tracer: Tracer
         if scene is not None:
             self.tracer = _Embree(scene)

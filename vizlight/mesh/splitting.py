@@ -10,7 +10,7 @@ import scipy
 
 from vizlight import _check
 from vizlight._version import __version__
-from vizlight.mesh import blocks, normals, point_arrays, records
+from vizlight.mesh import blocks, normals, records
 from vizlight.model import kernels
 from vizlight.reading import polylines
 from vizlight.reading.cells import connectivity, has_faces
@@ -91,11 +91,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
         ):
             ids, offsets = connectivity(get())
             if len(offsets) > 1:
-                put(
-                    pv.CellArray.from_arrays(
-                        np.asarray(offsets, dtype=int), np.asarray(origin[ids], dtype=int)
-                    )
-                )
+                put(blocks.cell_array(origin[ids], offsets))
         for key, array in surface.cell_data.items():
             found.cell_data[key] = np.asarray(array)
         found.GetPointData().ShallowCopy(mesh.GetPointData())
@@ -288,9 +284,9 @@ def rebuilt(
         rows = np.asarray(array)
         own = given.get(key)
         added = _interpolated(rows, new, places=key == places) if own is None else own
-        point_arrays.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
+        records.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
     out.GetFieldData().DeepCopy(mesh.GetFieldData())
-    point_arrays.carry_active(mesh, out)
+    records.carry_active(mesh, out)
     return out
 
 
@@ -338,9 +334,7 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_arr
     # The last point of each line comes after its parts.
     place = np.lexsort((last, owner))
     ends = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=len(size)))])
-    return pv.CellArray.from_arrays(
-        np.asarray(ends, dtype=int), np.asarray(points[place], dtype=int)
-    )
+    return blocks.cell_array(points[place], ends)
 
 
 def _interpolated(
@@ -376,7 +370,7 @@ def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
     ours = TANGENTS in records.made(mesh, TANGENTS)
     if TANGENTS in mesh.point_data and not ours:
         return
-    point_arrays.attach_rows(mesh, TANGENTS, tangents)
+    records.attach_rows(mesh, TANGENTS, tangents)
     record: Record = {
         "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
     }  # fmt: skip

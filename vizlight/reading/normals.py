@@ -13,7 +13,7 @@ from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
-from vizlight.reading import grids
+from vizlight.reading import hull
 from vizlight.reading.arrays import vectors_of
 from vizlight.reading.cells import (
     as_numpy,
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Bools, Dataset, Foreign, Indices
-    from vizlight.reading.grids import Grid
+    from vizlight.reading.hull import Grid
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -284,7 +284,7 @@ def sided_normals(
     # These two need no pieces; in n-space there is no order of corners that tells a side.
     if facing in ("eye", "as given") or n != 3:
         return Sided(given)
-    if told is None and grids.in_parts(mesh):
+    if told is None and hull.in_parts(mesh):
         return _sided_grid(mesh, given)
     surface, origin = _skin(mesh)
     if surface is None:
@@ -340,19 +340,19 @@ def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bool
 def _sided_grid(mesh: Grid, given: Array) -> Sided:
     """Return normals of a grid with their sides, found part by part."""
     # Edges that are not on the border of a sheet have two faces.
-    found = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, grids.rim(mesh))]
+    found = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, hull.rim(mesh))]
     if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
         side = int(sides_of(given, None, np.ones(1, dtype=np.bool_))[0])
         if side < 2:
             return Sided(given, open=side)
         lean = np.zeros(len(given), dtype=np.float32)
-        for part in grids.parts(mesh):
+        for part in hull.parts(mesh):
             shape = PartShape(finite_faces(part.surface), part.side, np.zeros(3), 1.0)
             on = part.side == 0
             lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
         return Sided(given, lean, open=side)
     points, normals = [], []
-    for part in grids.parts(mesh):
+    for part in hull.parts(mesh):
         where = places(part.surface)
         own = given[part.origin]
         known = np.isfinite(where).all(axis=1) & np.isfinite(own).all(axis=1) & (part.side == 0)
@@ -424,7 +424,7 @@ def computed_normals(
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
-    if told is None and grids.in_parts(mesh):
+    if told is None and hull.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     part = None if told is None else told.side
     # First normals that agree with each other on each piece, then the side of each piece as a
@@ -547,7 +547,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     lean = np.zeros(count if sides else 0, dtype=np.float32)
     low, high, total = np.full(3, np.inf), np.full(3, -np.inf), np.zeros(3)
     size = on_surface = 0
-    for part in grids.parts(mesh):
+    for part in hull.parts(mesh):
         points = places(part.surface)[part.side == 0]
         on_surface += len(points)
         points = points[np.all(np.isfinite(points), axis=1)].astype(np.float64)
@@ -556,11 +556,11 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         total, size = total + points.sum(axis=0), size + len(points)
     middle = total / max(size, 1)
     scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
-    lines = [place_numbers(line) for line in grids.rim(mesh)]
+    lines = [place_numbers(line) for line in hull.rim(mesh)]
     # Edges of the rim that one part has alone are a border, unless another part has them too.
     single, ends = single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
-    for part in grids.parts(mesh):
+    for part in hull.parts(mesh):
         surface, own = finite_faces(part.surface), part.side == 0
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)

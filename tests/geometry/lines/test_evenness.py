@@ -8,7 +8,7 @@ import pyvista as pv
 from scipy.spatial import cKDTree
 
 from vizlight import streamlines
-from vizlight.mesh.surfaces import NORMALS, with_normals
+from vizlight.mesh.normals import NORMALS, with_normals
 
 
 def waves(points, frequency, seed):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import cutting
+from vizlight.mesh import nspace
 
 
 def box(kind):
@@ -27,7 +27,7 @@ def test_a_box_cut_by_a_plane(kind):
     x = np.asarray(mesh.points, float)
     mesh["x"], mesh["id"] = x[:, 0], np.arange(mesh.n_points)
     mesh["word"] = ["a"] * mesh.n_points
-    cut = cutting.cut(mesh, x @ [1.0, 0.4, 0.3] - 0.73)
+    cut = nspace.cut(mesh, x @ [1.0, 0.4, 0.3] - 0.73)
     points = np.asarray(cut.points)
     np.testing.assert_allclose(points @ [1, 0.4, 0.3], 0.73, atol=1e-14)
     np.testing.assert_allclose(cut["x"], points[:, 0], atol=1e-14)
@@ -48,24 +48,24 @@ def test_a_box_cut_by_a_plane(kind):
 
 def test_a_cut_through_lattice_points():
     mesh = box("image")
-    cut = cutting.cut(mesh, np.asarray(mesh.points, float)[:, 2] - 0.5)
+    cut = nspace.cut(mesh, np.asarray(mesh.points, float)[:, 2] - 0.5)
     assert area(cut) == pytest.approx(1, rel=1e-12)
 
 
 def test_strips_lines_and_wedges():
     strip = pv.Plane(i_resolution=4, j_resolution=4).triangulate().strip()
     assert strip.n_strips
-    cut = cutting.cut(strip, np.asarray(strip.points, float)[:, 0] - 0.1)
+    cut = nspace.cut(strip, np.asarray(strip.points, float)[:, 0] - 0.1)
     assert cut.compute_cell_sizes()["Length"].sum() == pytest.approx(1, rel=1e-6)
     line = pv.MultipleLines(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]]))
-    points = cutting.cut(line, np.array([-0.25, 0.75, 1.0]))
+    points = nspace.cut(line, np.array([-0.25, 0.75, 1.0]))
     np.testing.assert_allclose(points.points, [[0.25, 0, 0]])
     assert points.n_verts == 1
     wedge = pv.UnstructuredGrid(
         {pv.CellType.WEDGE: np.arange(6)[None]},
         np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]),
     )
-    assert area(cutting.cut(wedge, np.asarray(wedge.points)[:, 2] - 0.5)) == pytest.approx(0.5)
+    assert area(nspace.cut(wedge, np.asarray(wedge.points)[:, 2] - 0.5)) == pytest.approx(0.5)
 
 
 def test_frames_are_cut_as_the_spaces_they_span(random):
@@ -79,7 +79,7 @@ def test_frames_are_cut_as_the_spaces_they_span(random):
         seen = []
         for rows in (frame, turns @ frame):
             mesh["frame"] = rows.reshape(len(x), 6)
-            cut = cutting.cut(mesh, x @ [1.0, 0.4, 0.3] - 0.73, spaces={"frame": 3})
+            cut = nspace.cut(mesh, x @ [1.0, 0.4, 0.3] - 0.73, spaces={"frame": 3})
             seen.append(np.cross(*np.asarray(cut["frame"]).reshape(-1, 2, 3).swapaxes(0, 1)))
         one, other = seen
         assert np.abs(np.abs(np.sum(one * other, axis=1)) - 1).max() < 1e-14
@@ -89,18 +89,18 @@ def test_frames_are_cut_as_the_spaces_they_span(random):
 
 
 def test_nothing_to_cut_and_nothing_met():
-    cut = cutting.cut(pv.Sphere(), np.ones(842))
+    cut = nspace.cut(pv.Sphere(), np.ones(842))
     assert cut.n_points == cut.n_cells == 0
     assert cut["Normals"].shape == (0, 3)
     for mesh in (pv.PolyData(np.zeros((3, 3))), pv.PointSet(np.zeros((3, 3)))):
         with pytest.raises(ValueError, match="mesh: expected lines, faces or volumes to cut"):
-            cutting.cut(mesh, np.array([-1.0, 0, 1]))
+            nspace.cut(mesh, np.array([-1.0, 0, 1]))
 
 
 def test_a_point_that_is_not_finite_spoils_its_cells_alone():
     mesh = pv.Plane(i_resolution=2, j_resolution=1).triangulate()
     mesh["v"] = np.array([np.nan, 1, 1, 1, 1, 1])
     heights = np.asarray(mesh.points, float)[:, 1]
-    cut = cutting.cut(mesh, np.where(np.isnan(mesh["v"]), np.nan, heights))
+    cut = nspace.cut(mesh, np.where(np.isnan(mesh["v"]), np.nan, heights))
     assert 0 < cut.n_points < 5
     assert np.all(np.isfinite(cut["v"]))
