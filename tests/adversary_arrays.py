@@ -57,7 +57,7 @@ def half():
 #: Arguments of a valid call by the name of the callable; positional ones by name too.
 CALLS = {
     "geometry.contours.banding.Laminae.order": lambda: {"toward": UP},
-    "geometry.contours.frustum.truncus": lambda: {
+    "geometry.contours.isoluminance.truncus": lambda: {
         "center": (0, 0, 0),
         "axis": (0, 0, 1),
         "radii": (1.0, 0.5),
@@ -119,10 +119,10 @@ CALLS = {
         "shares": sparse.csr_array(np.eye(3)),
     },
     "geometry.nspace.slices.slice_frame": lambda: {"frame": frame(3, 2, 4), "normal": unit(4)},
-    "geometry.nspace.tori.clifford_torus": lambda: {"resolution": (6, 5)},
-    "geometry.nspace.tori.hopf_fibres": lambda: {"fibres": 3, "resolution": 8},
-    "geometry.nspace.tori.torus": lambda: {"radii": (1.0, 0.5), "resolution": 6},
-    "geometry.nspace.tori.torus_curve": lambda: {"ratio": 1.5, "resolution": 16},
+    "geometry.nspace.manifolds.clifford_torus": lambda: {"resolution": (6, 5)},
+    "geometry.nspace.manifolds.hopf_fibres": lambda: {"fibres": 3, "resolution": 8},
+    "geometry.nspace.manifolds.torus": lambda: {"radii": (1.0, 0.5), "resolution": 6},
+    "geometry.nspace.manifolds.torus_curve": lambda: {"ratio": 1.5, "resolution": 16},
     "geometry.relief.depth_map.depth_map": lambda: {
         "x": np.linspace(0, 1, 5),
         "y": np.linspace(0, 1, 4),
@@ -137,18 +137,18 @@ CALLS = {
     "geometry.relief.sun.directions": lambda: {"latitude": 0.8, "day": 100.0, "hours": [9.0, 12.0]},
     "geometry.relief.sun.disc": lambda: {"direction": UP, "diameter": 0.01, "count": 5},
     "geometry.relief.sun.toward": lambda: {"azimuth": [0.3, 1.0], "altitude": 0.5},
-    "geometry.solids.base.Boolean": lambda: {
+    "geometry.solids.primitives.Boolean": lambda: {
         "operation": "union",
         "first": vizlight.Sphere(),
         "second": vizlight.Block(),
     },
-    "geometry.solids.base.Solid.contains": lambda: {"points": unit(4, 3)},
-    "geometry.solids.base.Solid.rotate_vector": lambda: {"vector": UP, "angle": 0.3},
-    "geometry.solids.base.Solid.rotate_x": lambda: {"angle": 0.3},
-    "geometry.solids.base.Solid.rotate_y": lambda: {"angle": 0.3},
-    "geometry.solids.base.Solid.rotate_z": lambda: {"angle": 0.3},
-    "geometry.solids.base.Solid.scale": lambda: {"factor": 2.0},
-    "geometry.solids.base.Solid.translate": lambda: {"xyz": (1.0, 0.0, 0.0)},
+    "geometry.solids.primitives.Solid.contains": lambda: {"points": unit(4, 3)},
+    "geometry.solids.primitives.Solid.rotate_vector": lambda: {"vector": UP, "angle": 0.3},
+    "geometry.solids.primitives.Solid.rotate_x": lambda: {"angle": 0.3},
+    "geometry.solids.primitives.Solid.rotate_y": lambda: {"angle": 0.3},
+    "geometry.solids.primitives.Solid.rotate_z": lambda: {"angle": 0.3},
+    "geometry.solids.primitives.Solid.scale": lambda: {"factor": 2.0},
+    "geometry.solids.primitives.Solid.translate": lambda: {"xyz": (1.0, 0.0, 0.0)},
     "geometry.solids.polyhedra.Polyhedron": lambda: dict(
         zip(("points", "triangles"), triangles(), strict=True)
     ),

@@ -46,8 +46,8 @@ RETURNED = {
     "shading.inputs.ArraySource": "a protocol",
     "shading.plan.Plan": "returned by plan",
     "shading.inputs.ShadingInputs": "a record, which run checks",
-    "geometry.solids.base.Solid": "a base class",
-    "geometry.solids.base.Primitive": "a base class",
+    "geometry.solids.primitives.Solid": "a base class",
+    "geometry.solids.primitives.Primitive": "a base class",
     "accessor.Accessor": "made by PyVista for each mesh",
 }
 #: Parts of the protocol between solids, whose arrays `contains` and `tessellate` checked, and
@@ -143,7 +143,11 @@ CALLS = {
 }
 #: Objects whose methods are called.
 SELF = {
-    **{name: vizlight.Sphere for name in CALLS if name.startswith("geometry.solids.base.Solid.")},
+    **{
+        name: vizlight.Sphere
+        for name in CALLS
+        if name.startswith("geometry.solids.primitives.Solid.")
+    },
     "geometry.contours.banding.Laminae.order": lambda: vizlight.geometry.isoluminance.sphere(
         (0, 0, 0), 1.0, direction=adversary_arrays.UP, levels=4, form="laminae"
     ),

@@ -7,7 +7,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.geometry.solids import tessellation
-from vizlight.geometry.solids.base import EXPECTED, Solid
+from vizlight.geometry.solids.primitives import EXPECTED, Solid
 
 
 def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:

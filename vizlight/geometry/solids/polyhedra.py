@@ -10,9 +10,8 @@ import numpy as np
 from vizlight import _check
 from vizlight.geometry import axial
 from vizlight.geometry.solids import parallel_rays
-from vizlight.geometry.solids.base import Primitive, place
 from vizlight.geometry.solids.exact_surfaces import Plane
-from vizlight.geometry.solids.primitives import Block
+from vizlight.geometry.solids.primitives import Block, Primitive, place
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -16,10 +16,9 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry.solids import triangle_mesh
-from vizlight.geometry.solids.base import EXPECTED, Boolean, Primitive, Solid
 from vizlight.geometry.solids.exact_surfaces import Surfaces, onto
 from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
-from vizlight.geometry.solids.primitives import Sphere, Torus
+from vizlight.geometry.solids.primitives import EXPECTED, Boolean, Primitive, Solid, Sphere, Torus
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
-    from vizlight.geometry.solids.base import Primitive
     from vizlight.geometry.solids.exact_surfaces import Surface
+    from vizlight.geometry.solids.primitives import Primitive
 
 #: Corners of the faces of a block, x before y before z, the side of larger coordinates first.
 _FACES = (
