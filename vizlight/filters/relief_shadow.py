@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.height_field import Border
     from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
-    from vizlight.mesh.casters import Caster
+    from vizlight.mesh.casters import FieldCaster, SolidCaster
     from vizlight.shading.options import FeatureAngle
 
 #: Share of a surface in which shadows end from which a warning is given, and sides of triangles
@@ -289,7 +289,11 @@ def _check_names(own: set[str]) -> None:
 
 
 def _ratios(
-    shadow: Caster, lights: list[Light], options: ReliefOptions, *, progress_bar: bool
+    shadow: FieldCaster | SolidCaster,
+    lights: list[Light],
+    options: ReliefOptions,
+    *,
+    progress_bar: bool,
 ) -> Array:
     """Return t of each point (rows) and light, and add it to a report."""
     start = time.perf_counter()

@@ -264,10 +264,6 @@ def _cells(cells: Sequence[vtkCellArray], starts: Indices) -> vtkCellArray:
     return out
 
 
-#: What reads the normals and tangents that earlier results keep with a mesh.
-_READERS = reading.Kept(normals.kept, splitting.kept_tangents)
-
-
 def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:
     """Return the inputs of the engine from one mesh; see :func:`part_of`."""
     return part_of(mesh, path, scene, options).inputs
@@ -287,7 +283,15 @@ def part_of(
     ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
     decides of its sides.
     """
-    kept = _READERS if known is None else _READERS._replace(normals=lambda _: known)
-    part = reading.part_of(mesh, path, scene, options, kept=kept, starts=starts, told=told)
+    part = reading.part_of(
+        mesh,
+        path,
+        scene,
+        options,
+        kept_normals=normals.kept if known is None else lambda _: known,
+        kept_tangents=splitting.kept_tangents,
+        starts=starts,
+        told=told,
+    )
     cells = lambda: splitting.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))

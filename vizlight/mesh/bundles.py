@@ -220,7 +220,7 @@ class _Target:
         if given.tangents is not None:
             lengths = np.zeros(len(points))
             if work.bundle.lines is None and polylines.has_lines_only(mesh):
-                lengths = _lengths(mesh)
+                lengths = polylines.of_points(mesh, geometry.line_lengths)
         if rows is not None and len(rows) * given.repeat == len(points):
             rows = np.repeat(rows, given.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
@@ -353,8 +353,3 @@ def joined(meshes: Sequence[pv.DataSet]) -> Lines:
             [[0], *(own[1:] + end for own, end in zip(offsets, ends, strict=False))]
         ).astype(np.intp),
     )
-
-
-def _lengths(mesh: pv.DataSet) -> Array:
-    """Return the length of the line that each point of a mesh of lines belongs to."""
-    return polylines.of_points(mesh, geometry.line_lengths)

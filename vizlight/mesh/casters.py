@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -71,28 +71,14 @@ class CasterOptions(Options):
         check_sides("auto", self.feature_angle)
 
 
-class Caster(Protocol):
-    """A mesh that casts shadows on itself.
+def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaster | SolidCaster:
+    """Return a mesh that casts shadows on itself.
 
-    ``valid`` is the mask of the points that have a t, ``depth`` the depth d, and ``effort`` the
-    number of planes of nodes or triangles that ``reference`` visits for one t, 0 if it finds none.
+    ``of`` gives t at all its points and reports the number of rays followed so far, ``reference``
+    gives t at one point by an independent method, NaN where that does not apply. ``valid`` is the
+    mask of the points that have a t, ``depth`` the depth d, and ``effort`` the number of planes of
+    nodes or triangles that ``reference`` visits for one t, 0 if it finds none.
     """
-
-    points: Array
-    normals: Array
-    valid: Bools
-    depth: float
-    effort: int
-
-    def of(self, light: Light, report: Callable[[int], None]) -> Array:
-        """Return t at all points; ``report`` takes the number of rays followed so far."""
-
-    def reference(self, point: int, light: Light) -> float:
-        """Return t at one point by an independent method; NaN where that does not apply."""
-
-
-def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> Caster:
-    """Return the shadow caster of a mesh."""
     sampled = options.raster is not None
     if isinstance(mesh, Grid) or (sampled and isinstance(mesh, pv.PolyData)):
         for option in ("thickness", "feature_angle", "occluders"):
@@ -101,7 +87,7 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> Caster:
                 got = len(value) if option == "occluders" else repr(value)
                 remedy = "leave it out, or pass the surface of the grid as a closed mesh"
                 raise ValueError(_check.message(option, "none on a height field", got, remedy))
-        return _FieldCaster(mesh, options)
+        return FieldCaster(mesh, options)
     if isinstance(mesh, pv.PolyData):
         defaults = {field.name: field.default for field in dataclasses.fields(options)}
         for option in FIELD_ALONE:
@@ -109,13 +95,13 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> Caster:
             if given is not default and (default is None or np.any(given != default)):
                 remedy = "leave it out, or pass a grid"
                 raise ValueError(_check.message(option, "none on a surface", repr(given), remedy))
-        return _SolidCaster(mesh, scene, options)
+        return SolidCaster(mesh, scene, options)
     expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
     remedy = "take the mesh's extract_surface()"
     raise TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
 
 
-class _FieldCaster:
+class FieldCaster:
     """Shadows of a height field."""
 
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
@@ -147,6 +133,7 @@ class _FieldCaster:
         self.effort = sum(self._field.heights.shape) if exact else 0
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
+        """Return t at all points; ``report`` takes the number of rays followed so far."""
         turn = np.eye(3) if self._turn is None else self._turn
         # Lamps are turned into the frame of the grid's rows and columns.
         way, end = (
@@ -163,6 +150,7 @@ class _FieldCaster:
         return t
 
     def reference(self, point: int, light: Light) -> float:
+        """Return t at one point by an independent method; NaN where that does not apply."""
         field, turn = self._field, np.eye(3) if self._turn is None else self._turn
         way = None if light.direction is None else turn @ np.array(light.direction)
         # Below the horizon every ray is inside for ever; the oracle does not integrate that.
@@ -177,7 +165,7 @@ class _FieldCaster:
         )  # fmt: skip
 
 
-class _SolidCaster:
+class SolidCaster:
     """Shadows of a closed surface and of the occluders."""
 
     def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
@@ -190,7 +178,6 @@ class _SolidCaster:
         )
         self.normals = kernels.unit_rows(np.asarray(vectors, dtype=np.float64))
         if thickness is not None:
-            thickness = _check.number("thickness", thickness, low=0.0)
             if not thickness:
                 raise ValueError(_check.message("thickness", "more than 0", thickness))
             body = closed_meshes.shell(mesh, thickness, self.normals)
@@ -209,6 +196,7 @@ class _SolidCaster:
         self._corners: list[Array] | None = None
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
+        """Return t at all points; ``report`` takes the number of rays followed so far."""
         good = self.valid
         depth = self.depth / self._unit
         limit = depth <= shadowing.LEAST_DEPTH
@@ -230,6 +218,7 @@ class _SolidCaster:
         return t
 
     def reference(self, point: int, light: Light) -> float:
+        """Return t at one point by an independent method; NaN where that does not apply."""
         if self._corners is None:
             self._corners = [body.vertices[body.triangles] for body in self._solids]
         place = (self.points[point] - self._origin) / self._unit

@@ -434,9 +434,8 @@ def split_faces(
     size = part_size(count) if size is None else size
     new, added = ids.copy(), [np.arange(count)]
     total = count
-    for block, part in around(points, ids, ends, size):
-        used, at = part.used, part.corners
-        found, origin = _by_vtk(part.surface, angle)
+    for block, surface, used, at in around(points, ids, ends, size):
+        found, origin = _by_vtk(surface, angle)
         was = used[origin[found]]
         if not np.array_equal(was, ids[at]):
             if size < count:

@@ -16,7 +16,7 @@ from vizlight.mesh import blocks, records
 from vizlight.model.frames import default_rtol
 from vizlight.reading import polylines
 from vizlight.reading.arrays import array_of
-from vizlight.reading.cells import has_faces
+from vizlight.reading.cells import connectivity, has_faces
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
@@ -281,8 +281,7 @@ def _neighbours(mesh: pv.DataSet) -> tuple[Indices, Indices]:
         kinds = [pv.UnstructuredGrid(mesh).GetCells()]
     pairs = []
     for cells in kinds:
-        ids = np.asarray(pv.convert_array(cells.GetConnectivityArray())).astype(np.intp)
-        ends = np.asarray(pv.convert_array(cells.GetOffsetsArray()))
+        ids, ends = connectivity(cells)
         after = np.roll(ids, -1)
         filled = np.diff(ends) > 0
         after[ends[1:][filled] - 1] = ids[ends[:-1][filled]]
@@ -338,8 +337,7 @@ def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
             del data[name]
     for name in before[0] - set(grid.point_data):  # where no point is left
         records.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
-    for key, value in mesh.field_data.items():
-        grid.field_data[key] = value
+    grid.GetFieldData().DeepCopy(mesh.GetFieldData())
     return grid
 
 
@@ -413,8 +411,7 @@ def cut(
         elif array.dtype.kind in "biuf":
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             records.attach_rows(out, key, (between @ array.astype(np.float64)).astype(kind))
-    for key, value in mesh.field_data.items():
-        out.field_data[key] = value
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
     return out
 
 

@@ -85,12 +85,7 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     if not kept.any():
         return pv.PolyData()
     length = np.bincount(line[kept], minlength=len(size))[keep_line]
-    out = polydata(np.asarray(mesh.points)[ids[kept]], np.concatenate([[0], np.cumsum(length)]))
-    for key, array in mesh.point_data.items():
-        out.point_data[key] = np.asarray(array)[ids[kept]]
-    for key, array in mesh.cell_data.items():
-        out.cell_data[key] = np.asarray(array)[keep_line]
-    return out
+    return _taken(mesh, ids[kept], length, np.flatnonzero(keep_line))
 
 
 def polydata(points: Array, ends: Indices, /) -> pv.PolyData:
@@ -130,10 +125,16 @@ def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
         runs[key] = np.concatenate([runs[key], run[1:]]) if key in runs else run
         first[key] = line
     rows = np.concatenate([*runs.values()])
-    ends = np.concatenate([[0], np.cumsum([len(run) for run in runs.values()])])
-    out = polydata(np.asarray(mesh.points)[rows], ends)
+    return _taken(mesh, rows, [len(run) for run in runs.values()], [*first.values()])
+
+
+def _taken(
+    mesh: pv.PolyData, rows: Indices, sizes: Indices | list[int], lines: Indices | list[int]
+) -> pv.PolyData:
+    """Return lines of some sizes through points of a mesh, with the data of those of its lines."""
+    out = polydata(np.asarray(mesh.points)[rows], np.concatenate([[0], np.cumsum(sizes)]))
     for name, array in mesh.point_data.items():
         out.point_data[name] = np.asarray(array)[rows]
     for name, array in mesh.cell_data.items():
-        out.cell_data[name] = np.asarray(array)[[*first.values()]]
+        out.cell_data[name] = np.asarray(array)[lines]
     return out

@@ -310,13 +310,7 @@ class _Refinement:
         return np.asarray(missed.max(axis=1, initial=0))
 
     def _worst_edges(self, fresh: Indices) -> tuple[Indices, Array, Array]:
-        """Return the edges of parts to be split, where, and the error there."""
-        codes, share, long, worst = self._edges(fresh)
-        chosen = (worst > KEPT * self.error) & long
-        return codes[chosen], share[chosen], worst[chosen]
-
-    def _edges(self, fresh: Indices) -> tuple[Indices, Array, Bools, Array]:
-        """Return the edges of parts, where each has its largest error, and that error."""
+        """Return the edges of parts to be split, where each errs most, and the error there."""
         size = self.cells.size
         fresh = fresh[self._seen(fresh)]
         codes, reverse = self.cells.edges(fresh)
@@ -337,7 +331,9 @@ class _Refinement:
             better = miss > worst
             best, worst = np.where(better, t, best), np.where(better, miss, worst)
         best = np.clip(best, NEAREST, 1 - NEAREST)
-        return edges, np.where(back, 1 - best, best), self._long(cell, side), worst
+        best = np.where(back, 1 - best, best)
+        chosen = (worst > KEPT * self.error) & self._long(cell, side)
+        return edges[chosen], best[chosen], worst[chosen]
 
     def _seen(self, cells: Indices) -> Bools:
         """Return whether parts have light to compare, and are not narrower than any edge split."""

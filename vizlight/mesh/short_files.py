@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
 from vizlight.mesh import blocks, series
-from vizlight.reading.cells import POLYDATA, connectivity
+from vizlight.reading.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,15 +48,14 @@ def missing_part(path: Path, /) -> str:
     str
         Reason why the file cannot be whole; empty if it may be, or is of another format.
     """
+    lacks = _FORMATS.get(path.suffix.lower())
+    if lacks is None:
+        return ""
     with path.open("rb") as file:
         try:
-            return _FORMATS.get(path.suffix.lower(), _nothing)(file)
+            return lacks(file)
         except (IndexError, ValueError, struct.error) as error:
             return f"its header cannot be read: {error}"
-
-
-def _nothing(_file: BinaryIO) -> str:
-    return ""
 
 
 def _size(file: BinaryIO, least: int) -> str:
@@ -294,7 +293,7 @@ def contradiction(mesh: object, path: Path, /) -> str:
             there = block.GetPoints().GetNumberOfPoints() if block.GetPoints() else 0
             if there != math.prod(block.dimensions):
                 return f"{there} points for the dimensions {tuple(block.dimensions)}"
-        reasons = [_of_cells(cells, block.n_points) for cells in _cells(block)]
+        reasons = [_of_cells(cells, block.n_points) for cells in cell_arrays(block)]
         if isinstance(block, pv.UnstructuredGrid) and not any(reasons):
             reasons.append(_of_types(block))
         if reason := next(filter(None, reasons), ""):
@@ -302,13 +301,6 @@ def contradiction(mesh: object, path: Path, /) -> str:
         if path.suffix.lower() == ".vtk" and (reason := _of_text(block, path)):
             return reason
     return ""
-
-
-def _cells(block: pv.DataSet) -> list[vtkCellArray]:
-    """Return the cells of a mesh that are stored."""
-    if isinstance(block, pv.PolyData):
-        return [cells(block) for count, cells in POLYDATA if count(block)]
-    return [block.GetCells()] if isinstance(block, pv.UnstructuredGrid) else []
 
 
 def _of_cells(cells: vtkCellArray, count: int) -> str:
@@ -361,7 +353,7 @@ def _of_text(block: pv.DataSet, path: Path) -> str:
         )
         file.seek(0)
         components = {9: 6} if b"TENSORS6" in file.read() else {}
-    stored = _cells(block)
+    stored = cell_arrays(block)
     if isinstance(block, pv.PolyData) and block.n_verts == block.n_cells:
         stored = []  # PyVista makes a vertex of each point that is in no cell
     # A file has the size of each cell, from version 5 on the place of each and the last end.

@@ -11,9 +11,9 @@ import scipy
 from vizlight import _check, _compiled
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
-from vizlight.mesh import bundles, georeference, normals, sky_rays
+from vizlight.mesh import blocks, bundles, georeference, normals, sky_rays
 from vizlight.mesh.height_grids import Grid, heights_of
-from vizlight.reading import hull, polylines
+from vizlight.reading import polylines
 from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
@@ -363,17 +363,15 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
 
     Cells of other pieces stay: they hide the sky.
     """
-    marks = mesh.cell_data.get(GHOSTS)
+    marks, numbers = mesh.cell_data.get(GHOSTS), None
     if marks is not None:
         hidden = (np.asarray(marks) & HIDDEN) > 0
         mesh = mesh.copy(deep=False)
         del mesh.cell_data[GHOSTS]
         if hidden.any():
-            kept = mesh.extract_cells(np.asarray(~hidden, dtype=bool))
-            numbers = np.asarray(kept.point_data["vtkOriginalPointIds"], np.intp)
-            surface, ids = hull.outer_surface(kept)
-            return pv.PolyData(surface), np.where(ids >= 0, numbers[ids], -1)
+            mesh = mesh.extract_cells(np.asarray(~hidden, dtype=bool))
+            numbers = np.asarray(mesh.point_data["vtkOriginalPointIds"], np.intp)
     if isinstance(mesh, pv.PolyData):
         return mesh, np.arange(mesh.n_points)
-    surface, ids = hull.outer_surface(mesh)
-    return pv.PolyData(surface), ids
+    surface, ids = blocks.outer_surface(mesh)
+    return surface, ids if numbers is None else np.where(ids >= 0, numbers[ids], -1)

@@ -9,7 +9,7 @@ are not right enough yet.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 from vtkmodules.vtkCommonCore import mutable
@@ -94,19 +94,9 @@ class Seen(NamedTuple):
     rays: int
 
 
-class Tracer(Protocol):
-    """Finds triangles on rays."""
-
-    name: str
-
-    def free(self, start: Array, way: Array) -> Bools:
-        """Return whether rays meet nothing."""
-
-    def first(self, start: Array, way: Array) -> Indices:
-        """Return the first triangle on each ray, -1 for none."""
-
-
 class _Embree:
+    """Finds triangles on rays, all rays at once."""
+
     name = "rays by Embree"
 
     def __init__(self, scene: EmbreeScene) -> None:
@@ -143,6 +133,10 @@ class _Locator:
         return found
 
 
+#: Both return whether rays meet nothing, and the first triangle on each ray, -1 for none.
+_Tracer: TypeAlias = "_Embree | _Locator"
+
+
 class Occluders:
     """Triangles that hide the sky, scaled to size 1 about 0 so that float32 loses nothing."""
 
@@ -157,7 +151,7 @@ class Occluders:
         a, b, c = self.corners.transpose(1, 0, 2)
         self.normals = np.cross(b - a, c - a)
         scene = closed_meshes.embree_tree(self.corners) if len(used) else None
-        self.tracer: Tracer
+        self.tracer: _Tracer
         if scene is not None:
             self.tracer = _Embree(scene)
         else:
@@ -220,22 +214,15 @@ class Occluders:
         for part, (start, way) in _rays(points, normals, local, None):
             hit = self.tracer.first(start, way)
             inner = np.einsum("ij,ij->i", way, self.normals[hit]) > 0
-            behind[part] = np.reshape((hit >= 0) & inner, (len(local.ways), -1)).mean(axis=0)
+            behind[part] = np.reshape((hit >= 0) & inner, (len(local[0]), -1)).mean(axis=0)
         return np.asarray(behind > 1 / 2)
-
-
-class _Net(NamedTuple):
-    """Directions, and normals of a tube, in the frame of a point; both of shape (n, 3)."""
-
-    ways: Array
-    outward: Array
 
 
 class _Estimate:
     """Shares of points as means over halves of their rays."""
 
     def __init__(
-        self, tracer: Tracer, points: Array, ways: Array, radius: float | None, up: Array | None
+        self, tracer: _Tracer, points: Array, ways: Array, radius: float | None, up: Array | None
     ) -> None:
         self.tracer, self.points, self.ways, self.radius = tracer, points, ways, radius
         self.up = None if up is None else (up / np.linalg.norm(up)).astype(np.float32)
@@ -292,7 +279,7 @@ class _Estimate:
         return found
 
 
-def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[_Net]:
+def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[tuple[Array, Array]]:
     """Return shifted parts of a net of directions, weighted by the cosine."""
     net = (np.arange(first, first + count)[:, np.newaxis] + 0.5) * RATES[3 if line else 2]
     made = []
@@ -307,25 +294,26 @@ def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[_Ne
             c, s = np.cos(around), np.sin(around)
             ways = np.stack([cosine * c - y * s, cosine * s + y * c, x], axis=1)
             outward = np.stack([c, s, np.zeros(count)], axis=1)
-        made.append(_Net(ways.astype(np.float32), outward.astype(np.float32)))
+        made.append((ways.astype(np.float32), outward.astype(np.float32)))
     return made
 
 
 def _rays(
-    points: Array, ways: Array, net: _Net, radius: float | None
+    points: Array, ways: Array, net: tuple[Array, Array], radius: float | None
 ) -> Iterator[tuple[slice, tuple[Array, Array]]]:
     """Yield some points, and the starts and directions of their rays, one ray of each at a time."""
-    count = len(net.ways)
+    toward, outward = net
+    count = len(toward)
     for first in range(0, len(points), max(1, AT_ONCE // count)):
         part = slice(first, first + max(1, AT_ONCE // count))
         frame = _frames(ways[part])
         across = frame.transpose(1, 0, 2).reshape(3, -1)
-        way = (net.ways @ across).reshape(-1, 3)
+        way = (toward @ across).reshape(-1, 3)
         if radius is None:
             begin = (points[part] + OFFSET * ways[part]).astype(np.float32)
             start: Array = np.tile(begin, (count, 1))
         else:
-            away = (OUTSIDE * radius + OFFSET) * net.outward
+            away = (OUTSIDE * radius + OFFSET) * outward
             start = (away @ across).reshape(count, -1, 3) + points[part].astype(np.float32)
             start = start.reshape(-1, 3)
         yield part, (np.ascontiguousarray(start, np.float32), way)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.util import numpy_support
@@ -165,31 +165,15 @@ def part_size(count: int) -> int:
     return max(PART, -(-count // PARTS))
 
 
-class Around(NamedTuple):
-    """The faces around some points of a surface.
-
-    Attributes
-    ----------
-    surface : vtkPolyData
-        Those faces and their points, in the order of the surface.
-    used : ndarray of int
-        Point of the whole surface that each point is.
-    corners : ndarray of int
-        Place of each of their corners among the corners of all faces.
-    """
-
-    surface: vtkPolyData
-    used: Indices
-    corners: Indices
-
-
 def around(
     points: AnyArray, ids: Indices, ends: Indices, size: int
-) -> Iterator[tuple[slice, Around]]:
+) -> Iterator[tuple[slice, vtkPolyData, Indices, Indices]]:
     """Yield ranges of ``size`` points with the faces around them, where there are any.
 
     ``ids`` has the corners of all faces one after the other, ``ends`` the place at which each face
-    begins, followed by the end of the last. Only what is around those points takes memory.
+    begins, followed by the end of the last. Only what is around those points takes memory. With
+    each range come those faces and their points as a surface, in the order of the whole, the point
+    of the whole that each of its points is, and the places of its corners in ``ids``.
     """
     runs = _pool.blocks(len(ids), PART)
     least, most = (np.array([own(ids[run]) for run in runs]) for own in (np.min, np.max))
@@ -200,11 +184,13 @@ def around(
             near.append(runs[i].start + np.flatnonzero((own >= block.start) & (own < block.stop)))
         face = np.searchsorted(ends, np.concatenate(near), side="right") - 1
         if len(face):
-            yield block, _faces(points, ids, ends, face[np.diff(face, prepend=-1) > 0])
+            yield block, *_faces(points, ids, ends, face[np.diff(face, prepend=-1) > 0])
 
 
-def _faces(points: AnyArray, ids: Indices, ends: Indices, face: Indices) -> Around:
-    """Return some faces and their points."""
+def _faces(
+    points: AnyArray, ids: Indices, ends: Indices, face: Indices
+) -> tuple[vtkPolyData, Indices, Indices]:
+    """Return some faces, their points, and the places of their corners."""
     size = ends[face + 1] - ends[face]
     starts = np.concatenate([[0], np.cumsum(size)])
     corners = np.arange(starts[-1]) + np.repeat(ends[face] - starts[:-1], size)
@@ -222,7 +208,7 @@ def _faces(points: AnyArray, ids: Indices, ends: Indices, face: Indices) -> Arou
     cells.SetData(as_vtk(starts), as_vtk(number[own]))
     surface.SetPoints(where)
     surface.SetPolys(cells)
-    return Around(surface, used, corners)
+    return surface, used, corners
 
 
 def first_twins(cells: vtkCellArray) -> Indices | None:
@@ -327,6 +313,14 @@ POLYDATA: tuple[tuple[Callable[[Foreign], int], Callable[[Foreign], vtkCellArray
 )
 
 
+def cell_arrays(mesh: Foreign) -> list[vtkCellArray]:
+    """Return the cells of a mesh by kind; none of a grid, whose cells name no points."""
+    if isinstance(mesh, vtkPolyData):
+        return [cells(mesh) for count, cells in POLYDATA if count(mesh)]
+    cells = grid_cells(mesh) if isinstance(mesh, vtkUnstructuredGrid) else None
+    return [] if cells is None else [cells]
+
+
 def check_whole(mesh: object, name: str, where: str = "") -> None:
     """Check that arrays have a row for each point or cell, and that cells have points that exist.
 
@@ -350,12 +344,8 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
                 expected = f"{of} arrays of {rows} rows, one per {of}"
                 got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
                 raise ValueError(where + _check.message(name, expected, got, "remove the array"))
-    if isinstance(mesh, vtkPolyData):
-        kinds = [kind(mesh) for number, kind in POLYDATA if number(mesh)]
-    else:
-        kinds = [grid_cells(mesh)] if isinstance(mesh, vtkUnstructuredGrid) else []
-    for cells in kinds:
-        if cells is not None and cells.GetNumberOfConnectivityIds():
+    for cells in cell_arrays(mesh):
+        if cells.GetNumberOfConnectivityIds():
             ids = as_numpy(cells.GetConnectivityArray())
             # Negative numbers are large ones without a sign.
             if int(ids.view(f"u{ids.itemsize}").max()) >= count:

@@ -466,34 +466,18 @@ def computed_normals(
     return all_of.part(0, slice(None)) if starts is None else all_of
 
 
-class Wound(NamedTuple):
-    """The outer surface of a mesh, and normals that agree with each other on each of its pieces.
-
-    Attributes
-    ----------
-    shape : Shape
-    vectors : ndarray, shape (n_points, 3)
-        Normals of the points of the surface, zero where no face is.
-    first : ndarray of int, shape (n_points,), or None
-        First of the points that slivers join with each.
-    origin : ndarray of int, shape (n_points,), or None
-        Point of the mesh that each point of the surface is; None for a surface.
-    """
-
-    shape: Shape
-    vectors: Array
-    first: Indices | None
-    origin: Indices | None
-
-
 def wound_normals(
     mesh: Dataset,
     *,
     as_wound: bool = False,
     starts: Indices | None = None,
     side: NDArray[np.int8] | None = None,
-) -> Wound | None:
+) -> tuple[Shape, Array, Indices | None, Indices | None] | None:
     """Return the outer surface of a mesh and the normals of its points, None where it has none.
+
+    The normals agree with each other on each piece, and are zero where no face is. After them come
+    the first of the points that slivers join with each, None where there are no slivers, and the
+    point of the mesh that each point of the surface is, None for a surface.
 
     With ``side`` the mesh is a part of another, see :attr:`Shape.side`.
     """
@@ -514,7 +498,7 @@ def wound_normals(
         least = float(np.cos(np.radians(SHARP)))
         vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
         shape.triangles = first[shape.triangles]
-    return Wound(shape, vectors, first, origin)
+    return shape, vectors, first, origin
 
 
 def is_scan(mesh: Dataset) -> bool:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Dataset, Foreign, Indices
     from vizlight.scene import Scene, View
     from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import Facing, LightOptions
+    from vizlight.shading.options import LightOptions
 
 
 class Part(NamedTuple):
@@ -30,13 +30,6 @@ class Part(NamedTuple):
     inputs: ShadingInputs
     options: LightOptions
     sided: Sided | None
-
-
-class Kept(NamedTuple):
-    """Functions of a mesh that return what an earlier result kept of it, or None."""
-
-    normals: Callable[[Foreign], Sided | None]
-    tangents: Callable[[Foreign], Array | None]
 
 
 def uses_normals(mesh: Dataset, options: LightOptions) -> bool:
@@ -53,7 +46,8 @@ def part_of(
     scene: Scene,
     options: LightOptions,
     *,
-    kept: Kept | None = None,
+    kept_normals: Callable[[Foreign], Sided | None] | None = None,
+    kept_tangents: Callable[[Foreign], Array | None] | None = None,
     starts: Indices | None = None,
     told: Told | None = None,
 ) -> Part:
@@ -71,25 +65,35 @@ def part_of(
     try:
         points = points_of(mesh, options.positions)
         n = int(points.shape[1])
-        tangents = _tangents(mesh, n, options, kept)
+        tangents = _tangents(mesh, n, options, kept_tangents)
         _check_options(tangents, n, options)
         base = normals = sided = dimensions = None
         alike = False
         if isinstance(options.conditioned, str):
             base = tangents_of(mesh, options.conditioned, n, argument="conditioned")
         elif tangents is None or options.conditioned:
-            known = None if kept is None else kept.normals
             sided = sided_normals(
-                mesh, options.normals, n, options.facing, kept=known, starts=starts, told=told
+                mesh,
+                options.normals,
+                n,
+                options.facing,
+                kept=kept_normals,
+                starts=starts,
+                told=told,
             )
             if tangents is None and n == 3 and polylines.has_several_kinds(mesh):
                 tangents, sided, dimensions = _several(mesh, sided)
             normals = sided.facing(options.facing, points, scene.view)
-            alike = scene.view is None and _alike(sided, options.facing)
+            alike = scene.view is None and (
+                options.facing == "eye" or (options.facing == "auto" and sided.any_open)
+            )
     except (TypeError, ValueError) as error:
         if not path:
             raise
         raise type(error)(f"block {path}: {error}") from error
+    # Means of cell arrays have a line but no sign.
+    own = options.tangents
+    has_no_sign = isinstance(own, str) and is_of_cells(mesh, own)
     inputs = ShadingInputs(
         points=points,
         tangents=tangents,
@@ -97,7 +101,7 @@ def part_of(
         base_tangents=base,
         dimensions=dimensions,
         two_sided=alike,
-        line_field=options.line_field or _has_no_sign(mesh, options),
+        line_field=options.line_field or has_no_sign,
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
     return Part(occluded(inputs, mesh, options.occlusion, path), options, sided)
@@ -145,17 +149,14 @@ def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightO
     return Sides(sided.vectors, sided.facts(), turned)
 
 
-def _alike(sided: Sided, facing: Facing) -> bool:
-    """Return whether both sides of a surface are lit alike where no eye sees one of them."""
-    return facing == "eye" or (facing == "auto" and sided.any_open)
-
-
-def _tangents(mesh: Dataset, n: int, options: LightOptions, kept: Kept | None) -> Array | None:
+def _tangents(
+    mesh: Dataset, n: int, options: LightOptions, kept: Callable[[Foreign], Array | None] | None
+) -> Array | None:
     """Return the tangents in the options, or the lines' own for a mesh of lines."""
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n)
     if n == 3 and polylines.has_lines_only(mesh):
-        known = None if kept is None else kept.tangents(mesh)
+        known = None if kept is None else kept(mesh)
         return polylines.line_tangents(mesh) if known is None else known
     return None
 
@@ -174,11 +175,6 @@ def _several(mesh: Dataset, sided: Sided) -> tuple[Array | None, Sided, Array | 
     tangents[(kinds != 1) & ~np.any(tangents, axis=1)] = 1
     vectors[kinds < 2] = 1
     return tangents, dataclasses.replace(sided, vectors=vectors), kinds
-
-
-def _has_no_sign(mesh: Dataset, options: LightOptions) -> bool:
-    """Return whether tangents are means over cells, which are taken of lines without sign."""
-    return isinstance(options.tangents, str) and is_of_cells(mesh, options.tangents)
 
 
 def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:

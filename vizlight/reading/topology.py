@@ -97,8 +97,7 @@ class SortedEdges(NamedTuple):
 
     def folded(self) -> Indices:
         """Return the lower ends of edges of two triangles that run along them the same way."""
-        new = np.ones(len(self.keys) + 1, dtype=np.bool_)
-        np.not_equal(self.keys[1:], self.keys[:-1], out=new[1:-1])
+        new = _new(self.keys)
         pair = new[:-2] & ~new[1:-1] & new[2:]
         first = np.flatnonzero(pair & (self.forward[1:] == self.forward[:-1]))
         return ends_of(self.keys[first])[0]
@@ -217,12 +216,18 @@ def ends_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
     return keys >> 32, keys & 0xFFFFFFFF
 
 
+def _new(keys: NDArray[np.int64]) -> Bools:
+    """Return whether each of some sorted numbers is the first of its kind, and true for the end."""
+    new = np.ones(len(keys) + 1, dtype=np.bool_)
+    np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
+    return new
+
+
 def _record(
     keys: NDArray[np.int64], ends: Indices, single: list[Indices], own: Bools | None
 ) -> int:
     """Write the ends of sorted edges, append those that stand there once, return their number."""
-    new = np.ones(len(keys) + 1, dtype=np.bool_)
-    np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
+    new = _new(keys)
     first = keys[new[:-1]]
     into = ends[:, : len(first)]
     into[0], into[1] = ends_of(first)
