@@ -252,3 +252,12 @@ def test_a_point_that_a_face_names_twice_is_one_corner(turn):
     twice = np.roll([[0, 1, 1, 2], [0, 3, 3, 1]], turn, axis=1)
     found = corners.corner_normals(points, [twice])
     np.testing.assert_allclose(found, corners.corner_normals(points, [whole]), atol=1e-6)
+
+
+def test_corners_at_one_place_have_the_normal_of_their_face():
+    """As at the poles of a grid of degrees, whose quads are triangles there."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 0], [2, 2, 0], [0, 2, 0]])
+    faces = [np.array([[0, 1, 2, 4]]), np.array([[1, 3, 3, 4]]), np.array([[0, 1, 2, 3, 4]])]
+    for face in faces:
+        found = corner_normals(points, [face])
+        np.testing.assert_allclose(found[face[0]], np.tile([0.0, 0, 1], (face.size, 1)), atol=1e-7)

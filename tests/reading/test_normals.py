@@ -136,6 +136,30 @@ def test_closed_surfaces_with_one_side_face_the_eye(make, joined):
     assert np.mean(np.abs(found - toward_eye) > 0.01) < 0.03
 
 
+@pytest.mark.parametrize("cut", [False, True])
+def test_a_strip_with_one_side_has_its_normals_at_the_seam(cut, random):
+    """The faces of a Möbius strip cannot all be wound alike, and cancel where they are not."""
+    count, rows = 60, 7
+    u, v = np.meshgrid(2 * np.pi * np.arange(count) / count, np.linspace(-0.4, 0.4, rows))
+    radius, along = 1 + v * np.cos(u / 2), np.arange(count * rows).reshape(rows, count)
+    points = np.stack([radius * np.cos(u), radius * np.sin(u), v * np.sin(u / 2)], axis=-1)
+    radial = np.stack([np.cos(u), np.sin(u), 0 * u], axis=-1)
+    across = np.cos(u / 2)[..., np.newaxis] * radial
+    across[..., 2] = np.sin(u / 2)
+    turn = -v[..., np.newaxis] / 2 * np.sin(u / 2)[..., np.newaxis] * radial
+    turn += radius[..., np.newaxis] * np.stack([-np.sin(u), np.cos(u), 0 * u], axis=-1)
+    turn[..., 2] = v / 2 * np.cos(u / 2)
+    exact = np.cross(turn, across).reshape(-1, 3)
+    exact /= np.linalg.norm(exact, axis=1, keepdims=True)
+    wide = np.concatenate([along, along[::-1, :1]], axis=1)
+    corners = [wide[:-1, :-1], wide[:-1, 1:], wide[1:, 1:], wide[1:, :-1]]
+    faces = random.permutation(np.stack(corners, axis=-1).reshape(-1, 4))
+    mesh = pv.PolyData.from_regular_faces(points.reshape(-1, 3), faces)
+    found = normals.computed_normals(mesh.triangulate() if cut else mesh)
+    assert np.abs(np.einsum("ij,ij->i", found.vectors, exact)).min() > np.cos(np.radians(8))
+    assert np.all(found.open == 1)
+
+
 def test_a_closed_surface_wound_at_random_has_an_outer_side():
     ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
     ball.point_data.clear()

@@ -23,20 +23,23 @@ if TYPE_CHECKING:
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
 #: little more than rounding: it counts the less.
 FLAT = 1e-3
+#: Weight of a corner without an angle, which is at the place of the next one.
+LEAST = 1e-12
 #: Number of corners that are worked on at once.
 CORNERS = 1 << 17
 
 
 def surface_normals(surface: vtkPolyData) -> Array:
     """Return the normals of a surface as its faces are wound; see :func:`corner_normals`."""
-    points = places(surface)
-    if surface.GetNumberOfStrips():
-        return corner_normals(points, [triangles(surface)])
-    return corner_normals(points, _by_size(*connectivity(surface.GetPolys())))
+    return corner_normals(places(surface), corners_by_size(surface))
 
 
-def _by_size(ids: Indices, ends: Indices) -> Iterator[Indices]:
+def corners_by_size(surface: vtkPolyData) -> Iterator[Indices]:
     """Yield the corners of the faces that have equally many, shape (m, s)."""
+    if surface.GetNumberOfStrips():
+        yield triangles(surface)
+        return
+    ids, ends = connectivity(surface.GetPolys())
     size = np.diff(ends)
     for s in np.unique(size):
         if len(ids) == s * len(size):
@@ -49,9 +52,9 @@ def corner_normals(points: NDArray[np.generic], faces: Iterator[Indices] | list[
     """Return the normals of points, by the corners of the faces around each.
 
     Each corner has a normal, across both its sides, and counts by its angle over the square root of
-    the mean length of its sides. By angles alone (Thuermer and Wuethrich) the normals do not depend
-    on how a plane is cut into triangles. By lengths what is near counts more: Max's weights do so
-    far more, and are exact for points on a ball, but bend planes beside narrow strips.
+    the geometric mean of their lengths. By angles alone (Thuermer and Wuethrich) the normals do not
+    depend on how a plane is cut into triangles. By lengths what is near counts more: Max's weights
+    do so far more, and are exact for points on a ball, but bend planes beside narrow strips.
 
     Parameters
     ----------
@@ -117,7 +120,11 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
             # The angle of the corner, exact for sharp and for blunt ones.
             weight = np.arctan2(size, kernels.dot(ahead, behind))
-            weight *= height / (roots[i] * before[2][i])
+            near = roots[i] * before[2][i]
+            weight *= height / near
+            # A corner at the place of the next has no angle: it counts where nothing else does.
+            same = near == 0
+            weight[same] = LEAST * height[same] / np.sqrt(np.sqrt(longest[same]))
             weight[~np.isfinite(weight)] = 0
             for k in range(3):
                 # Faster than np.add.at, as long as a block has points near each other.

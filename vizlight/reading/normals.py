@@ -26,7 +26,13 @@ from vizlight.reading.cells import (
     triangles,
     used,
 )
-from vizlight.reading.corners import common_normals, joined, surface_normals
+from vizlight.reading.corners import (
+    common_normals,
+    corner_normals,
+    corners_by_size,
+    joined,
+    surface_normals,
+)
 from vizlight.reading.hull import dimension, outer_surface, scattered
 from vizlight.reading.orientation import (
     MOST_LEAN,
@@ -451,6 +457,7 @@ def computed_normals(
         if sides:
             lean = survey.lean if first is None else survey.lean[first]
             side = sides_of(vectors, shape.piece, border) if told is None else told.number
+            side = np.where(shape.inside_out, 1, side)
             sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
     number = side[shape.piece]
     if origin is not None:
@@ -491,7 +498,10 @@ def wound_normals(
             outer = finite_faces(surface, side == 0)
             surface = outer if has_faces(outer) else surface
     shape = Shape(surface, Owners(starts, origin), side)
-    vectors = surface_normals(_wound(surface, shape, as_wound=as_wound))
+    wound = _wound(surface, shape, as_wound=as_wound)
+    vectors = surface_normals(wound)
+    if shape.seam.any() and not as_wound:
+        _mend_seams(wound, shape, vectors)
     # Isosurfaces have points a rounding apart; each would have the normal of its own sliver.
     first = joined(shape.points, surface)
     if first is not None:
@@ -499,6 +509,27 @@ def wound_normals(
         vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
         shape.triangles = first[shape.triangles]
     return shape, vectors, first, origin
+
+
+def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
+    """Make normals anew where faces around a point have no common side, as on a Möbius strip.
+
+    The others take the side of the first.
+    """
+    fans = []
+    for rows in corners_by_size(surface):
+        corners = np.stack([np.roll(rows, -i, axis=1).ravel() for i in (0, 1, -1)])
+        fans.append(corners[:, shape.seam[corners[0]]])
+    fan = np.concatenate(fans, axis=1)
+    at, ahead, behind = (shape.points[ends].T.astype(np.float64) for ends in fan)
+    across = kernels.unit(kernels.cross(ahead - at, behind - at))[0]
+    _, first, number = np.unique(fan[0], return_index=True, return_inverse=True)
+    turned = kernels.dot(across, across[:, first[number]]) < 0
+    fan[1:, turned] = fan[:0:-1, turned]
+    apart = np.arange(fan[1:].size).reshape(2, -1) + len(first)
+    points = shape.points[np.concatenate([fan[0, first], *fan[1:]])]
+    found = corner_normals(points, [np.stack([number, *apart], axis=1)])
+    vectors[fan[0, first]] = found[: len(first)]
 
 
 def is_scan(mesh: Dataset) -> bool:

@@ -156,10 +156,14 @@ class Shape:
         self._note_folded([part.folded() for part in edges])
 
     def _note_folded(self, folded: list[Indices]) -> None:
-        """Note the pieces whose faces have no common side, as in a Klein bottle."""
+        """Note the pieces whose faces have no common side, as in a Klein bottle, and where."""
         self.inside_out = np.zeros(self.count, dtype=np.bool_)
+        self.seam = np.zeros(len(self.points), dtype=np.bool_)
         for ends in folded:
             self.inside_out[self.piece[ends]] = True
+            self.seam[ends] = True
+        if self.same is not None:
+            self.seam = self.seam[self.same]
 
     @cached_property
     def frame(self) -> tuple[Array, Array]:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 #: Number of directions in which the outermost normals of a piece are searched for, and number of
 #: normals up to which all are taken.
 AROUND = 64
+#: Share of what normals at common points say that is enough to tell that two pieces agree.
+CLEAR = 0.8
 
 
 class Look(NamedTuple):
@@ -216,13 +218,15 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
     twice = np.flatnonzero(places[order[1:]] == places[order[:-1]])
     one, other = order[twice], order[twice + 1]
     pairs, number = np.unique(at[one] * total + at[other], return_inverse=True)
-    agree = np.bincount(number, kernels.dot(along[one].T, along[other].T), len(pairs)) >= 0
+    cosines = kernels.dot(along[one].T, along[other].T)
+    alike, most = (np.bincount(number, of, len(pairs)) for of in (cosines, CLEAR * abs(cosines)))
     a, b = np.divmod(pairs, max(total, 1))
-    # Each piece stands twice, the second time turned over.
-    ends = np.where(agree, b, b + total), np.where(agree, b + total, b)
-    # Two that agree are joined as they are, two that do not with one turned over. A piece that is
-    # joined with its own turned copy has no sides.
-    rows, columns = np.concatenate([a, a + total]), np.concatenate(ends)
+    # Each piece stands twice, the second time turned over; two that meet at several borders may
+    # agree at one and not at another.
+    # A piece that is joined with its own turned copy has no sides.
+    same, turned = alike >= -most, alike < most
+    rows = np.concatenate([a[same], a[same] + total, a[turned], a[turned] + total])
+    columns = np.concatenate([b[same], b[same] + total, b[turned] + total, b[turned]])
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * total, 2 * total))
     label = connected_components(graph, directed=False)[1]
     up, down = label[:total], label[total:]

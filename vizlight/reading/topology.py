@@ -96,11 +96,11 @@ class SortedEdges(NamedTuple):
     forward: Bools
 
     def folded(self) -> Indices:
-        """Return the lower ends of edges of two triangles that run along them the same way."""
+        """Return the ends of edges of two triangles that run along them the same way."""
         new = _new(self.keys)
         pair = new[:-2] & ~new[1:-1] & new[2:]
         first = np.flatnonzero(pair & (self.forward[1:] == self.forward[:-1]))
-        return ends_of(self.keys[first])[0]
+        return np.concatenate(ends_of(self.keys[first]))
 
 
 def sorted_edges(
