@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "is_degrees", "read", "seem_degrees",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "read", "seem_degrees",
     "stretch",
 ]  # fmt: skip
 
@@ -35,7 +35,7 @@ ENOUGH = (0.05, 0.5)
 RANGE = (1.0, 99.0)
 
 
-def is_degrees(mesh: pv.DataSet) -> bool:
+def _in_degrees(mesh: pv.DataSet) -> bool:
     """Return whether the x and y of a mesh are said to be in degrees."""
     return UNIT in mesh.field_data and mesh.field_data[UNIT][0] == DEGREE
 
@@ -57,7 +57,7 @@ def in_metres(mesh: DataSetT) -> DataSetT:
     pyvista.DataSet
         Copy that shares the arrays, or the mesh itself where it is not in degrees.
     """
-    if not is_degrees(mesh):
+    if not _in_degrees(mesh):
         return mesh
     x, y, _ = mesh.center
     across = METRES * math.cos(math.radians(min(max(y, -89.0), 89.0)))
@@ -115,7 +115,7 @@ def stretch(mesh: pv.DataSet) -> float:
         Mesh.
     """
     x, y, z = in_metres(mesh).bounds_size
-    return _factor(z, math.sqrt(x * y) or max(x, y)) if is_degrees(mesh) else 1.0
+    return _factor(z, math.sqrt(x * y) or max(x, y)) if _in_degrees(mesh) else 1.0
 
 
 def _factor(spread: float, side: float) -> float:
