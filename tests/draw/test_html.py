@@ -748,6 +748,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
         ({"scalars": "nothing"}, "scalars: expected .*'nothing'"),
         ({"files": 3}, "files: expected"),
         ({"title": 3}, "title: expected"),
+        ({"frames": 3}, "frames: expected"),
     ],
 )
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):

@@ -425,3 +425,19 @@ def test_point_data_are_carried_onto_bands(tangents):
     assert bands["height"].dtype == np.float32
     assert "label" not in bands.point_data
     assert ball == before
+
+
+def test_normals_of_a_volume_are_those_of_its_surface():
+    """Values per point of the volume are taken at the points that its surface has."""
+    volume = pv.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
+    volume.clear_data()
+    rows = np.asarray(volume.points) - 1.4
+    surface, scene = volume.extract_surface(algorithm="geometry"), DULL
+    at = cKDTree(volume.points).query(surface.points)[1]
+    found = isoluminance(volume, scene, levels=6, normals=rows)
+    expected = isoluminance(surface, scene, levels=6, normals=rows[at])
+    assert found["bands"].n_cells == expected["bands"].n_cells
+    lit = [np.sort(mesh["bands"]["luminance"]) for mesh in (found, expected)]
+    np.testing.assert_allclose(*lit)
+    areas = [mesh["bands"].compute_cell_sizes()["Area"].sum() for mesh in (found, expected)]
+    assert areas[0] == pytest.approx(areas[1])

@@ -159,3 +159,13 @@ def test_bad_input(case):
     make, options, words = BAD[case]
     with pytest.raises((TypeError, ValueError), match=words):
         list(vizlight.pathlines(make(), SCENE, **{"times": TIMES, "vectors": "V", **options}))
+
+
+def test_a_flow_too_fast_for_its_times_is_told():
+    """A streak is carried in 100 steps at most between two times, however long these are."""
+
+    def fast(points, time):
+        return 10 * rotation(points, time)
+
+    with pytest.warns(UserWarning, match="crosses up to .* cells between two times: streaklines"):
+        last(fast, 2, [[1.0, 0, 0]], kind="streaklines")

@@ -291,6 +291,9 @@ def test_every_piece_has_the_mask_and_the_index_is_read_by_vtk(image, tmp_path):
         out=tmp_path / "lit.pvtp",
     )  # fmt: skip
     assert len(lit.files) > 2
+    index = lit.path.read_text()
+    assert '<PPointData Scalars="luminance">' in index
+    assert "<PCellData Scalars" not in index
     whole = vizlight.read(lit.path)
     assert (whole.n_points, whole.n_cells) == (lit.points, lit.cells)
     assert whole["luminance_valid"].all()
@@ -546,6 +549,7 @@ def test_pieces_without_points_pass_as_parallel_writers_make_them(balls):
     [
         ({"source": "no/*.vtp"}, r"sources: expected a pattern that files match"),
         ({"source": "no.vtp"}, r"sources: expected a file, got 'no.vtp' \(no such file\)"),
+        ({"source": "."}, r"sources: expected a file, got '\.' \(a folder\); name its files, as"),
         ({"source": []}, r"sources: expected at least one piece"),
         ({"source": 3}, r"sources: expected paths"),
         ({"source": [3]}, r"sources: expected a path"),

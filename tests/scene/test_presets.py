@@ -151,3 +151,12 @@ def test_a_preset_in_a_filter_with_its_defaults(random):
     assert again == scene
     assert [light.is_headlight for light in again.lights] == [False] * 3 + [True]
     assert scene.lights[0] == Light(**again.to_dict()["lights"][0])
+
+
+def test_the_lamps_of_the_ring_go_round_from_above_as_hues_do():
+    """The first lamp is above the picture's centre; hues follow counter-clockwise."""
+    ring = lamps_of(presets.direction(View(direction=(0, 0, 1))))[:3]
+    azimuths = [np.degrees(np.arctan2(d[1], d[0])) % 360 for d, _ in ring]
+    np.testing.assert_allclose(azimuths, [90, 210, 330], atol=1e-9)
+    for (_, own), color in zip(ring, hues(3, 0.6), strict=True):
+        np.testing.assert_allclose(own / own.sum(), color / color.sum(), atol=1e-12)

@@ -264,3 +264,12 @@ def test_cells_of_what_a_filter_lights():
     assert inputs.cells().shape == (4, 3)
     line = pv.MultipleLines([[0, 0, 0], [1, 0, 0], [1, 1, 0]])
     assert inputs_of(line, "", SCENE, LightOptions()).cells().tolist() == [[0, 1], [1, 2]]
+
+
+def test_rows_of_no_length_are_no_unit_vectors():
+    rows = np.zeros((3, 3))
+    assert not between.are_unit(rows)
+    rows[1, 2] = 1
+    assert between.are_unit(rows)
+    rows[2, 0] = 2
+    assert not between.are_unit(rows)
