@@ -1,0 +1,112 @@
+"""GeoTIFF and other rasters: heights, holes and places, or an error; never other numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+
+rasterio = pytest.importorskip("rasterio")
+from rasterio.crs import CRS  # noqa: E402
+from rasterio.transform import Affine  # noqa: E402
+
+NORTH_UP = Affine(30, 0, 4e5, 0, -20, 5.3e6)
+HEIGHTS = np.add.outer(100.0 * np.arange(20), np.arange(40.0))
+
+
+def written(path, rows, transform=NORTH_UP, crs=32633, **options):
+    rows = np.atleast_3d(rows.T).T
+    with rasterio.open(
+        path, "w", height=rows.shape[1], width=rows.shape[2], count=len(rows), dtype=rows.dtype,
+        transform=transform, crs=crs and CRS.from_epsg(crs), **options,
+    ) as file:  # fmt: skip
+        file.write(rows)
+    return path
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "int16", "uint16", "int32", "float32", "float64"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"compress": "deflate"},
+        {"compress": "lzw", "predictor": 2},
+        {"tiled": True, "blockxsize": 16, "blockysize": 16, "compress": "lzw"},
+        {"nodata": 7},
+    ],
+    ids=lambda options: ",".join(options) or "plain",
+)
+def test_every_pixel_has_its_height_and_its_place(dtype, options, tmp_path):
+    if options.get("predictor") and dtype.startswith("float"):
+        options = options | {"predictor": 3}
+    heights = np.floor(HEIGHTS / 8).astype(dtype) if dtype == "uint8" else HEIGHTS.astype(dtype)
+    mesh = vizlight.read(written(tmp_path / "a.tif", heights, **options))
+    assert isinstance(mesh, pv.ImageData)
+    column, row = ((mesh.points[:, :2] - (4e5, 5.3e6)) / (30, -20) - 0.5).round(6).T
+    expected = heights[row.astype(int), column.astype(int)].astype(float)
+    if "nodata" in options:
+        expected[expected == 7] = np.nan
+    np.testing.assert_array_equal(mesh["elevation"], expected)
+    assert mesh.field_data["unit"][0] == "metre"
+    assert CRS.from_wkt(mesh.field_data["crs"][0]).to_epsg() == 32633
+
+
+def test_a_rotated_raster_stays_rotated(tmp_path):
+    c, s = np.cos(0.35), np.sin(0.35)
+    turn = Affine(30 * c, 20 * s, 4e5, 30 * s, -20 * c, 5.3e6)
+    mesh = vizlight.read(written(tmp_path / "a.tif", HEIGHTS, turn))
+    assert isinstance(mesh, pv.StructuredGrid)
+    x, y, _ = mesh.points[mesh["elevation"].argmax()]
+    np.testing.assert_allclose(x - 4e5, 30 * c * 39.5 + 20 * s * 19.5)
+    np.testing.assert_allclose(y - 5.3e6, 30 * s * 39.5 - 20 * c * 19.5)
+    # Its heights are those of the array, not the z of the level grid.
+    sun = vizlight.Scene(lights=vizlight.Light(direction=(-1, 0, 0.3)))
+    assert np.ptp(vizlight.relief_shadow(mesh, sun)["t"]) > 0.01
+
+
+def test_bands_and_colours_have_their_names(tmp_path):
+    bands = np.stack([HEIGHTS, HEIGHTS / 2]).astype(np.float32)
+    assert vizlight.read(written(tmp_path / "a.tif", bands)).point_data.keys() == [
+        "band_1",
+        "band_2",
+    ]
+    with rasterio.open(tmp_path / "a.tif", "r+") as file:
+        file.set_band_description(1, "depth")
+        file.scales, file.offsets = (0.5, 1), (10, 0)
+    mesh = vizlight.read(tmp_path / "a.tif")
+    assert mesh.point_data.keys() == ["depth", "band_2"]
+    assert mesh["depth"].max() == HEIGHTS.max() / 2 + 10
+    colors = np.stack([HEIGHTS % 250, HEIGHTS % 200, HEIGHTS % 100]).astype(np.uint8)
+    picture = vizlight.read(written(tmp_path / "b.tif", colors, photometric="rgb"))
+    assert picture.point_data.keys() == ["rgb"]
+    assert picture["rgb"].shape == (800, 3)
+
+
+@pytest.mark.filterwarnings("ignore:The given matrix is equal")
+def test_degrees_are_found_by_the_reference_system_or_by_steep_heights(tmp_path):
+    degrees = Affine(1 / 1200, 0, 11, 0, -1 / 1200, 60)
+    told = vizlight.read(written(tmp_path / "a.tif", HEIGHTS, degrees, 4326))
+    seen = vizlight.read(written(tmp_path / "b.tif", HEIGHTS, degrees, None))
+    pixels = vizlight.read(written(tmp_path / "c.tif", HEIGHTS, Affine.identity(), None))
+    assert [mesh.field_data.get("unit", [""])[0] for mesh in (told, seen, pixels)] == [
+        "degree", "degree", "",
+    ]  # fmt: skip
+    # The first row of a picture is its top.
+    assert pixels.points[pixels["elevation"].argmin(), 1] == 19.5
+
+
+def test_a_grid_of_ascii(tmp_path):
+    path = tmp_path / "a.asc"
+    path.write_text(
+        "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9\n1 2 3\n4 -9 6\n"
+    )
+    mesh = vizlight.read(path)
+    np.testing.assert_array_equal(mesh["elevation"], [4, np.nan, 6, 1, 2, 3])
+    assert tuple(mesh.origin[:2]) == (11, 21)
+
+
+def test_complex_numbers_are_no_heights(tmp_path):
+    with pytest.raises(vizlight.files.FileError, match="no band of numbers"):
+        vizlight.read(written(tmp_path / "a.tif", HEIGHTS.astype(np.complex64)))
