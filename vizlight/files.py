@@ -39,8 +39,8 @@ from vizlight.mesh import (
     series,
     short_files,
 )
-from vizlight.reading.cells import check_whole
-from vizlight.reading.topology import place_numbers
+from vizlight.vtk.cells import check_whole
+from vizlight.vtk.topology import place_numbers
 
 try:
     import fcntl

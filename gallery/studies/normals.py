@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from studies import Row, Study, take_turns
-from vizlight.reading.corners import surface_normals
+from vizlight.vtk.corners import surface_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,7 +18,7 @@ from lamps import SHINY, shiny
 import vizlight
 from vizlight import Light, Material, Scene, View
 from vizlight.files import FileError
-from vizlight.reading.corners import surface_normals
+from vizlight.vtk.corners import surface_normals
 
 FAR = Light(direction=(1, 0.9, 0.5))
 #: Folder with the npm package gltf-validator: that of the viewer's recipe, or of a variable.

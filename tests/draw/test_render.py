@@ -19,7 +19,7 @@ from lamps import HEADLIT, SHINY, shiny
 import vizlight
 from vizlight import Light, Material, Scene, View, render
 from vizlight.draw import backends
-from vizlight.reading import polylines
+from vizlight.vtk import polylines
 
 pytestmark = pytest.mark.opengl
 

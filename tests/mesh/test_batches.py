@@ -10,10 +10,11 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import Light, Material, Scene, View, reading
+from vizlight import Light, Material, Scene, View
 from vizlight.mesh import batches, normals
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
+from vizlight.vtk import normals as vtk_normals
 
 LIGHTS = [Light(direction=(0.3, 0.2, 1)), Light(position=(1, 5, 2))]
 SCENE = Scene(lights=LIGHTS, view=View(position=(3, 2, 9)))
@@ -204,7 +205,7 @@ def test_small_meshes_keep_no_normals_and_are_joined_again():
 def test_joined_meshes_are_lit_by_one_run(make, monkeypatch):
     """Runs and normals, not meshes, take the time."""
     counts = []
-    for module, name in ((engine, "run"), (reading.normals, "computed_normals")):
+    for module, name in ((engine, "run"), (vtk_normals, "computed_normals")):
         counts.append(Mock(side_effect=getattr(module, name)))
         monkeypatch.setattr(module, name, counts[-1])
     options = {"tangents": "V"} if make is vectors else {}

@@ -8,8 +8,9 @@ import pyvista as pv
 from lamps import SHINY, shiny
 
 import vizlight
-from vizlight import Light, Scene, View, illuminate, reading
+from vizlight import Light, Scene, View, illuminate
 from vizlight.mesh import normals
+from vizlight.vtk import normals as vtk_normals
 
 HEAD = Scene(lights=Light.headlight(), view=View(position=(2.0, 3.0, 4.0)), material=SHINY)
 MATTE = shiny(specular=0)
@@ -225,7 +226,7 @@ def test_light_again_takes_the_normals_that_stayed(kind, monkeypatch, tmp_path):
     again = pv.read(tmp_path / f"lit.{suffix}")
     other = HEAD.replace(view=View(position=(-3, 1, -4)))
     expected = illuminate(mesh, other)
-    monkeypatch.setattr(reading.normals, "computed_normals", None)
+    monkeypatch.setattr(vtk_normals, "computed_normals", None)
     for start in (lit, again):
         found = illuminate(start, other)
         for block, own in zip(
@@ -279,7 +280,7 @@ def test_vertices_and_lines_do_not_change_where_faces_are_split():
     scene = Scene(
         lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
     )
-    ours, others = (reading.normals.computed_normals(surface).vectors for surface in (mesh, plain))
+    ours, others = (vtk_normals.computed_normals(surface).vectors for surface in (mesh, plain))
     np.testing.assert_array_equal(ours, others)
     lit = vizlight.illuminate(mesh, scene, feature_angle=30)
     assert (lit.n_verts, lit.n_lines) == (7, 20)

@@ -9,7 +9,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Scene, View
 from vizlight.mesh.normals import split_faces, welded
-from vizlight.reading import cells, normals, orientation, topology
+from vizlight.vtk import cells, normals, orientation, topology
 
 
 def plain(mesh):

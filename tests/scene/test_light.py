@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import Light, Scene, View
-from vizlight.scene.vtk import lights_of
+from vizlight.scene.conversion import lights_of
 
 
 def test_plain_values():

@@ -21,10 +21,10 @@ from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
-from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Material, Scene
 from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,9 +17,9 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_of, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
-from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene, View
+from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.cells import has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -27,9 +27,9 @@ from vizlight.filters.key import TEXTS, preset_of
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks
 from vizlight.mesh.polylines import backdrop
-from vizlight.reading.normals import is_scan
 from vizlight.scene import Scene
 from vizlight.shading.results import DEFAULT_NAME
+from vizlight.vtk.normals import is_scan
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

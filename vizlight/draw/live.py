@@ -14,8 +14,8 @@ from vizlight.filters import relight
 from vizlight.filters.tint import are_colors, values_of
 from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene, View
+from vizlight.scene.conversion import is_light_kit, lights_of
 from vizlight.scene.light import default_lights
-from vizlight.scene.vtk import is_light_kit, lights_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

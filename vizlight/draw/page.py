@@ -19,8 +19,8 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.filters.key import TEXTS
 from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
+from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
-from vizlight.scene.vtk import lights_of
 from vizlight.shading.display import NO_DATA_NAME, numerals
 
 if TYPE_CHECKING:

@@ -16,12 +16,12 @@ from vizlight.filters import lighting
 from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
-from vizlight.reading import polylines
+from vizlight.scene.conversion import LARGEST_POWER
 from vizlight.scene.light import NO_ATTENUATION, WHITE
-from vizlight.scene.vtk import LARGEST_POWER
 from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, displayable, on_colors
 from vizlight.shading.inputs import Layout
+from vizlight.vtk import polylines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -27,10 +27,10 @@ from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
-from vizlight.reading import polylines
-from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
+from vizlight.vtk import polylines
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -17,14 +17,14 @@ from vizlight.mesh import blocks, normals, records
 from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
-from vizlight.reading.arrays import GridPoints
-from vizlight.reading.cells import GHOSTS
-from vizlight.reading.normals import Sided, computed_normals, piece_numbers
-from vizlight.reading.orientation import MANY_SHARP, SHARP
-from vizlight.reading.parts import uses_normals
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.display import NO_DATA, displayable, on_colors
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.arrays import GridPoints
+from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.normals import Sided, computed_normals, piece_numbers
+from vizlight.vtk.orientation import MANY_SHARP, SHARP
+from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:
     from vizlight._types import Indices, Keywords

@@ -18,7 +18,6 @@ from vizlight.mesh.normals import NORMALS, onlooker, split_where_computed, with_
 from vizlight.mesh.sky import in_medium
 from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
-from vizlight.reading.arrays import vectors_of
 from vizlight.scene import Material, Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
@@ -30,6 +29,7 @@ from vizlight.shading.options import (
     checked_bundle,
     named,
 )
+from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,10 +11,10 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import batches, blocks, bundles, normals, refining
-from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.parts import occluded, uses_normals
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions, named
+from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.parts import occluded, uses_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
-    from vizlight.reading.normals import Sided, Told
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
+    from vizlight.vtk.normals import Sided, Told
 
 
 @named

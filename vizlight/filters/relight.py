@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from vizlight._types import Given, Keywords
-    from vizlight.reading.normals import Sided
     from vizlight.scene import View
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Facing, ShadingOptions
+    from vizlight.vtk.normals import Sided
 
 #: Share of the points whose light may differ from the record, such as those on the rim of a cut.
 CHANGED = 0.05

@@ -16,13 +16,13 @@ from vizlight.geometry.relief.sky import LARGEST, LEAST
 from vizlight.mesh import blocks, normals, records, splitting
 from vizlight.mesh.sky import VOXELS, skies
 from vizlight.model import kernels
-from vizlight.reading.cells import places, point_data
-from vizlight.reading.normals import computed_normals
-from vizlight.reading.orientation import SHARP
-from vizlight.reading.polylines import has_lines_only
 from vizlight.shading.options import Options, check_sides, named
 from vizlight.shading.results import VALID, digest, plain
 from vizlight.verify.report import noted_sky
+from vizlight.vtk.cells import places, point_data
+from vizlight.vtk.normals import computed_normals
+from vizlight.vtk.orientation import SHARP
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

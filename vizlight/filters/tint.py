@@ -13,12 +13,12 @@ from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
 from vizlight.mesh import blocks, normals, records
-from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.cells import has_faces
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
 from vizlight.verify import report
+from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.cells import has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

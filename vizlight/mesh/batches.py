@@ -11,9 +11,8 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 from vizlight.mesh import normals, splitting
-from vizlight.reading import parts as reading
-from vizlight.reading import polylines
-from vizlight.reading.cells import (
+from vizlight.vtk import parts, polylines
+from vizlight.vtk.cells import (
     GHOSTS,
     POLYDATA,
     as_numpy,
@@ -35,11 +34,11 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Indices
-    from vizlight.reading.normals import Sided, Told
-    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
+    from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.parts import Part
 
 
 #: Largest number of points of a mesh that is joined with others, and of what they are joined to.
@@ -278,12 +277,12 @@ def part_of(
     known: Sided | None = None,
     told: Told | None = None,
 ) -> Part:
-    """Return what one mesh is lit by; see :func:`vizlight.reading.parts.part_of`.
+    """Return what one mesh is lit by; see :func:`vizlight.vtk.parts.part_of`.
 
     ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
     decides of its sides.
     """
-    part = reading.part_of(
+    part = parts.part_of(
         mesh,
         path,
         scene,

@@ -9,8 +9,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
 
 from vizlight import _check
-from vizlight.reading import hull
-from vizlight.reading.cells import check_whole, has_faces
+from vizlight.vtk import hull
+from vizlight.vtk.cells import check_whole, has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -34,7 +34,7 @@ def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
 
 
 def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
-    """Return the outer surface; see :func:`vizlight.reading.hull.outer_surface`."""
+    """Return the outer surface; see :func:`vizlight.vtk.hull.outer_surface`."""
     surface, ids = hull.outer_surface(mesh)
     return pv.PolyData(surface), ids
 

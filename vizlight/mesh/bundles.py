@@ -13,7 +13,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import blocks, records
-from vizlight.reading import polylines
+from vizlight.vtk import polylines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

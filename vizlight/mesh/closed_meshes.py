@@ -18,8 +18,8 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vizlight import _check
 from vizlight.geometry.solids import parallel_rays
 from vizlight.mesh import blocks
-from vizlight.reading.cells import faces_only, triangles
-from vizlight.reading.topology import Owners, coincident
+from vizlight.vtk.cells import faces_only, triangles
+from vizlight.vtk.topology import Owners, coincident
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,7 +13,7 @@ from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import blocks, records
-from vizlight.reading.arrays import GridPoints, points_of
+from vizlight.vtk.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices

@@ -16,7 +16,9 @@ from vizlight import _check
 from vizlight._version import __version__
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
-from vizlight.reading.cells import (
+from vizlight.scene import View
+from vizlight.shading.results import digest
+from vizlight.vtk.cells import (
     POLYDATA,
     around,
     as_numpy,
@@ -30,12 +32,10 @@ from vizlight.reading.cells import (
     point_data,
     triangles,
 )
-from vizlight.reading.hull import NUMBERS
-from vizlight.reading.normals import Sided, computed_normals, given_normals
-from vizlight.reading.orientation import MANY_SHARP, SHARP
-from vizlight.reading.topology import Owners, coincident
-from vizlight.scene import View
-from vizlight.shading.results import digest
+from vizlight.vtk.hull import NUMBERS
+from vizlight.vtk.normals import Sided, computed_normals, given_normals
+from vizlight.vtk.orientation import MANY_SHARP, SHARP
+from vizlight.vtk.topology import Owners, coincident
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,10 +14,10 @@ from vizlight._version import __version__
 from vizlight.geometry.nspace import projection, slices
 from vizlight.mesh import blocks, records
 from vizlight.model.frames import default_rtol
-from vizlight.reading import polylines
-from vizlight.reading.arrays import array_of
-from vizlight.reading.cells import connectivity, has_faces
 from vizlight.shading.results import plain
+from vizlight.vtk import polylines
+from vizlight.vtk.arrays import array_of
+from vizlight.vtk.cells import connectivity, has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

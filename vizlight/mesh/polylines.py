@@ -9,8 +9,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.mesh import blocks
-from vizlight.reading.cells import connectivity
-from vizlight.reading.polylines import has_lines_only, line_tangents
+from vizlight.vtk.cells import connectivity
+from vizlight.vtk.polylines import has_lines_only, line_tangents
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -12,9 +12,9 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight.mesh import blocks
-from vizlight.reading.arrays import is_of_cells
-from vizlight.reading.cells import as_numpy, as_vtk, cell_data, field_data, point_data
 from vizlight.shading.results import digest, plain, record_key
+from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.cells import as_numpy, as_vtk, cell_data, field_data, point_data
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

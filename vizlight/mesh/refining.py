@@ -11,9 +11,9 @@ import numpy as np
 from vizlight import _check
 from vizlight.mesh import records, splitting
 from vizlight.mesh.splitting import Cells
-from vizlight.reading.cells import field_data, has_faces
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, interpolated, random_places
+from vizlight.vtk.cells import field_data, has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.reading.parts import Part
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
+    from vizlight.vtk.parts import Part
 
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
 MANY = 1_000_000

@@ -14,7 +14,7 @@ from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
 from vizlight.mesh import blocks
-from vizlight.reading.arrays import vectors_of
+from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
 from vizlight.mesh import blocks, series
-from vizlight.reading.cells import cell_arrays, connectivity
+from vizlight.vtk.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,11 +13,11 @@ from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import blocks, bundles, georeference, normals, sky_rays
 from vizlight.mesh.height_grids import Grid, heights_of
-from vizlight.reading import polylines
-from vizlight.reading.cells import GHOSTS, faces_only, has_faces, triangles
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
 from vizlight.verify import between
+from vizlight.vtk import polylines
+from vizlight.vtk.cells import GHOSTS, faces_only, has_faces, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -12,9 +12,9 @@ from vizlight import _check
 from vizlight._version import __version__
 from vizlight.mesh import blocks, normals, records
 from vizlight.model import kernels
-from vizlight.reading import polylines
-from vizlight.reading.cells import connectivity, has_faces
 from vizlight.verify.between import Places, are_unit
+from vizlight.vtk import polylines
+from vizlight.vtk.cells import connectivity, has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

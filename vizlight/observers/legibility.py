@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Vector
     from vizlight.filters.tint import ColorMap
     from vizlight.observers.samples import Part, Sample
-    from vizlight.scene.vtk import AnyView
+    from vizlight.scene.conversion import AnyView
     from vizlight.shading.options import Exponent, Model
 
 #: Standard deviation of the noise of each channel.

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkPoints
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.scene.vtk import AnyView
+    from vizlight.scene.conversion import AnyView
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
 

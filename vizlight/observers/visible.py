@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from vizlight.draw.backends import window_class
-from vizlight.reading.cells import as_numpy, as_vtk
+from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

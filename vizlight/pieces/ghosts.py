@@ -8,8 +8,8 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
-from vizlight.reading.cells import GHOSTS
-from vizlight.reading.topology import place_numbers
+from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.topology import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

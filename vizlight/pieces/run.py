@@ -25,12 +25,12 @@ from vizlight.mesh import normals
 from vizlight.pieces import task
 from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
 from vizlight.pieces.workers import RETRIES, Work
-from vizlight.reading import sides
-from vizlight.reading.orientation import SHARP
 from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions, unknown_option
 from vizlight.shading.results import unlit
 from vizlight.verify import report
+from vizlight.vtk import sides
+from vizlight.vtk.orientation import SHARP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from vizlight.pieces.sources import Piece
     from vizlight.pieces.task import Found, Job
     from vizlight.pieces.workers import Map
-    from vizlight.reading.normals import Told
+    from vizlight.vtk.normals import Told
 
 
 @dataclass(frozen=True)

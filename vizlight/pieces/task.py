@@ -16,13 +16,13 @@ from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import normals, records
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.sources import INDEX, SUFFIX, PieceError
-from vizlight.reading import hull, sides
-from vizlight.reading.parts import uses_normals
-from vizlight.reading.polylines import has_lines_only
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
+from vizlight.vtk import hull, sides
+from vizlight.vtk.parts import uses_normals
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Given
     from vizlight.pieces.sources import Piece
-    from vizlight.reading.normals import Told
+    from vizlight.vtk.normals import Told
 
 T = TypeVar("T")
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight import _check
-from vizlight.scene import vtk
+from vizlight.scene import conversion
 from vizlight.scene.keywords import keywords_only
 
 if TYPE_CHECKING:
@@ -72,8 +72,8 @@ class Material:
     def to_property(
         self,
         *,
-        lights: vtk.Lights = None,
-        view: vtk.AnyView = None,
+        lights: conversion.Lights = None,
+        view: conversion.AnyView = None,
         model: str = "phong",
     ) -> pv.Property:
         """Return the ``pyvista.Property`` with which VTK shows the highlight of this material.
@@ -113,7 +113,7 @@ class Material:
         the eye to be at the position of the camera **even in parallel projection**. The
         equivalent scene in vizlight then has a perspective view, or the camera is far away.
         """
-        values = vtk.MaterialValues(
+        values = conversion.MaterialValues(
             ambient=self.ambient,
             diffuse=self.diffuse,
             specular=self.specular,
@@ -121,7 +121,7 @@ class Material:
             color=self.color,
             specular_color=self.specular_color,
         )
-        return vtk.to_property(values, lights=lights, view=view, model=model)
+        return conversion.to_property(values, lights=lights, view=view, model=model)
 
     @classmethod
     def from_property(
@@ -129,8 +129,8 @@ class Material:
         source: vtkProperty,
         /,
         *,
-        lights: vtk.Lights = None,
-        view: vtk.AnyView = None,
+        lights: conversion.Lights = None,
+        view: conversion.AnyView = None,
         model: str = "phong",
     ) -> Material:
         """Return the material of a VTK property; the inverse of :meth:`to_property`.
@@ -156,4 +156,4 @@ class Material:
         UserWarning
             If the ambient and diffuse colours differ; the diffuse colour is used for both.
         """
-        return cls(**vtk.property_values(source, lights=lights, view=view, model=model))
+        return cls(**conversion.property_values(source, lights=lights, view=view, model=model))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 
 from vizlight import _check
-from vizlight.scene import vtk
+from vizlight.scene import conversion
 from vizlight.scene.keywords import keywords_only
 from vizlight.scene.light import Light
 from vizlight.scene.material import Material
@@ -28,9 +28,9 @@ __all__ = ["Scene"]
 class SceneKeywords(TypedDict, total=False):
     """The fields of a scene, as its keyword arguments."""
 
-    lights: vtk.Lights
+    lights: conversion.Lights
     material: Material | None
-    view: vtk.AnyView
+    view: conversion.AnyView
     ambient_intensity: float
     ambient_color: ColorLike | None
     depth_cue: DepthCue | None
@@ -77,14 +77,14 @@ class Scene:
     def __init__(
         self,
         *,
-        lights: vtk.Lights = None,
+        lights: conversion.Lights = None,
         material: Material | None = None,
-        view: vtk.AnyView = None,
+        view: conversion.AnyView = None,
         ambient_intensity: float = 1.0,
         ambient_color: ColorLike | None = None,
         depth_cue: DepthCue | None = None,
     ) -> None:
-        lights, view = vtk.all_lights(lights, view), as_view(view)
+        lights, view = conversion.all_lights(lights, view), as_view(view)
         _check.instance("material", material, Material, optional=True)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
         _check.set_fields(
@@ -240,13 +240,13 @@ class Scene:
             )
         camera, own_view = plotter.camera, "view" not in fields
         fields.setdefault("view", View.from_camera(camera))
-        fields.setdefault("lights", list(vtk.lights_of(renderer.GetLights(), camera)))
+        fields.setdefault("lights", list(conversion.lights_of(renderer.GetLights(), camera)))
         if actor is not None:
             if "material" in fields:
                 raise ValueError(_check.message("material", "an actor alone", "both"))
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
-            if own_view and vtk.vtk_model(vtk.all_lights(lights, view)) == "blinn":
+            if own_view and conversion.vtk_model(conversion.all_lights(lights, view)) == "blinn":
                 own = View.from_camera(camera)
                 fields["view"] = dataclasses.replace(own, parallel=True)
         return cls(**fields)
@@ -276,7 +276,9 @@ def as_scene(scene: Scene | None) -> Scene:
     return Scene() if scene is None else scene
 
 
-def _of_actor(actor: pv.Actor, lights: vtk.Lights, view: vtk.AnyView, model: str) -> Material:
+def _of_actor(
+    actor: pv.Actor, lights: conversion.Lights, view: conversion.AnyView, model: str
+) -> Material:
     """Return the material of an actor; where data colour it, without a colour of its own."""
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if mapper is None or not hasattr(actor, "GetProperty"):

@@ -13,14 +13,14 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
-from vizlight.reading.cells import GHOSTS, as_vtk, check_whole
-from vizlight.reading.parts import Part, part_of, uses_normals
 from vizlight.scene import Scene
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, named
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
+from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
+from vizlight.vtk.parts import Part, part_of, uses_normals
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 
 import vizlight
 from vizlight.mesh.normals import split_edges
-from vizlight.reading import corners
-from vizlight.reading.corners import corner_normals, surface_normals
-from vizlight.reading.normals import computed_normals
+from vizlight.vtk import corners
+from vizlight.vtk.corners import corner_normals, surface_normals
+from vizlight.vtk.normals import computed_normals
 
 
 def off(found, exact):

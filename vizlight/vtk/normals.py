@@ -13,9 +13,9 @@ from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
-from vizlight.reading import hull
-from vizlight.reading.arrays import vectors_of
-from vizlight.reading.cells import (
+from vizlight.vtk import hull
+from vizlight.vtk.arrays import vectors_of
+from vizlight.vtk.cells import (
     as_numpy,
     as_vtk,
     connectivity,
@@ -26,15 +26,15 @@ from vizlight.reading.cells import (
     triangles,
     used,
 )
-from vizlight.reading.corners import (
+from vizlight.vtk.corners import (
     common_normals,
     corner_normals,
     corners_by_size,
     joined,
     surface_normals,
 )
-from vizlight.reading.hull import dimension, outer_surface, scattered
-from vizlight.reading.orientation import (
+from vizlight.vtk.hull import dimension, outer_surface, scattered
+from vizlight.vtk.orientation import (
     MOST_LEAN,
     SHARP,
     PartShape,
@@ -43,7 +43,7 @@ from vizlight.reading.orientation import (
     crease_share,
     sides_of,
 )
-from vizlight.reading.topology import (
+from vizlight.vtk.topology import (
     Owners,
     edge_numbers,
     inner_edges,
@@ -59,10 +59,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Bools, Dataset, Foreign, Indices
-    from vizlight.reading.hull import Grid
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
+    from vizlight.vtk.hull import Grid
 
 
 #: Least number of points, where there are as many, by which the side of a height field is found.
@@ -168,7 +168,7 @@ class Sided:
 
         Faces around a point are seen until the last of them is averted where the surface is convex,
         and no longer than the first where it is concave, but by
-        :data:`~vizlight.reading.orientation.MOST_LEAN` at most. On a height field under ``"auto"``
+        :data:`~vizlight.vtk.orientation.MOST_LEAN` at most. On a height field under ``"auto"``
         all that is seen of the side that an eye sees most of is lit on that side, and what is
         seen of the other side, below a border, on the other. ``averted`` are
         :meth:`averted_fields`.
@@ -187,7 +187,7 @@ class Sided:
 
 
 class Told(NamedTuple):
-    """What the whole decides of the pieces of a part, see :mod:`vizlight.reading.sides`.
+    """What the whole decides of the pieces of a part, see :mod:`vizlight.vtk.sides`.
 
     Attributes
     ----------
@@ -399,13 +399,13 @@ def computed_normals(
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
     They are means by the corners of the faces around each point, see
-    :func:`~vizlight.reading.corners.corner_normals`, in float32. They point outward on a closed
+    :func:`~vizlight.vtk.corners.corner_normals`, in float32. They point outward on a closed
     surface and on a connected piece that is nearly closed. Any other piece has no outside: its
     normals are flipped together if on average they point away from the eye, or toward the
     centroid of the piece. Points that slivers join, with a side of at most
-    :data:`~vizlight.reading.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
+    :data:`~vizlight.vtk.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
     have them, have one normal, where their own are within
-    :data:`~vizlight.reading.orientation.SHARP` degrees of it.
+    :data:`~vizlight.vtk.orientation.SHARP` degrees of it.
 
     Parameters
     ----------

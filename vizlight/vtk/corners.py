@@ -8,8 +8,8 @@ import numpy as np
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.reading.cells import connectivity, places, triangles
-from vizlight.reading.topology import BLOCK, components
+from vizlight.vtk.cells import connectivity, places, triangles
+from vizlight.vtk.topology import BLOCK, components
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,7 +9,7 @@ from lamps import SHINY
 
 import vizlight
 from vizlight import Light, Scene, View, illuminate
-from vizlight.reading import polylines
+from vizlight.vtk import polylines
 
 SCENE = Scene(lights=Light(direction=(1, 0.4, 1)), view=View(direction=(0, 0.2, 1)), material=SHINY)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from vizlight.reading import arrays
+from vizlight.vtk import arrays
 
 
 def test_points_of_a_turned_image_with_an_extent():

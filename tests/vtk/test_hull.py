@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View
-from vizlight.reading import hull, normals
+from vizlight.vtk import hull, normals
 
 
 def test_control_points_are_not_lit():

@@ -3,7 +3,7 @@
 import numpy as np
 import pyvista as pv
 
-from vizlight.reading import sides
+from vizlight.vtk import sides
 
 
 def sheet(height):

@@ -20,8 +20,8 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 
-from vizlight.reading.arrays import points_of
-from vizlight.reading.cells import GHOSTS, as_numpy, as_vtk, connectivity, places
+from vizlight.vtk.arrays import points_of
+from vizlight.vtk.cells import GHOSTS, as_numpy, as_vtk, connectivity, places
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

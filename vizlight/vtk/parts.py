@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.reading import polylines
-from vizlight.reading.arrays import is_of_cells, named, points_of, tangents_of
-from vizlight.reading.normals import Sided, Told, Turned, sided_normals
 from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
+from vizlight.vtk import polylines
+from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
+from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,7 +54,7 @@ def part_of(
     """Return what one mesh is lit by; an error names the path of its block.
 
     With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`; with ``told`` it is a
-    part of a whole, see :mod:`vizlight.reading.sides`. Without a view both sides of an open
+    part of a whole, see :mod:`vizlight.vtk.sides`. Without a view both sides of an open
     surface are lit alike.
 
     Raises

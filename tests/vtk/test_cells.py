@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.reading import cells
+from vizlight.vtk import cells
 
 
 @pytest.mark.parametrize("far", [0.0, 1e3])

@@ -10,7 +10,7 @@ from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
 
 from vizlight import _check
 from vizlight.model import line_fields
-from vizlight.reading.cells import as_numpy, as_vtk, places
+from vizlight.vtk.cells import as_numpy, as_vtk, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection

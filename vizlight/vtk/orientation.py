@@ -9,8 +9,8 @@ import numpy as np
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.reading.cells import faces, places, triangles
-from vizlight.reading.topology import BLOCK, Owners, ends_of, sorted_edges, topology
+from vizlight.vtk.cells import faces, places, triangles
+from vizlight.vtk.topology import BLOCK, Owners, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,7 +10,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import Light, Material, Scene, View, illuminate
-from vizlight.scene.vtk import vtk_model
+from vizlight.scene.conversion import vtk_model
 
 AXIS = View(direction=(0, 0, 1))
 

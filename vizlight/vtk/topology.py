@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
-from vizlight.reading.cells import mixed, places, triangles
+from vizlight.vtk.cells import mixed, places, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,9 +10,9 @@ from scipy.sparse.csgraph import connected_components
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.reading.normals import Told, facing_of, given_normals, wound_normals
-from vizlight.reading.orientation import crease_share, middles, sides_of
-from vizlight.reading.topology import BLOCK, place_numbers
+from vizlight.vtk.normals import Told, facing_of, given_normals, wound_normals
+from vizlight.vtk.orientation import crease_share, middles, sides_of
+from vizlight.vtk.topology import BLOCK, place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,7 +40,7 @@ class Look(NamedTuple):
         Coordinate of the outermost point of each piece along x, -x, y and so on, minus infinity
         without one, and the component of its normal there.
     shown : ndarray, shape (count,)
-        Sum of :func:`~vizlight.reading.normals.facing_of`.
+        Sum of :func:`~vizlight.vtk.normals.facing_of`.
     total : ndarray, shape (count, 3)
         Sum of the normals of each piece.
     field : ndarray of bool, shape (count,)

@@ -10,7 +10,7 @@ import scipy.ndimage
 import vizlight
 from vizlight import Light, Material, Scene, View
 from vizlight.mesh.normals import onlooker, split_edges
-from vizlight.reading import normals
+from vizlight.vtk import normals
 
 
 @pytest.mark.parametrize("winding", [1, -1])

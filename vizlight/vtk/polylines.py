@@ -9,8 +9,8 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstruct
 from vtkmodules.vtkFiltersCore import vtkStripper
 
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.reading import hull
-from vizlight.reading.cells import as_vtk, connectivity, faces, has_faces, places
+from vizlight.vtk import hull
+from vizlight.vtk.cells import as_vtk, connectivity, faces, has_faces, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable

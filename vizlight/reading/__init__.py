@@ -1,1 +1,0 @@
-"""Datasets of VTK as arrays: points, tangents, normals and their sides. It needs no PyVista."""
