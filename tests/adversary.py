@@ -1,8 +1,8 @@
-"""Every public callable with adversarial values: the values, the judge, and the full walk.
+"""Every public callable with adversarial values: the judge, and the full walk.
 
     python tests/adversary.py [--seed N] [--each N] [NAME ...]
 
-``adversary_table.py`` has one valid call for each callable. One argument at a time is replaced by
+``adversary_calls.py`` has one valid call for each callable. One argument at a time is replaced by
 values that fit its kind. The call may return, if its numbers are finite or documented as marked,
 no warning but vizlight's own was issued and the inputs are unchanged; or it may raise at a
 ``raise`` of vizlight, in words that name the argument. Each callable runs in a process of its own,
@@ -16,7 +16,6 @@ import ast
 import collections
 import contextlib
 import functools
-import hashlib
 import inspect
 import json
 import os
@@ -29,7 +28,7 @@ import typing
 import warnings
 from pathlib import Path
 
-import adversary_table as table
+import adversary_calls as table
 import adversary_values as values
 import numpy as np
 import pyvista as pv
@@ -86,35 +85,22 @@ def parameters(function):
     found = {}
     for name, parameter in inspect.signature(function).parameters.items():
         text = str(parameter.annotation)
-        unpacked = re.search(r"Unpack\[(\w+)\]", text)
-        if unpacked:
-            kind = table.TYPED_DICTS[unpacked[1]]()
-            found.update({key: str(value) for key, value in annotations(kind).items()})
-        elif parameter.kind is not parameter.VAR_KEYWORD:
+        if unpacked := re.search(r"Unpack\[(\w+)\]", text):
+            for base in reversed(table.TYPED_DICTS[unpacked[1]]().__mro__):
+                for key, value in inspect.get_annotations(base).items():
+                    found[key] = getattr(value, "__forward_arg__", str(value))
+        elif parameter.kind is not parameter.VAR_KEYWORD and name not in ("self", "cls"):
             found[name] = text
-    found.pop("self", None)
-    found.pop("cls", None)
     return found
-
-
-def annotations(kind):
-    """Return the annotations of a class and its bases, as text."""
-    return {
-        key: value.__forward_arg__ if isinstance(value, typing.ForwardRef) else value
-        for base in reversed(kind.__mro__)
-        for key, value in inspect.get_annotations(base).items()
-    }
 
 
 def bound(function, given):
     """Return positional and keyword arguments of a call from arguments by name."""
     args, rest = [], dict(given)
     for name, parameter in inspect.signature(function).parameters.items():
-        if name not in rest:
-            continue
-        if parameter.kind is parameter.POSITIONAL_ONLY:
+        if name in rest and parameter.kind is parameter.POSITIONAL_ONLY:
             args.append(rest.pop(name))
-        elif parameter.kind is parameter.VAR_POSITIONAL:
+        elif name in rest and parameter.kind is parameter.VAR_POSITIONAL:
             value = rest.pop(name)
             args.extend(value if isinstance(value, tuple) else [value])
     return args, rest
@@ -122,140 +108,121 @@ def bound(function, given):
 
 def calls(name):
     """Return all calls of one callable, of which the first is the valid one."""
-    function, make = table.PUBLIC[name], table.CALLS[name]
     with new_folder():
-        valid = make()
+        valid = table.arguments(name)
+    # A method of the accessor has the arguments of a function that is walked anyway.
+    only = ("mesh", "surface", "lit", "scene") if name.startswith("accessor.") else None
     return [Call(name, "", "valid", None)] + [
         Call(name, argument, label, value)
-        for argument, text in parameters(function).items()
-        if argument in table.ONLY.get(name, (argument,))
-        for label, value in values.of(table.KINDS.get((name, argument), text), valid.get(argument))
+        for argument, text in parameters(table.PUBLIC[name]).items()
+        if only is None or argument in only
+        for label, value in values.of(table.KINDS.get(argument, text), valid.get(argument))
     ]
 
 
 def mark(value):
-    """Return a digest of all data in a value, which changes with any of them."""
-    digest = hashlib.sha256()
-    _feed(digest, value)
-    return digest.hexdigest()
-
-
-def _feed(digest, value):
+    """Return all data in a value as lists, which are others if any of them changes."""
     if isinstance(value, np.ma.MaskedArray):
-        _feed(digest, np.ma.getmaskarray(value))
-        value = value.data
+        return [mark(np.ma.getmaskarray(value)), mark(value.data)]
     if isinstance(value, np.ndarray):
-        digest.update(f"{value.shape}{value.dtype}{value.strides}{value.flags.writeable}".encode())
-        if value.dtype.kind == "O":
-            digest.update(repr(value.tolist()).encode())
-        elif value.size < 1e7:
-            digest.update(np.ascontiguousarray(value).tobytes())
-    elif isinstance(value, pv.MultiBlock):
-        for key, block in zip(value.keys(), value, strict=True):
-            _feed(digest, key)
-            _feed(digest, block)
-    elif isinstance(value, pv.DataSet):
-        _feed_mesh(digest, value)
-    elif isinstance(value, list | tuple):
-        for item in value:
-            _feed(digest, item)
-    elif isinstance(value, dict):
-        for key in value:
-            _feed(digest, key)
-            _feed(digest, value[key])
-    elif value is None or isinstance(value, str | bytes | int | float | complex):
-        with contextlib.suppress(ValueError):
-            digest.update(repr(value).encode())
-
-
-def _feed_mesh(digest, value):
-    for part in (value.point_data, value.cell_data, value.field_data):
-        for key in part:
-            digest.update(str(key).encode())
-            _feed(digest, np.asarray(part[key]))
-    _feed(digest, np.array(value.points))
-    digest.update(f"{type(value)}{value.n_cells}{value.active_scalars_name}".encode())
-    if isinstance(value, pv.PolyData):
-        for cells in (value.faces, value.lines, value.verts):
-            _feed(digest, np.array(cells))
-    elif isinstance(value, pv.UnstructuredGrid):
-        _feed(digest, np.array(value.cells))
+        form = f"{value.shape}{value.dtype}{value.strides}{value.flags.writeable}"
+        small = value.size < 1e7
+        return [
+            form,
+            repr(value.tolist()) if value.dtype.kind == "O" else small and value.tobytes(),
+        ]
+    if isinstance(value, pv.MultiBlock):
+        return [[key, mark(block)] for key, block in zip(value.keys(), value, strict=True)]
+    if isinstance(value, pv.DataSet):
+        arrays = {
+            f"{kind}{key}": np.asarray(part[key])
+            for kind, part in enumerate((value.point_data, value.cell_data, value.field_data))
+            for key in part
+        }
+        cells = [np.array(getattr(value, name, 0)) for name in ("faces", "lines", "verts", "cells")]
+        what = [str(type(value)), value.n_cells, value.active_scalars_name]
+        return [what, mark(arrays), mark(np.array(value.points)), mark(cells)]
+    if isinstance(value, list | tuple):
+        return [mark(item) for item in value]
+    if isinstance(value, dict):
+        return [[repr(key), mark(item)] for key, item in value.items()]
+    if value is None or isinstance(value, bytes | str | float | complex):
+        return repr(value)
+    # Texts of numbers of many digits are refused.
+    return value if isinstance(value, int) else None
 
 
 def unfinite(value, path="", depth=0):
     """Return the first place in a result whose numbers are not finite, or an empty text."""
-    if depth > 6:
-        return ""
-    if isinstance(value, float | np.floating) and not np.isfinite(value):
-        return path or "result"
-    if isinstance(value, np.ndarray):
-        if value.dtype.kind in "fc" and not np.isfinite(value).all():
-            return path or "result"
-        return ""
     children = {}
-    if isinstance(value, pv.MultiBlock):
-        children = {f"[{i}]": block for i, block in enumerate(value)}
-    elif isinstance(value, pv.DataSet):
+    if isinstance(value, float | np.floating | np.ndarray):
+        numbers = np.asarray(value)
+        bad = numbers.dtype.kind in "fc" and not np.isfinite(numbers).all()
+        return (path or "result") if bad else ""
+    if isinstance(value, pv.DataSet):
         children = {"points": value.points}
         children |= {f"point_data[{k}]": np.asarray(v) for k, v in value.point_data.items()}
         children |= {f"cell_data[{k}]": np.asarray(v) for k, v in value.cell_data.items()}
-    elif isinstance(value, list | tuple):
-        children = {f"[{i}]": item for i, item in enumerate(value[:50])}
+    elif isinstance(value, pv.MultiBlock | list | tuple):
+        children = {f"[{i}]": item for i, item in enumerate(value) if i < 50}
     elif isinstance(value, dict):
         children = {f"[{k}]": item for k, item in value.items()}
     elif type(value).__module__.startswith("vizlight") and not isinstance(value, type):
         children = {f".{k}": v for k, v in getattr(value, "__dict__", {}).items()}
-    for key, child in children.items():
-        found = unfinite(child, path + key, depth + 1)
-        if found:
-            return found
-    return ""
+    found = (unfinite(child, path + key, depth + 1) for key, child in children.items() if depth < 7)
+    return next(filter(None, found), "")
+
+
+@contextlib.contextmanager
+def told():
+    """Collect the warnings that are not vizlight's own."""
+    own, warn, found = set(), _check.warn, []
+
+    def noted(text, category=UserWarning):
+        own.add(str(text))
+        warn(text, category)
+
+    _check.warn = noted
+    try:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            with np.errstate(over="warn", divide="warn", invalid="warn"):
+                yield found
+    finally:
+        _check.warn = warn
+        found += [item for item in said if str(item.message) not in own]
 
 
 def judge(call):
     """Run a call and return what is wrong with it, or an empty text."""
     function = table.PUBLIC[call.name]
     with new_folder():
-        given = table.CALLS[call.name]()
+        given = table.arguments(call.name)
         if call.argument:
             given[call.argument] = values.fresh(call.value)
         args, keywords = bound(function, given)
-        if call.name in table.SELF:
-            args.insert(0, table.SELF[call.name]())
-        before, own, said = mark([args, keywords]), set(), []
-        there = {path.name for path in Path().iterdir()}
-        warn = _check.warn
-
-        def noted(text, category=UserWarning):
-            own.add(str(text))
-            warn(text, category)
-
-        _check.warn = noted
+        if (owner := table.owner(call.name)) is not None:
+            args.insert(0, owner)
+        before, there = mark([args, keywords]), set(os.listdir())
         error = result = None
         try:
-            with warnings.catch_warnings(record=True) as said:
-                warnings.simplefilter("always")
-                with np.errstate(over="warn", divide="warn", invalid="warn"), limited(LIMIT):
-                    result = _called(function, args, keywords)
+            with told() as leaked, limited(LIMIT):
+                result = _called(function, args, keywords)
         except (Exception, TooSlow) as caught:  # noqa: BLE001
             error = caught
         finally:
-            _check.warn = warn
             pv.close_all()
-        leaked = [item for item in said if str(item.message) not in own]
+        left = sorted(set(os.listdir()) - there)
         if isinstance(error, TooSlow):
             return f"takes more than {LIMIT:g} s"
         if leaked:
             first = leaked[0]
             place = f"{Path(first.filename).name}:{first.lineno}"
             return f"leaks {first.category.__name__} at {place}: {first.message}"
-        if mark([args, keywords]) != before and not table.changes(call):
+        if mark([args, keywords]) != before and call.argument != "inplace":
             return "changes its inputs"
         if error is not None:
-            left = {path.name for path in Path().iterdir()} - there
-            if left:
-                return f"raises and leaves {sorted(left)}"
-            return wrong_error(error, call, given)
+            return f"raises and leaves {left}" if left else wrong_error(error, call, given)
         place = unfinite(result)
         return f"returns numbers that are not finite at {place}" if _bad(place, call, given) else ""
 
@@ -325,8 +292,13 @@ def wrong_error(error, call, given):
         return f"raw {kind} at {place}: {text[:90]}"
     if not isinstance(error, ERRORS):
         return f"raises {kind} at {place}"
-    names = {call.argument} | table.also(call, given)
-    names |= table.ALIASES.get((call.name, call.argument), set())
+    names = {call.argument} | table.ALIASES.get(call.argument, set())
+    if call.label.startswith(("mesh:", "other:")) or call.argument == "inputs":
+        # Where a mesh lacks what other arguments ask for, the error names these; a height field
+        # names its coordinates.
+        mesh = given.get(call.argument)
+        names |= {"mesh", "z", *inspect.signature(table.PUBLIC[call.name]).parameters}
+        names |= {str(key) for key in mesh.point_data} if isinstance(mesh, pv.DataSet) else set()
     if not any(re.search(rf"(?<!\w){re.escape(name)}(?!\w)", str(error)) for name in names):
         return f"does not name the argument at {place}: {text[:90]}"
     return ""
@@ -389,7 +361,7 @@ def main():
     parser.add_argument("--seed", type=int, default=0, help="seed of the sample")
     parser.add_argument("--each", type=int, default=0, help="calls of each callable; 0: all")
     asked = parser.parse_args()
-    names = [name for name in table.CALLS if name.startswith(tuple(asked.names or [""]))]
+    names = [name for name in table.PUBLIC if name.startswith(tuple(asked.names or [""]))]
     tried, failed = 0, collections.Counter()
     for name in names:
         for call, wrong in walk(name, asked.each, asked.seed):

@@ -13,18 +13,13 @@ import math
 import pkgutil
 import time
 import tracemalloc
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 from vizlight.scene import Material
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
-    from types import ModuleType
-
-Axis = Literal["parameter", "error", "cost"]
-Key = TypeVar("Key")
+    from collections.abc import Callable, Mapping
 
 #: Material with every term of the light, whose errors are measured where none other is named.
 SHINY = Material(ambient=0.1, diffuse=0.5, specular=0.4)
@@ -89,10 +84,10 @@ class Study:
     parameter: str
     error: str
     cost: str
-    steps: Callable[[bool], Sequence[Callable[[], Iterable[Row]]]]
-    axes: tuple[Axis, Axis] = ("cost", "error")
+    steps: Callable
+    axes: tuple[str, str] = ("cost", "error")
     joined: bool = True
-    curve: Callable[[Row], Curve | None] = lambda row: Curve(row.way)
+    curve: Callable = lambda row: Curve(row.way)
     diagonal: str = ""
 
 
@@ -102,9 +97,9 @@ class Result:
 
     name: str
     study: Study
-    rows: list[Row] = field(repr=False)
+    rows: list[Row]
 
-    def table(self) -> tuple[list[str], list[list[float | str]]]:
+    def table(self):
         """Return headings and lines: method, parameter, error, cost, and the further columns."""
         study = self.study
         more = list(dict.fromkeys(key for row in self.rows for key in row.more))
@@ -112,14 +107,14 @@ class Result:
         lines = [[*row[:4], *(row.more.get(key, "") for key in more)] for row in self.rows]
         return headings, lines
 
-    def write_csv(self, path: Path, /) -> Path:
+    def write_csv(self, path, /):
         """Write the table with all digits to a CSV file."""
         headings, lines = self.table()
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows([headings, *lines])
         return path
 
-    def draw(self, path: Path, /) -> Path:
+    def draw(self, path, /):
         """Draw the figure of the study to a PNG file."""
         from studies import _figure
 
@@ -127,44 +122,35 @@ class Result:
         return path
 
 
-def names() -> list[str]:
+def names():
     """Return the names of the studies."""
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if m.name[0] != "_")
 
 
-def run(name: str, study: Study, /, *, quick: bool = False) -> Result:
+def run(name, study, /, *, quick=False):
     """Run a study; a quick run measures less, within 20 s on 2 cores."""
     return Result(name, study, [row for step in study.steps(quick) for row in step()])
 
 
-def load(name: str, /) -> Study:
+def load(name, /):
     """Return the study of a name, one of :func:`names`."""
-    study: Study = importlib.import_module(f"studies.{name}").STUDY
-    return study
+    return importlib.import_module(f"studies.{name}").STUDY
 
 
-def number(value: float | str) -> str:
+def number(value):
     """Return a table cell: a number with four digits, or a string as it is."""
     if isinstance(value, str):
         return value
     return "" if math.isnan(value) else f"{value:.4g}"
 
 
-def foreign(name: str, /) -> ModuleType | None:
-    """Return a module of a package to compare with, None where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        return None
-
-
-def take_turns(ways: Mapping[Key, Callable[[], object]], repeats: int) -> dict[Key, float]:
+def take_turns(ways, repeats):
     """Return the shortest processor time in seconds of each function, of all its threads together.
 
     The functions are called in turn, so a busy machine slows all of them. The minimum of three
     or more repeats excludes the extra cost of a first call.
     """
-    times: dict[Key, float] = dict.fromkeys(ways, math.inf)
+    times = dict.fromkeys(ways, math.inf)
     for _ in range(repeats):
         for way, work in ways.items():
             start = time.process_time()
@@ -173,7 +159,7 @@ def take_turns(ways: Mapping[Key, Callable[[], object]], repeats: int) -> dict[K
     return times
 
 
-def peak_memory(work: Callable[[], object]) -> int:
+def peak_memory(work):
     """Return the peak of the bytes that Python and NumPy allocate during a call."""
     tracemalloc.start()
     try:

@@ -15,7 +15,7 @@ if __name__ == "__main__":
 import studies
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main(arguments=None):
     """Print the table of a study; write NAME.csv and the figure NAME.png."""
     parser = argparse.ArgumentParser(prog="gallery/studies", description=main.__doc__)
     parser.add_argument("name", nargs="?", choices=studies.names(), metavar="NAME")

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from studies import PIXEL, Curve, Result, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from studies import PIXEL
 
 #: Colours of Okabe and Ito, which colour-blind readers can distinguish; markers and line styles.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -18,10 +14,10 @@ MARKS, STYLES = "osD^vP*X<>", ("-", "--", ":", "-.")
 GREY = "#888888"
 
 
-def draw(result: Result) -> Figure:
+def draw(result):
     """Return the figure of a result; colour by the name of a curve, line style by its kind."""
     study = result.study
-    curves: dict[Curve, list[Row]] = {}
+    curves = {}
     for row in result.rows:
         if curve := study.curve(row):
             curves.setdefault(curve, []).append(row)
@@ -54,7 +50,7 @@ def draw(result: Result) -> Figure:
     return figure
 
 
-def _points(axes: tuple[str, str], rows: Sequence[Row]) -> list[tuple[float, float]]:
+def _points(axes, rows):
     """Return the sorted points of a curve that logarithmic axes can show."""
     pairs = [tuple(getattr(row, axis) for axis in axes) for row in rows]
     return sorted(

@@ -9,20 +9,14 @@ mean of about 0.002.
 from __future__ import annotations
 
 import time
+from collections import namedtuple
 from functools import cache, partial
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from studies import Row, Study
-from vizlight import _check
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import closed_meshes
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, Indices
 
 KINDS = ("isotropic", "aligned", "layered", "along the light", "lattice")
 #: Number of sides of a tube; its radius is such that its mean width is that of a cylinder.
@@ -36,26 +30,13 @@ ACROSS, AROUND = 8, 16
 PASS, HITS = 1e-5, 8
 
 
-class _Tubes(NamedTuple):
-    """Straight lines in the unit ball or in layers, points on them, and the tubes as triangles."""
-
-    middles: Array
-    tangents: Array
-    own: Indices
-    places: Array
-    corners: Array
+#: Straight lines in the unit ball or in layers, points on them, and the tubes as triangles.
+Tubes = namedtuple("Tubes", "middles tangents own places corners")
+#: Shares of light by rays, at points: of a far light, of a light inside, from all sides.
+Truth = namedtuple("Truth", "tubes far near around")
 
 
-class Truth(NamedTuple):
-    """Shares of light by rays, at points: of a far light, of a light inside, from all sides."""
-
-    tubes: _Tubes
-    far: Array
-    near: Array
-    around: Array
-
-
-def tubes(kind: str, points: int, *, seed: int = 3) -> _Tubes:
+def tubes(kind, points, *, seed=3):
     """Return lines of a kind, with points on them."""
     random = np.random.default_rng(seed)
     tangents = _unit(random.normal(size=(TUBES, 3)))
@@ -69,14 +50,9 @@ def tubes(kind: str, points: int, *, seed: int = 3) -> _Tubes:
         step, side = 5 * DIAMETER, int(TUBES**0.5)
         row, column = np.divmod(np.arange(TUBES), side)
         tangents = np.tile([1.0, 0, 0], (TUBES, 1))
-        middles = np.stack(
-            [
-                random.uniform(-0.2, 0.2, TUBES),
-                step * (column + row % 2 / 2),
-                step * row * 0.75**0.5,
-            ],
-            axis=1,
-        )
+        along = random.uniform(-0.2, 0.2, TUBES)
+        across = step * (column + row % 2 / 2), step * row * 0.75**0.5
+        middles = np.stack([along, *across], axis=1)
         middles -= middles.mean(axis=0)
     elif kind == "layered":
         layer = random.integers(6, size=TUBES)
@@ -88,15 +64,14 @@ def tubes(kind: str, points: int, *, seed: int = 3) -> _Tubes:
     own = random.integers(TUBES, size=points)
     along = random.uniform(-0.45, 0.45, (points, 1)) * LENGTH
     places = middles[own] + along * tangents[own]
-    return _Tubes(middles, tangents, own, places, _triangles(middles, tangents))
+    return Tubes(middles, tangents, own, places, _triangles(middles, tangents))
 
 
-def _unit(rows: Array) -> Array:
-    unit: Array = rows / np.linalg.norm(rows, axis=-1, keepdims=True)
-    return unit
+def _unit(rows):
+    return rows / np.linalg.norm(rows, axis=-1, keepdims=True)
 
 
-def _triangles(middles: Array, tangents: Array) -> Array:
+def _triangles(middles, tangents):
     """Return the triangles of open prisms, shape (T, 3, 3), 2 SIDES for each line."""
     u = _unit(np.cross(tangents, np.eye(3)[np.argmin(np.abs(tangents), axis=1)]))
     v = np.cross(tangents, u)
@@ -113,7 +88,7 @@ def _triangles(middles: Array, tangents: Array) -> Array:
 
 
 @cache
-def truth(kind: str, points: int) -> Truth:
+def truth(kind, points):
     """Return the shares of light by rays among the tubes.
 
     Raises
@@ -124,10 +99,9 @@ def truth(kind: str, points: int) -> Truth:
     made, random = tubes(kind, points), np.random.default_rng(4)
     scene = closed_meshes.embree_tree(made.corners)
     if scene is None:
-        expected = "embreex for rays (try: pip install 'vizlight[rays]')"
-        raise ImportError(_check.message("embreex", expected, "none"))
+        raise ImportError("embreex, for rays, is missing; try: pip install 'vizlight[rays]'")
 
-    def free(toward: Array, reach: Array, x: float | Array) -> Array:
+    def free(toward, reach, x):
         """Return 1 where a ray meets no tube but its own."""
         side = np.cross(toward, made.tangents[made.own])
         side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-9)
@@ -162,7 +136,7 @@ def truth(kind: str, points: int) -> Truth:
     return Truth(made, distant, near, total / weight)
 
 
-def measure(kind: str, points: int, grid: int, count: int) -> list[Row]:
+def measure(kind, points, grid, count):
     """Return the rows of a kind of lines, for a number of voxels and of directions, one of them 0.
 
     With a number of directions the light from all sides is measured, else that of two lights.
@@ -189,7 +163,7 @@ def measure(kind: str, points: int, grid: int, count: int) -> list[Row]:
     ]
 
 
-def _row(way: str, parameter: int, error: Array, true: Array, cost: float) -> Row:
+def _row(way, parameter, error, true, cost):
     more = {
         "mean share": float(true.mean()),
         "signed error": float(error.mean()),
@@ -198,7 +172,7 @@ def _row(way: str, parameter: int, error: Array, true: Array, cost: float) -> Ro
     return Row(way, parameter, abs(float(error.mean())), cost, more)
 
 
-def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+def steps(quick):
     """Return one step for each number of voxels and of directions, and each kind of lines."""
     points = 10_000 if quick else 40_000
     grids = (32, 64, 128) if quick else (16, 32, 64, 128, 192)
@@ -217,5 +191,4 @@ STUDY = Study(
     error="error of the mean share of light",
     cost="ns per point",
     steps=steps,
-    axes=("cost", "error"),
 )

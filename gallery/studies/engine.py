@@ -16,7 +16,6 @@ import sys
 import tempfile
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,11 +25,6 @@ from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.verify import reference
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Array
 
 SCENE = Scene(
     lights=Light(position=(4.0, 5.0, 6.0)), view=View(position=(0.0, 1.0, 9.0)), material=SHINY
@@ -52,18 +46,16 @@ print(abs(lit.luminance[:1000] - exact).max())
 """
 
 
-def measure(count: int, repeats: int = 5) -> list[Row]:
+def measure(count, repeats=5):
     """Return the rows of the script and of the engine, in float32 and float64."""
     exponent = brightness.exponent(1, 3)
     random = np.random.default_rng(20)
-    single: list[Array] = [random.standard_normal((count, 3), np.float32) for _ in "ptn"]
+    single = [random.standard_normal((count, 3), np.float32) for _ in "ptn"]
     exact = reference.light(single[0], single[1], SCENE, normals=single[2], exponent=exponent)
-    ways: dict[str, Callable[[], Array]] = {}
-    kinds: tuple[type[np.float32] | type[np.float64], ...] = (np.float32, np.float64)
-    for kind in kinds:
+    ways = {}
+    for kind in (np.float32, np.float64):
         name = kind.__name__
-        dtype: np.dtype[np.floating] = np.dtype(kind)
-        points, tangents, normals = (array.astype(dtype) for array in single)
+        points, tangents, normals = (array.astype(kind) for array in single)
         ways[f"NumPy script, {name}"] = partial(
             reference.light, points, tangents, SCENE, normals=normals, exponent=exponent, dtype=kind
         )
@@ -83,13 +75,13 @@ def measure(count: int, repeats: int = 5) -> list[Row]:
     return rows
 
 
-def _run(light: Callable[[], engine.Shading], fast: str) -> Array:
+def _run(light, fast):
     """Return the luminance by compiled code ("1") or by NumPy ("0")."""
     with _compiled.setting(fast):
         return light().luminance
 
 
-def first_calls(counts: Sequence[int]) -> list[Row]:
+def first_calls(counts):
     """Return the rows of first calls: by NumPy, and by compiled code made and read from disk."""
     rows = []
     compiled = [("first call, compiled", "1"), ("first call, compiled before", "1")]

@@ -9,7 +9,6 @@ filter generates the geometry of the same fibres without light. Both are timed i
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -19,15 +18,12 @@ from vizlight.draw import render
 from vizlight.filters.fur import fur
 from vizlight.scene import Light, Material, Scene, View
 
-if TYPE_CHECKING:
-    from vizlight._types import Array
-
 SEGMENTS_PER_POINT = 147
 #: Segments per fibre of the reference.
 FINE = 48
 
 
-def torus(n: int = 128, r1: float = 1.5, r2: float = 0.75) -> pv.PolyData:
+def torus(n=128, r1=1.5, r2=0.75):
     """Return a torus of n x n points with exact normals, in float32."""
     angle = np.linspace(0, 2 * np.pi, n, endpoint=False)
     u, v = np.meshgrid(angle, angle, indexing="ij")
@@ -37,15 +33,14 @@ def torus(n: int = 128, r1: float = 1.5, r2: float = 0.75) -> pv.PolyData:
     right, up = np.roll(i, -1, axis=0), np.roll(i, -1, axis=1)
     across = np.roll(right, -1, axis=1)
     faces = np.concatenate([np.stack([i, right, across], -1), np.stack([i, across, up], -1)])
-    # PyVista's type excludes arrays of float32.
-    vertices: Any = points.reshape(-1, 3).astype(np.float32)
-    mesh: pv.PolyData = pv.PolyData.from_regular_faces(vertices, faces.reshape(-1, 3))
+    vertices = points.reshape(-1, 3).astype(np.float32)
+    mesh = pv.PolyData.from_regular_faces(vertices, faces.reshape(-1, 3))
     mesh.point_data["Normals"] = normals.reshape(-1, 3).astype(np.float32)
     mesh.point_data.active_normals_name = "Normals"
     return mesh
 
 
-def scene_of(mesh: pv.PolyData) -> Scene:
+def scene_of(mesh):
     """Return the scene of the study."""
     return Scene(
         lights=Light(direction=(-1, -0.6, 0.9)),
@@ -54,31 +49,14 @@ def scene_of(mesh: pv.PolyData) -> Scene:
     )
 
 
-def fibres_of(coat: pv.MultiBlock) -> pv.PolyData:
-    """Return the fibres of a mesh with fur."""
-    fibres = coat["fibres"]
-    assert isinstance(fibres, pv.PolyData)
-    return fibres
-
-
-def along_fibres(segments: int) -> float:
+def along_fibres(segments):
     """Return the RMS error of interpolated light along fibres of a number of segments."""
     mesh = torus(32)
-    scene = scene_of(mesh)
+    cover = partial(fur, mesh, scene_of(mesh), density=0.02, fibres=2000, length=0.3)
 
-    def light(count: int) -> Array:
-        coat = fur(
-            mesh,
-            scene,
-            density=0.02,
-            fibres=2000,
-            length=0.3,
-            segments=count,
-            toward=(0, 0, -1),
-            bend=0.5,
-        )
-        light = np.asarray(fibres_of(coat)["luminance"], dtype=np.float64)
-        return light.reshape(-1, count + 1)
+    def light(count):
+        coat = cover(segments=count, toward=(0, 0, -1), bend=0.5)["fibres"]
+        return np.asarray(coat["luminance"], dtype=np.float64).reshape(-1, count + 1)
 
     at, fine, rough = np.linspace(0, 1, FINE + 1), light(FINE), light(segments)
     nodes = np.linspace(0, 1, segments + 1)
@@ -86,22 +64,17 @@ def along_fibres(segments: int) -> float:
     return float(np.sqrt(np.mean((between - fine) ** 2)))
 
 
-def measure(n: int, segments: int, repeats: int = 5) -> list[Row]:
+def measure(n, segments, repeats=5):
     """Return the row for a number of segments per fibre, with 147 segments per point."""
     mesh, count = torus(n), n * n * SEGMENTS_PER_POINT // segments
     scene = scene_of(mesh)
     cover = partial(fur, mesh, scene, density=0.02, fibres=count, length=0.3, segments=segments)
-    coat = fibres_of(cover())
+    coat = cover()["fibres"]
     roots = pv.PolyData(np.asarray(coat.points)[:: segments + 1].copy())
     roots["direction"] = np.asarray(coat.points)[segments :: segments + 1] - roots.points
     fibre = pv.MultipleLines(np.outer(np.linspace(0, 0.3, segments + 1), [1, 0, 0]))
-    seconds = take_turns(
-        {
-            "fur": cover,
-            "glyph": partial(roots.glyph, orient="direction", scale=False, geom=fibre),
-        },
-        repeats,
-    )
+    glyph = partial(roots.glyph, orient="direction", scale=False, geom=fibre)
+    seconds = take_turns({"fur": cover, "glyph": glyph}, repeats)
     output = 1024 * sum(block.actual_memory_size for block in cover())
     more = {
         "fibres": count,
@@ -123,5 +96,4 @@ STUDY = Study(
         partial(measure, 48 if quick else 128, segments, 3 if quick else 5)
         for segments in ((1, 3, 7) if quick else (1, 2, 3, 5, 7, 12))
     ],
-    axes=("cost", "error"),
 )

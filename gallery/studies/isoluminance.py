@@ -9,7 +9,6 @@ that was computed at the points.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -17,9 +16,6 @@ import pyvista as pv
 import vizlight
 from studies import Row, Study, take_turns
 from vizlight import Light, Material, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
 #: Luminances of the contours, none of them at the border of the shadow.
 LEVELS = tuple(np.arange(1, 16) / 16)
@@ -29,14 +25,14 @@ SCENE = Scene(
 )
 
 
-def ball(side: int) -> pv.PolyData:
+def ball(side):
     """Return a unit ball of triangles with exact normals."""
-    mesh: pv.PolyData = pv.Sphere(radius=1.0, theta_resolution=side, phi_resolution=side)
+    mesh = pv.Sphere(radius=1.0, theta_resolution=side, phi_resolution=side)
     mesh.point_data["Normals"] = np.asarray(mesh.points)
     return mesh
 
 
-def off(contours: pv.DataSet) -> float:
+def off(contours):
     """Return the largest angle in degrees between points of contours and the nearest circle."""
     points = np.asarray(contours.points, np.float64)
     points /= np.linalg.norm(points, axis=1, keepdims=True)
@@ -47,24 +43,21 @@ def off(contours: pv.DataSet) -> float:
     return float(np.degrees(nearest.max()))
 
 
-def ours(mesh: pv.PolyData | vizlight.Sphere) -> pv.DataSet:
+def ours(mesh):
     """Return the contours of the filter."""
-    made = vizlight.isoluminance(mesh, SCENE, levels=LEVELS)["contours"]
-    assert isinstance(made, pv.DataSet)
-    return made
+    return vizlight.isoluminance(mesh, SCENE, levels=LEVELS)["contours"]
 
 
-def theirs(mesh: pv.PolyData) -> pv.DataSet:
+def theirs(mesh):
     """Return VTK's contours of the light at the points."""
     lit = vizlight.illuminate(mesh, SCENE)
-    made: pv.DataSet = lit.contour(list(LEVELS), scalars="luminance")
-    return made
+    return lit.contour(list(LEVELS), scalars="luminance")
 
 
-def measure(side: int, repeats: int) -> list[Row]:
+def measure(side, repeats):
     """Return the rows of one mesh."""
     mesh = ball(side)
-    ways: dict[str, Callable[[], pv.DataSet]] = {
+    ways = {
         "isoluminance(mesh)": partial(ours, mesh),
         "contours of the light, VTK": partial(theirs, mesh),
     }
@@ -72,14 +65,14 @@ def measure(side: int, repeats: int) -> list[Row]:
     return [Row(way, side, off(work()), 1e3 * seconds[way]) for way, work in ways.items()]
 
 
-def of_solid(repeats: int) -> list[Row]:
+def of_solid(repeats):
     """Return the row of the solid, whose contours are circles."""
     solid = vizlight.Sphere(radius=1.0)
     seconds = take_turns({"solid": partial(ours, solid)}, repeats)["solid"]
     return [Row("isoluminance(Sphere)", "", off(ours(solid)), 1e3 * seconds)]
 
 
-def steps(quick: bool) -> Sequence[Callable[[], list[Row]]]:
+def steps(quick):
     """Return one function for each mesh, and one for the solid."""
     sides = (16, 32, 64, 128) if quick else (16, 32, 64, 128, 256, 512)
     return [*(partial(measure, side, 3) for side in sides), partial(of_solid, 3)]

@@ -17,18 +17,18 @@ from __future__ import annotations
 
 import dataclasses
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from studies import SHINY, Curve, Row, Study, take_turns
+from vizlight.data import load_example
+from vizlight.draw import render
+from vizlight.filters.illuminate import illuminate
+from vizlight.filters.streamlines import streamlines
 from vizlight.model import brightness, cylinder, highlights, reflection
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
 
 SHININESS = 20.0
 SIDES = (3, 4, 6, 8, 12, 20, 40)
@@ -36,23 +36,20 @@ SIDES = (3, 4, 6, 8, 12, 20, 40)
 NODES = 16
 
 
-def directions(count: int, *, headlight: bool) -> tuple[Array, Array, Array]:
+def directions(count, *, headlight):
     """Return reproducible random unit vectors: toward light, toward eye, tangents."""
     random = np.random.default_rng(2005)
-    v: Array = random.standard_normal((3, count, 3))
+    v = random.standard_normal((3, count, 3))
     v /= np.linalg.norm(v, axis=-1, keepdims=True)
     return (v[1] if headlight else v[0]), v[1], v[2]
 
 
-def tube(
-    wi: Array, wo: Array, tangent: Array, sides: int, *, shininess: float = SHININESS
-) -> tuple[Array, Array]:
+def tube(wi, wo, tangent, sides, *, shininess=SHININESS):
     """Return the mean diffuse and specular light over the width of tubes."""
     random = np.random.default_rng(sides)
 
-    def across(v: Array) -> Array:
-        rest: Array = v - np.sum(v * tangent, axis=1, keepdims=True) * tangent
-        return rest
+    def across(v):
+        return v - np.sum(v * tangent, axis=1, keepdims=True) * tangent
 
     first = across(wo)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -79,7 +76,7 @@ def tube(
     return diffuse / width, specular / width
 
 
-def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
+def measure(count=20_000, repeats=3):
     """Return the errors and costs of each model, for random lights and for a headlight.
 
     The parameter is the number of sides of a tube, or 0.
@@ -91,7 +88,7 @@ def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
         frame, phong = t[:, np.newaxis], float(highlights.phong_from_blinn(SHININESS))
         shine = partial(reflection.specular, wi, wo, frame)
         compensated = reflection.diffuse(wi, frame, exponent=brightness.exponent(1, 3))
-        found: dict[str, list[tuple[str, int, str, Array]]] = {
+        found = {
             "diffuse": [
                 ("exact", 0, "cylinder", cylinder.diffuse(wi, wo, t)),
                 ("Banks, p = 1", 0, "line", reflection.diffuse(wi, frame)),
@@ -114,7 +111,7 @@ def measure(count: int = 20_000, repeats: int = 3) -> list[Row]:
     return rows
 
 
-def _row(way: str, sides: int, value: Array, exact: Array, seconds: float, size: float) -> Row:
+def _row(way, sides, value, exact, seconds, size):
     """Return the errors of one model, without and with the best common factor."""
     factor = float(np.sum(value * exact) / np.sum(value * value))
     plain, scaled = value - exact, factor * value - exact
@@ -127,7 +124,7 @@ def _row(way: str, sides: int, value: Array, exact: Array, seconds: float, size:
     return Row(way, sides, float(np.sqrt(np.mean(scaled * scaled))), seconds, more)
 
 
-def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]:
+def _costs(repeats, count=200_000):
     """Return ns and bytes per point of each model.
 
     The time is that of both terms in one thread and float32, for a light and an eye with
@@ -153,10 +150,9 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     line = pv.Spline(np.cumsum(random.standard_normal((20, 3)), axis=0), 2000)
     line.clear_data()
 
-    def size(mesh: pv.PolyData) -> float:
+    def size(mesh):
         """Return the bytes per point of the line, including the light of the mesh in float32."""
-        whole = 1024 * mesh.actual_memory_size + 4 * mesh.n_points
-        return float(whole / line.n_points)
+        return (1024 * mesh.actual_memory_size + 4 * mesh.n_points) / line.n_points
 
     costs = {way: (each[way], size(line)) for way in ("line", "line, Blinn", "cylinder")}
     for sides in SIDES:
@@ -164,7 +160,34 @@ def _costs(repeats: int, count: int = 200_000) -> dict[str, tuple[float, float]]
     return costs
 
 
-def _curve(row: Row) -> Curve | None:
+def drawn(seeds=300, repeats=5):
+    """Return the rows of lit streamlines and of their tubes: points, memory, time of a frame."""
+    flow = load_example()
+    camera = render.camera_on(flow.bounds, (1, 0.5, 0.3))
+    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
+    bare = streamlines(flow, scene, vectors="V", seeds=seeds)
+    bare.clear_data()
+    tubes = bare.tube(radius=flow.length / 800, n_sides=20)
+    rows = []
+    for way, mesh, model in ("streamlines", bare, "cylinder"), ("their tubes", tubes, "phong"):
+        lit = illuminate(mesh, scene, model=model)
+        plotter = render.make_plotter(
+            lit, camera=camera, size=(800, 800), anti_aliasing=None, light="points"
+        )
+        plotter.show(auto_close=False)
+
+        def turn(plotter=plotter):
+            plotter.camera.azimuth += 1.0
+            plotter.render()
+
+        spent = take_turns({"": turn}, repeats)[""]
+        plotter.close()
+        more = {"points": lit.n_points, "MB": lit.actual_memory_size / 1e3, "ms": 1e3 * spent}
+        rows.append(Row(way, 20 * (mesh is tubes), np.nan, np.nan, more))
+    return rows
+
+
+def _curve(row):
     """Return the curve of a row with random lights."""
     model, _, rest = row.way.rpartition(", ")[0].rpartition(", ")
     return Curve(model, rest) if row.way.endswith("random") else None
@@ -176,6 +199,9 @@ STUDY = Study(
     parameter="sides of a tube, 0 for a line",
     error="RMS error of the term with its best factor",
     cost="ns per point",
-    steps=lambda quick: [lambda: measure(4000 if quick else 20_000, 3)],
+    steps=lambda quick: [
+        lambda: measure(4000 if quick else 20_000, 3),
+        lambda: drawn(30 if quick else 300, 3 if quick else 5),
+    ],
     curve=_curve,
 )

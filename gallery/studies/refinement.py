@@ -8,11 +8,11 @@ and each side of a triangle evenly, and lights all new points with interpolated,
 from __future__ import annotations
 
 import warnings
-from functools import cache, partial
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
 
 import numpy as np
 import pyvista as pv
+from pyvista import examples
 
 from studies import PIXEL, SHINY, Curve, Row, Study
 from vizlight import data
@@ -23,11 +23,6 @@ from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.verify.between import Between, columns, error_between, random_places
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Indices
 
 SCENE = Scene(
     lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0.1, 0.3, 0.9)), material=SHINY
@@ -40,52 +35,27 @@ ERRORS = (0.1, 0.05, 0.02, 0.01, PIXEL)
 UNIFORM, ADAPTIVE = "uniform", "adaptive"
 
 
-class Sample(NamedTuple):
-    """One mesh, and the name of the point array of its tangents."""
-
-    mesh: pv.PolyData
-    tangents: str | None = None
+def _isosurface():
+    return data.load_example().contour([600.0], scalars="Temp")
 
 
-def _isosurface() -> pv.PolyData:
-    flow = data.load_example()
-    surface: pv.PolyData = flow.contour([600.0], scalars="Temp")
-    return surface
-
-
-def _fibres() -> pv.PolyData:
-    mesh = data.load_example("fibre_bundle.vtp")
-    assert isinstance(mesh, pv.PolyData)
-    return mesh
-
-
-def _file(name: str) -> pv.PolyData:
-    from pyvista import examples
-
-    mesh = pv.read(getattr(examples, name))
-    assert isinstance(mesh, pv.PolyData)
+def _file(name):
     # Coincident points of a texture or of separate parts have one normal.
-    triangles: pv.PolyData = mesh.clean().triangulate()
-    return triangles
+    return pv.read(getattr(examples, name)).clean().triangulate()
 
 
-SAMPLES: dict[str, Callable[[], Sample]] = {
-    "isosurface": lambda: Sample(_isosurface()),
-    "flow on it": lambda: Sample(_isosurface(), "V"),
-    "fibres": lambda: Sample(_fibres()),
-    "aeroplane": lambda: Sample(_file("planefile")),
-    "ant": lambda: Sample(_file("antfile")),
-    "globe": lambda: Sample(_file("globefile")),
+#: Meshes, each with the name of the point array of its tangents.
+SAMPLES = {
+    "isosurface": lambda: (_isosurface(), None),
+    "flow on it": lambda: (_isosurface(), "V"),
+    "fibres": lambda: (data.load_example("fibre_bundle.vtp"), None),
+    "aeroplane": lambda: (_file("planefile"), None),
+    "ant": lambda: (_file("antfile"), None),
+    "globe": lambda: (_file("globefile"), None),
 }
 
 
-@cache
-def sample(name: str) -> Sample:
-    """Return a mesh of the study by its name."""
-    return SAMPLES[name]()
-
-
-def uniform_size(cells: Indices, parts: int) -> int:
+def uniform_size(cells, parts):
     """Return the number of points of cells whose sides are divided evenly."""
     used, size = len(np.unique(cells)), cells.shape[1]
     if size == 2:
@@ -95,20 +65,16 @@ def uniform_size(cells: Indices, parts: int) -> int:
     return used + edges * (parts - 1) + len(cells) * (parts - 1) * (parts - 2) // 2
 
 
-def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Row]:
+def measure(name, errors, parts):
     """Return the rows of one mesh: its uniform refinements, then its adaptive ones."""
-    mesh, tangents = sample(name)
+    mesh, tangents = SAMPLES[name]()
     # Where an open surface turns to the eye its light jumps, whatever the points.
     surface = tangents is None and not mesh.n_lines
     options = LightOptions(tangents=tangents, facing="outward" if surface else "auto")
-    inputs = inputs_of(mesh, "", SCENE, options)
-    shading = engine.run(inputs, SCENE, options)
-    between, cells = Between(inputs, SCENE, options), splitting.simplices(mesh)
-    cells = cells[shading.valid[cells].all(axis=1)]
-    places, _ = random_places(between.points, cells, PLACES, np.random.default_rng(0))
-    light, rows = columns(shading), []
+    found, cells, light, places = _lit(mesh, options, 0)
+    rows = []
     for count in parts:
-        off = error_between(between, light, places, count)
+        off = error_between(found, light, places, count)
         rows.append(_row(name, UNIFORM, count, off, uniform_size(cells, count)))
         if off.max() < min(errors) / 2:
             break
@@ -117,17 +83,23 @@ def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Ro
             # What is left where light jumps is measured below.
             warnings.simplefilter("ignore", UserWarning)
             fine = refine(mesh, SCENE, error=error, tangents=tangents, facing=options.facing)
-        new = inputs_of(fine, "", SCENE, options)
-        lit = engine.run(new, SCENE, options)
-        own, field = splitting.simplices(fine), Between(new, SCENE, options)
-        own = own[lit.valid[own].all(axis=1)]
-        places, _ = random_places(field.points, own, PLACES, np.random.default_rng(1))
-        off = error_between(field, columns(lit), places)
-        rows.append(_row(name, ADAPTIVE, error, off, len(np.unique(own))))
+        found, cells, light, places = _lit(fine, options, 1)
+        off = error_between(found, light, places)
+        rows.append(_row(name, ADAPTIVE, error, off, len(np.unique(cells))))
     return rows
 
 
-def _row(name: str, how: str, parameter: float, off: np.ndarray, points: int) -> Row:
+def _lit(mesh, options, seed):
+    """Return light between points, the lit cells, the light at points, and random places."""
+    inputs = inputs_of(mesh, "", SCENE, options)
+    shading = engine.run(inputs, SCENE, options)
+    between, cells = Between(inputs, SCENE, options), splitting.simplices(mesh)
+    cells = cells[shading.valid[cells].all(axis=1)]
+    places, _ = random_places(between.points, cells, PLACES, np.random.default_rng(seed))
+    return between, cells, columns(shading), places
+
+
+def _row(name, how, parameter, off, points):
     """Return a row; fewer than 0.1 % of all places are worse, with a confidence of 95 %."""
     more = {
         "99 % of the places": float(np.quantile(off, 0.99)),
@@ -137,17 +109,10 @@ def _row(name: str, how: str, parameter: float, off: np.ndarray, points: int) ->
     return Row(f"{name}, {how}", parameter, float(off.max()), float(points), more)
 
 
-def steps(quick: bool) -> list[Callable[[], list[Row]]]:
+def steps(quick):
     """Return one step for each mesh."""
     errors = ERRORS[1::2] + ERRORS[-1:] if quick else ERRORS
-    parts = PARTS[:10] if quick else PARTS
-    return [partial(measure, name, errors, parts) for name in SAMPLES]
-
-
-def curve(row: Row) -> Curve:
-    """Return the curve of a row: a colour for each mesh, a line style for each refinement."""
-    name, _, how = row.way.rpartition(", ")
-    return Curve(name, how)
+    return [partial(measure, name, errors, PARTS[: 10 if quick else None]) for name in SAMPLES]
 
 
 STUDY = Study(
@@ -157,5 +122,5 @@ STUDY = Study(
     error="largest error of luminance",
     cost="points",
     steps=steps,
-    curve=curve,
+    curve=lambda row: Curve(*row.way.rsplit(", ", 1)),
 )

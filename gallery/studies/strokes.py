@@ -12,7 +12,6 @@ from __future__ import annotations
 import importlib
 import time
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -22,29 +21,22 @@ import vizlight
 from studies import Row, Study
 from vizlight import Scene, View, presets, render
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Array
-
-    Draw = Callable[[pv.Plotter], object]
-
 #: Widths of the window in which strokes are read, and of the picture, in pixels.
 WIDTHS, SIZE = (2, 4, 6, 8, 16, 24, 32), 640
 #: Widths of the rim of the globe that is not asked for, in pixels.
 RIM = 25
-FIELD: dict[str, Any] = {"tangents": "wind", "exponent": 2}
+FIELD = {"tangents": "wind", "exponent": 2}
 
 
 @cache
-def winds() -> tuple[pv.DataSet, pv.Camera]:
+def winds():
     """Return the winds and the camera of the picture."""
     wind = vizlight.load_example("winds_of_july.vtp")
     wind.set_active_vectors("wind")
     return wind, render.camera_on(wind.bounds, (0.42, 1, 0.1), zoom=1.75)
 
 
-def ways(mesh: pv.DataSet, vectors: str, camera: pv.Camera, size: Sequence[int]) -> Array:
+def ways(mesh, vectors, camera, size):
     """Return the way on the screen at each pixel as right and up, of length 1.
 
     It is 0 where vectors point at the eye or at several ways, and NaN beside the mesh. Lines are
@@ -68,7 +60,7 @@ def ways(mesh: pv.DataSet, vectors: str, camera: pv.Camera, size: Sequence[int])
     return np.where(beside[..., np.newaxis] < 0, way, np.nan)
 
 
-def read_off(picture: Array, way: Array, rim: int) -> float:
+def read_off(picture, way, rim):
     """Return the median error in degrees of a machine that follows the strokes of a picture.
 
     Pixels whose way is not known, and a rim of some pixels, are not asked for.
@@ -85,13 +77,13 @@ def read_off(picture: Array, way: Array, rim: int) -> float:
     return min(medians)
 
 
-def arrows(tolerance: float, plotter: pv.Plotter) -> None:
+def arrows(tolerance, plotter):
     """Draw arrows of one size, as PyVista does."""
     made = winds()[0].glyph(orient="wind", scale=False, factor=2 * tolerance, tolerance=tolerance)
     plotter.add_mesh(made, color="black")
 
 
-def lic(steps: int, plotter: pv.Plotter) -> None:
+def lic(steps, plotter):
     """Smear noise along the field by VTK's line integral convolution."""
     mapper = importlib.import_module("vtkmodules.vtkRenderingLICOpenGL2").vtkSurfaceLICMapper()
     mapper.SetInputDataObject(winds()[0])
@@ -100,7 +92,7 @@ def lic(steps: int, plotter: pv.Plotter) -> None:
     plotter.add_actor(pv.Actor(mapper=mapper))
 
 
-def seeded(count: int, plotter: pv.Plotter) -> None:
+def seeded(count, plotter):
     """Draw VTK's streamlines on the surface from seeds at random."""
     wind, _ = winds()
     places = np.random.default_rng(0).choice(wind.n_points, count, replace=False)
@@ -111,13 +103,13 @@ def seeded(count: int, plotter: pv.Plotter) -> None:
     plotter.add_mesh(made.scale(1.005), color="black", line_width=4)
 
 
-def spaced(spacing: float, plotter: pv.Plotter) -> None:
+def spaced(spacing, plotter):
     """Draw evenly spaced lines."""
     made = vizlight.streamlines(winds()[0], vectors="wind", spacing=spacing)
     plotter.add_mesh(made.scale(1.005), color="black", line_width=4)
 
 
-def measure(way: str, parameter: float | str, draw: Draw) -> list[Row]:
+def measure(way, parameter, draw):
     """Return the row of strokes that a function draws on the globe."""
     wind, camera = winds()
     start = time.process_time()
@@ -132,7 +124,7 @@ def measure(way: str, parameter: float | str, draw: Draw) -> list[Row]:
     return [Row(way, parameter, read_off(picture, true, RIM), 1e3 * spent)]
 
 
-def lit(way: str, scene: Scene) -> list[Row]:
+def lit(way, scene):
     """Return the row of a light that is read by its key."""
     wind, camera = winds()
     start = time.process_time()
@@ -143,16 +135,14 @@ def lit(way: str, scene: Scene) -> list[Row]:
     spent = time.process_time() - start
     plotter.close()
     found = vizlight.legibility(wind, scene, view=camera, **FIELD).direction
-    assert found is not None
-    assert found.legend_median is not None
     return [Row(way, "", found.legend_median, 1e3 * spent)]
 
 
-def steps(quick: bool) -> Sequence[Callable[[], list[Row]]]:
+def steps(quick):
     """Return one function for each row."""
     few = slice(1, 2) if quick else slice(None)
     made = [partial(measure, "plain", "", lambda _: None)]
-    drawn: tuple[tuple[str, Callable[[Any, pv.Plotter], None], tuple[float, ...]], ...] = (
+    drawn = (
         ("arrows, PyVista", arrows, (0.08, 0.045, 0.03)),
         ("LIC, VTK", lic, (5, 20, 60)),
         ("streamlines at random, VTK", seeded, (100, 300, 1000)),
