@@ -203,7 +203,7 @@ def judge(call):
         args, keywords = bound(function, given)
         if (owner := table.owner(call.name)) is not None:
             args.insert(0, owner)
-        before, there = mark([args, keywords]), set(os.listdir())
+        before, there = mark([args, keywords]), {*Path().iterdir()}
         error = result = None
         try:
             with told() as leaked, limited(LIMIT):
@@ -212,7 +212,7 @@ def judge(call):
             error = caught
         finally:
             pv.close_all()
-        left = sorted(set(os.listdir()) - there)
+        left = [path.name for path in Path().iterdir() if path not in there]
         if isinstance(error, TooSlow):
             return f"takes more than {LIMIT:g} s"
         if leaked:

@@ -1,7 +1,7 @@
 """All public callables, a valid call of each, and what the walk makes of each.
 
-A call has the arguments that are required and those in `OFTEN`, whose values go by their names; what
-a callable needs beside or in place of these is in `OWN`.
+A call has the arguments that are required and those in `OFTEN`, whose values go by their names;
+what a callable needs beside or in place of these is in `OWN`.
 """
 
 from __future__ import annotations
@@ -193,7 +193,7 @@ OWN = {
     "Scene": {"lights": Light(direction=UP), "view": View(direction=UP)},
     "DepthCue": {"front": 0.0, "back": 1.0},
     "isometric": {"n": 3},
-    "from_dict": {"values": lambda: SCENE.to_dict()},
+    "from_dict": {"values": SCENE.to_dict},
     "key": {"scene": presets.shape()},
     "key_picture": {"scene": presets.shape()},
     "Component.add_key": {"scene": presets.shape()},

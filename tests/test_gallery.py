@@ -212,7 +212,7 @@ def site():
 
 
 def visit(context, name, site=None):
-    """Open a page, from disk or of a site; return it, the files it reads, and what errors it says."""
+    """Open a page from disk or of a site; return it, the files it reads, and the errors it says."""
     page, read_files, said = context.new_page(), set(), []
     page.on("request", lambda request: read_files.add(request.url))
     page.on("console", lambda told: HARMLESS.search(told.text) or said.append(told.text))
