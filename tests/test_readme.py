@@ -101,14 +101,6 @@ def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkey
         mended(names)
 
 
-def test_every_page_of_the_guide_is_listed_and_short():
-    listed = re.findall(r"^   (\w+)$", text_of(PAGES / "guide" / "index.rst"), re.M)
-    assert sorted([*listed, "index"]) == [path.stem for path in GUIDE]
-    lengths = [len(text_of(path).splitlines()) for path in GUIDE]
-    assert max(lengths) <= 100
-    assert sum(lengths) <= 700
-
-
 @pytest.mark.opengl
 def test_the_command_of_the_example_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -132,87 +124,47 @@ def test_every_command_is_one(path, capsys):
                 assert f"{word.partition('=')[0]} " in described, command
 
 
-def test_the_lines_that_ci_runs_are_there():
-    words = re.findall(r"readme '([^']+)'", text_of(ROOT / ".ci" / "run"))
-    assert len(words) >= 3
-    for word in words:
-        assert [line for line in lines(README) if word in line], word
-
-
-def test_readme_is_short():
+def test_readme_and_guide_are_short():
+    lengths = [len(text_of(path).splitlines()) for path in GUIDE]
+    assert max(lengths) <= 100
+    assert sum(lengths) <= 700
     assert len(text_of(README).splitlines()) <= 120
 
 
 def test_every_link_of_readme_is_a_file():
     """Links into the repository are absolute, because an index of packages shows README alone."""
     targets = re.findall(r"\]\(([^)#]+)\)", text_of(README))
-    places = (
-        r"https://(?:raw\.githubusercontent\.com/(\w+/\w+)|github\.com/(\w+/\w+)/blob)/main/(.+)"
-    )
-    paths = [match[3] for t in targets if (match := re.fullmatch(places, t))]
+    place = r"https://(?:raw\.githubusercontent\.com/\w+/\w+|github\.com/\w+/\w+/blob)/main/(.+)"
+    paths = [match[1] for t in targets if (match := re.fullmatch(place, t))]
     assert len(paths) > 5
     assert not [path for path in paths if not (ROOT / path).exists()]
     assert not [t for t in targets if "://" not in t]
 
 
-def test_the_landing_page_has_the_install_lines_of_readme():
-    """The page takes them from README, between words that README still has."""
-    found = re.findall(
-        r"literalinclude:: (\S+)\n.*\n   :start-at: (.*)\n", text_of(PAGES / "index.rst")
-    )
-    assert len(found) == 2
-    for path, start in found:
-        assert (PAGES / path).resolve() == README
-        assert [line for line in lines(README) if line.startswith(start)]
-
-
-def folder_map():
-    """Return the folders that README's map names, as paths, in its order."""
+def test_the_map_names_the_folders_that_exist_in_the_order_of_imports():
     (block,) = re.findall(r"^## Folders\n\n```\n(.*?)^```$", text_of(README), re.S | re.M)
-    found, above = [], []
+    named, above = [], []
     for line in block.splitlines():
         indent, name = re.match(r"( *)(\w+)/ ?", line).groups()
         above = [*above[: len(indent) // 2], name]
-        found.append("/".join(above))
-    return found
-
-
-def test_the_map_names_the_folders_that_exist():
-    inner = {
-        p.parent.relative_to(ROOT).as_posix() for p in (ROOT / "vizlight").rglob("__init__.py")
-    }
-    named = set(folder_map())
-    assert {path for path in named if path.startswith("vizlight/")} == inner - {"vizlight"}
+        named.append("/".join(above))
     assert all((ROOT / path).is_dir() for path in named)
-
-
-def test_the_map_is_in_the_order_of_imports():
-    order = [TIER[p.split("/")[1]] for p in folder_map() if p.startswith("vizlight/")]
+    ours = [path for path in named if path.startswith("vizlight/")]
+    folders = {p.parent for p in (ROOT / "vizlight").rglob("__init__.py")} - {ROOT / "vizlight"}
+    assert {ROOT / path for path in ours} == folders
+    order = [TIER[path.split("/")[1]] for path in ours]
     assert order == sorted(order)
 
 
-def test_the_architecture_page_has_the_tiers():
+def test_the_architecture_page_names_tiers_files_and_modules_that_exist():
     text = text_of(PAGES / "architecture.rst")
-    rows = [
-        set(re.findall(r"``(\w+)``", row)) for row in re.findall(r"^   \* - (``.*)$", text, re.M)
-    ]
-    assert rows == TIERS
-
-
-def test_the_files_that_the_architecture_page_names_exist():
-    text = text_of(PAGES / "architecture.rst")
+    rows = re.findall(r"^   \* - (``.*)$", text, re.M)
+    assert [set(re.findall(r"``(\w+)``", row)) for row in rows] == TIERS
     paths = re.findall(r"``((?:vizlight|tests|gallery)/[\w/.]*)``", text)
     assert len(paths) > 20
     assert not [p for p in paths if "NAME" not in p and not (ROOT / p).exists()]
-
-
-def test_the_short_names_that_the_architecture_page_gives_are_the_modules():
-    found = re.findall(
-        r"``(vizlight[.\w]+)`` for\s+``(vizlight[.\w]+)``", text_of(PAGES / "architecture.rst")
-    )
-    assert len(found) >= 3
-    for short, place in found:
-        assert operator.attrgetter(short.partition(".")[2])(vizlight) is sys.modules[place]
+    for short, place in re.findall(r"``vizlight\.([.\w]+)`` for\s+``(vizlight[.\w]+)``", text):
+        assert operator.attrgetter(short)(vizlight) is sys.modules[place]
 
 
 def test_the_filters_that_readme_and_guide_name_are_all():

@@ -46,8 +46,7 @@ USES_ALL = {"accessor", "cli", "demo", "doctor"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 
-@cache
-def texts():
+def sources():
     """Return the text of each module by its dotted name."""
     found = {}
     for path in ROOT.rglob("*.py"):
@@ -56,39 +55,25 @@ def texts():
     return found
 
 
-def sources():
-    return dict(texts())
-
-
 @cache
-def import_statements(text):
-    """Return the import statements of a module, also those for types and within functions."""
-    return [
-        node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)
-    ]
-
-
-def imports(name, text, modules):
-    """Yield what a module imports: module and name."""
-    for node in import_statements(text):
+def imports(text):
+    """Return what a module imports, also for types and within functions: module and name."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                if alias.name.partition(".")[0] == "vizlight":
-                    yield alias.name, None
-        else:
-            assert node.level == 0, f"{name}: a relative import"
-            if (node.module or "").partition(".")[0] == "vizlight":
-                for alias in node.names:
-                    inner = f"{node.module}.{alias.name}"
-                    yield (inner, None) if inner in modules else (node.module, alias.name)
-
-
-def is_folder(module):
-    return (ROOT.parent / module.replace(".", "/")).is_dir()
+            found += [(alias.name, "") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            found += [("." * node.level + (node.module or ""), a.name) for a in node.names]
+    return [pair for pair in found if pair[0].startswith((".", "vizlight"))]
 
 
 def part_of(module):
     return module.split(".")[1] if "." in module else ""
+
+
+def folder_of(module):
+    whole = (ROOT.parent / module.replace(".", "/")).is_dir()
+    return module if whole else module.rpartition(".")[0]
 
 
 def faults(modules):
@@ -96,38 +81,40 @@ def faults(modules):
     found, graph, rooms = [], {}, {}
     for name, text in modules.items():
         own = part_of(name)
-        for target, value in imports(name, text, modules):
-            if own == "":
-                continue
+        for home, value in imports(text) if own else ():
+            inner = f"{home}.{value}"
+            target = inner if inner in modules else home
             other = part_of(target)
-            if other == "":
-                if own not in USES_ALL:
-                    found.append(f"{name}: imports the whole package")
-                continue
-            if TIER[other] > TIER[own]:
-                found.append(f"{name}: imports {target}, which stands above it")
-            full = target if value is None else f"{target}.{value}"
-            parts = full.removesuffix(".__version__").split(".")
-            for i, part in enumerate(parts):
-                # A module's private names are its package's, a package's those of what it holds.
-                home = ".".join(parts[:i])
-                home = home if home not in modules or value is None else home.rpartition(".")[0]
-                if i > 1 and part.startswith("_") and not f"{name}.".startswith(f"{home}."):
-                    found.append(f"{name}: imports the private {part} of {home}")
-            if target != name and not name.startswith(f"{target}."):
-                graph.setdefault(name, set()).add(target)
-            folders = (
-                name.rpartition(".")[0],
-                target if is_folder(target) else target.rpartition(".")[0],
-            )
-            if not any(f"{a}.".startswith(f"{b}.") for a, b in (folders, folders[::-1])):
-                rooms.setdefault(folders[0], set()).add(folders[1])
+            if home.startswith("."):
+                found.append(f"{name}: a relative import")
+            elif other == "":
+                found += [f"{name}: imports the whole package"] * (own not in USES_ALL)
+            else:
+                if TIER[other] > TIER[own]:
+                    found.append(f"{name}: imports {target}, which stands above it")
+                found += [f"{name}: imports the private {p}" for p in private(name, home, value)]
+                if target != name and not name.startswith(f"{target}."):
+                    graph.setdefault(name, set()).add(target)
+                folders = name.rpartition(".")[0], folder_of(target)
+                if not any(f"{a}.".startswith(f"{b}.") for a, b in (folders, folders[::-1])):
+                    rooms.setdefault(folders[0], set()).add(folders[1])
     for edges in (graph, rooms):
         try:
             TopologicalSorter(edges).prepare()
         except CycleError as error:
             found.append(f"a circle: {' -> '.join(error.args[1])}")
     return found
+
+
+def private(name, home, value):
+    """Return the private parts of a dotted name that are not of the importer's own package."""
+    parts = f"{home}.{value}".removesuffix(".__version__").rstrip(".").split(".")
+    for i, part in enumerate(parts):
+        # A module's private names are its package's, a package's those of what it holds.
+        above = ".".join(parts[:i])
+        above = above if folder_of(above) == above else above.rpartition(".")[0]
+        if i > 1 and part.startswith("_") and not f"{name}.".startswith(f"{above}."):
+            yield part
 
 
 def test_imports_point_one_way():
