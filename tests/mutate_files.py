@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import collections
 import re
-import resource
 import shutil
 import sys
 import tempfile
@@ -71,11 +70,6 @@ def count(data, random):
 MUTATIONS = (cut, cut, flip, repeat, zero, count)
 
 
-def light(path, out):
-    """Return the words of the command that lights a file."""
-    return ["light", str(path), "-o", str(out)]
-
-
 def lit(path):
     """Return points and light of a result, or the reason why it is none."""
     from vizlight import files
@@ -96,23 +90,8 @@ def same(one, other):
 
 def fault(run, path, data, out, mutation, whole):
     """Return what is wrong with a run of the command line, an empty text if nothing is."""
-    lines = run.err.splitlines()
-    odd = [line for line in lines if not line.startswith("vizlight: ")]
-    if run.code not in (0, 2):
-        return f"exit code {run.code}: {' '.join(lines)[:200]}"
-    if odd:
-        return f"standard error: {odd[0]}"
-    if run.code == 2 and len(lines) != 1:
-        return f"{len(lines)} lines: {lines}"
-    if path.read_bytes() != data:
-        return "the input was changed"
-    left = [made.name for made in out.parent.iterdir() if made != out or run.code]
-    if left or run.stray:
-        return f"left behind: {left + run.stray}"
-    if run.code:
-        return ""
-    if not out.is_file():
-        return "no result"
+    if (wrong := runner.fault(run, path, data, out)) or run.code:
+        return wrong
     found = lit(out)
     if isinstance(found, str):
         return found
@@ -132,7 +111,8 @@ def run(total, seed, folder, *, keep=None, report=None):
     (folder / "whole").mkdir()
     whole = seeds.write(folder / "whole")
     outs = [folder / f"{path.name}.vtk" for path in whole]
-    found = runner.run([light(*both) for both in zip(whole, outs, strict=True)])
+    pairs = zip(whole, outs, strict=True)
+    found = runner.run([["light", str(path), "-o", str(out)] for path, out in pairs])
     for path, own in zip(whole, found, strict=True):
         if own.code:
             raise SystemExit(f"{path.name}: {own}")
@@ -150,7 +130,7 @@ def run(total, seed, folder, *, keep=None, report=None):
             path = place / f"{i}-{mutation.__name__}-{whole[source].name}"
             path.write_bytes(data)
             jobs.append((path, data, place / "out" / "lit.vtk", mutation, source))
-        runs = runner.run([light(path, out) for path, _, out, _, _ in jobs])
+        runs = runner.run([["light", str(path), "-o", str(out)] for path, _, out, *_ in jobs])
         for own, (path, data, out, mutation, source) in zip(runs, jobs, strict=True):
             wrong = fault(own, path, data, out, mutation, results[source])
             what = "failed" if wrong else "refused" if own.code else "lit"
@@ -180,8 +160,6 @@ def main():
             for kind in kinds
         ]
         say(f"{suffix or 'all':10}{sum(own):8}{own[0]:9}{own[1]:6}{own[2]:8}")
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    say(f"{sum(own.ru_utime + own.ru_stime for own in used):.0f} s of processor time")
     return int(any(kind == "failed" for _, kind in counts))
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import subprocess
 import sys
 
 import numpy as np
 import pytest
-import pyvista as pv
 import walks
 from hostile import seeds
 
@@ -24,12 +22,6 @@ def test_forty_walks():
         text=True,
     )
     assert (run.returncode, run.stdout) == (0, "40 walks, 0 failed\n"), run.stdout + run.stderr
-
-
-def test_a_walk_is_repeated_by_its_number(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    said = io.StringIO()
-    assert walks.walk(1, 8, said) == walks.walk(1, 8, said)
 
 
 def raw(mesh, random):
@@ -53,4 +45,3 @@ def dark(mesh, random):
 def test_faults_are_found(step, words):
     wrong, _ = walks.fault("illuminate", step, seeds.ball(), np.random.default_rng(0))
     assert words in wrong
-    assert isinstance(walks.MESHES["two"](), pv.MultiBlock)

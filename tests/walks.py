@@ -10,6 +10,7 @@ A walk is repeated by its seed and number.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import functools
 import signal
 import sys
@@ -55,22 +56,19 @@ MESHES = {
 
 def scene(random):
     """Return a scene of some lights."""
-
-    def way():
-        return tuple(random.normal(size=3))
-
-    def lamp():
-        if random.random() < 0.5:
-            return Light(direction=way(), intensity=float(random.uniform(0, 2)))
-        return Light(position=way(), attenuation=(1, float(random.uniform(0, 1)), 0))
-
-    views = [None, View(direction=way()), View(position=tuple(9 * random.normal(size=3)))]
-    view = views[random.integers(3)]
-    cue = DepthCue() if view is not None and random.random() < 0.3 else None
-    color = (0.9, 0.5, 0.2) if random.random() < 0.3 else None
+    n = random.normal
+    lamps = [
+        Light(direction=n(size=3), intensity=random.uniform(0, 2)) if random.random() < 0.5
+        else Light(position=n(size=3), attenuation=(1, random.uniform(0, 1), 0))
+        for _ in range(random.integers(1, 4))
+    ]  # fmt: skip
+    view = [None, View(direction=n(size=3)), View(position=9 * n(size=3))][random.integers(3)]
     return Scene(
-        lights=[lamp() for _ in range(random.integers(1, 4))], view=view, depth_cue=cue,
-        material=Material(color=color, shininess=float(random.choice([0, 1, 20, 1e3]))),
+        lights=lamps, view=view, depth_cue=DepthCue() if view and random.random() < 0.3 else None,
+        material=Material(
+            color=(0.9, 0.5, 0.2) if random.random() < 0.3 else None,
+            shininess=float(random.choice([0, 1, 20, 1e3])),
+        ),
     )  # fmt: skip
 
 
@@ -78,17 +76,12 @@ def options(random, mesh):
     """Return some options of light."""
     names = [*getattr(mesh, "point_data", {}), "V", "missing"]
     every = {
-        "tangents": str(random.choice(names)),
-        "normals": str(random.choice(names)),
-        "facing": str(random.choice(["auto", "eye", "outward", "as given"])),
-        "feature_angle": random.choice([30.0, None]),
-        "conditioned": True,
-        "exponent": int(random.integers(1, 3)),
-        "model": str(random.choice(["phong", "blinn"])),
-        "components": True,
-        "name": str(random.choice(["luminance", "second"])),
-    }
-    return {name: value for name, value in every.items() if random.random() < 0.15}
+        "tangents": names, "normals": names, "facing": ["auto", "eye", "outward", "as given"],
+        "feature_angle": [30.0, None], "conditioned": [True], "exponent": [1, 2],
+        "model": ["phong", "blinn"], "components": [True], "name": ["luminance", "second"],
+    }  # fmt: skip
+    chosen = {key: values[random.integers(len(values))] for key, values in every.items()}
+    return {key: value for key, value in chosen.items() if random.random() < 0.15}
 
 
 def through_a_file(mesh, random):
@@ -174,35 +167,33 @@ def fault(name, step, mesh, random):
 
 
 def walk(seed, number, said):
-    """Return the steps of a walk, said as they are taken, and what is wrong with the last."""
+    """Take a walk; write its steps as they are taken, and return what is wrong with the last."""
     random = np.random.default_rng([seed, number])
     start = str(random.choice([*MESHES]))
-    mesh, path = MESHES[start](), [start]
+    mesh = MESHES[start]()
     said.write(start)
     for _ in range(STEPS):
-        foreign = random.random() < 0.35
-        name = str(random.choice([*(FOREIGN if foreign else TAKEN)]))
-        path.append(name)
+        steps = FOREIGN if random.random() < 0.35 else TAKEN
+        name = str(random.choice([*steps]))
         said.write(f" > {name}")
         said.flush()
-        if foreign:
-            try:
-                made = FOREIGN[name](mesh, random)
-            except Exception:  # noqa: BLE001 - PyVista refuses what it cannot do in any way
-                made = mesh
-            wrong = ""
-        else:
-            try:
-                with adversary.limited(LIMIT):
+        wrong, made = "", mesh
+        try:
+            with adversary.limited(LIMIT):
+                if steps is TAKEN:
                     wrong, made = fault(name, TAKEN[name], mesh, random)
-            except adversary.TooSlow:
-                wrong, made = f"more than {LIMIT:g} s", mesh
+                else:
+                    # PyVista refuses what it cannot do in any way.
+                    with contextlib.suppress(Exception):
+                        made = FOREIGN[name](mesh, random)
+        except adversary.TooSlow:
+            wrong = f"more than {LIMIT:g} s"
         if wrong:
-            return path, wrong
+            return wrong
         whole = isinstance(made, pv.DataSet | pv.MultiBlock)
         if whole and sum(block.n_points for block in _blocks(made)) <= MOST:
             mesh = made
-    return path, ""
+    return ""
 
 
 def _blocks(mesh):
@@ -227,8 +218,7 @@ def _alone(seed, number, file):
     """Take one walk in this process; what is wrong is written line by line."""
     signal.alarm(int(20 * LIMIT))
     with adversary.new_folder():
-        _, wrong = walk(seed, number, file)
-    file.write(f"\n{' '.join(wrong.split())}")
+        file.write("\n" + " ".join(walk(seed, number, file).split()))
 
 
 def main():

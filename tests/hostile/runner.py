@@ -33,12 +33,11 @@ MODULES = (
 
 
 class Run(NamedTuple):
-    """What a run left behind: exit code (negative for a signal), streams, time, stray files."""
+    """What a run left behind: exit code (negative for a signal), streams, stray files."""
 
     code: int
     out: str
     err: str
-    seconds: float
     stray: list[str]
 
 
@@ -67,6 +66,25 @@ def run(commands, *, options=(), environment=None):
     return [Run(*json.loads(line)) for line in server.stdout.splitlines()]
 
 
+def fault(run, path, content, out):
+    """Return what is wrong with a run that lights a file, an empty text if nothing is.
+
+    The file is lit (exit code 0, a whole result), or refused (2, one line). No input is changed
+    and nothing else is left in the folder of the result.
+    """
+    lines = run.err.splitlines()
+    left = [made.name for made in out.parent.iterdir() if made != out or run.code]
+    wrong = {
+        f"exit code {run.code}: {' '.join(lines)[:200]}": run.code not in (0, 2),
+        f"standard error: {lines}": not all(line.startswith("vizlight: ") for line in lines),
+        f"{len(lines)} lines: {lines}": run.code == 2 and len(lines) != 1,
+        "the input was changed": path.read_bytes() != content,
+        f"left behind: {left + run.stray}": left or run.stray,
+        "no result": run.code == 0 and not out.is_file(),
+    }
+    return next((text for text, holds in wrong.items() if holds), "")
+
+
 def _one(words):
     """Run one command in a fork with a folder of its own for temporary files."""
     # Not a TemporaryDirectory, which a fork that ends would remove.
@@ -74,14 +92,12 @@ def _one(words):
     try:
         temporary = Path(own, "tmp")
         temporary.mkdir()
-        start = time.monotonic()
         pid = os.fork()
         if not pid:
             _child(words, own, temporary)
-        code = _wait(pid, start + PATIENCE)
-        seconds = time.monotonic() - start
+        code = _wait(pid, time.monotonic() + PATIENCE)
         out, err = (Path(own, name).read_text(errors="replace") for name in ("out", "err"))
-        return Run(code, out, err, seconds, [path.name for path in temporary.iterdir()])
+        return Run(code, out, err, [path.name for path in temporary.iterdir()])
     finally:
         shutil.rmtree(own)
 

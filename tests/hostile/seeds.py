@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import struct
-
 import numpy as np
 import pyvista as pv
+
+import vizlight
 
 
 def ball():
@@ -41,20 +40,16 @@ def lines(n=5):
 def _vtk(folder):
     box_, ball_ = box(), ball()
     meshes = {
-        "poly": ball_,
-        "image": box_,
-        "grid": tetrahedra(),
-        "structured": box_.cast_to_structured_grid(),
-        "rectilinear": box_.cast_to_rectilinear_grid(),
+        "vtp": ball_,
+        "vti": box_,
+        "vtu": tetrahedra(),
+        "vts": box_.cast_to_structured_grid(),
+        "vtr": box_.cast_to_rectilinear_grid(),
     }
-    suffixes = {
-        "poly": "vtp", "image": "vti", "grid": "vtu", "structured": "vts", "rectilinear": "vtr",
-    }  # fmt: skip
-    for name, mesh in meshes.items():
-        for binary in (True, False):
-            form = "binary" if binary else "ascii"
-            mesh.save(folder / f"{name}-{form}.vtk", binary=binary)
-            mesh.save(folder / f"{name}-{form}.{suffixes[name]}", binary=binary)
+    for suffix, mesh in meshes.items():
+        for binary, form in (True, "binary"), (False, "ascii"):
+            mesh.save(folder / f"{suffix}-{form}.vtk", binary=binary)
+            mesh.save(folder / f"{form}.{suffix}", binary=binary)
     from vtkmodules import vtkIOXML
 
     writer = vtkIOXML.vtkXMLPolyDataWriter()
@@ -83,39 +78,7 @@ def _surfaces(folder):
     rows = [f"v {x:g} {y:g} {z:g}" for x, y, z in points]
     rows += [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (folder / "ball.obj").write_text("\n".join(rows) + "\n")
-    _gltf(folder, points.astype("<f4"), faces.astype("<u2"))
-
-
-def _gltf(folder, points, faces):
-    """Write a mesh as binary glTF: two accessors on one buffer."""
-    data = points.tobytes() + faces.tobytes()
-    data += b"\0" * (-len(data) % 4)
-    views = [
-        {"buffer": 0, "byteOffset": 0, "byteLength": points.nbytes, "target": 34962},
-        {"buffer": 0, "byteOffset": points.nbytes, "byteLength": faces.nbytes, "target": 34963},
-    ]
-    numbers = [
-        {
-            "bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
-            "min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist(),
-        },
-        {"bufferView": 1, "componentType": 5123, "count": faces.size, "type": "SCALAR"},
-    ]  # fmt: skip
-    text = json.dumps({
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "accessors": numbers,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data)}],
-    }).encode()  # fmt: skip
-    text += b" " * (-len(text) % 4)
-    size = 12 + 8 + len(text) + 8 + len(data)
-    head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
-    body = struct.pack("<I4s", len(data), b"BIN\0")
-    (folder / "ball.glb").write_bytes(head + text + body + data)
+    vizlight.save_gltf(ball_, vizlight.Scene(), folder / "ball.glb")
 
 
 def _of_meshio(folder):
@@ -168,30 +131,9 @@ def _netcdf(folder):
     file.to_netcdf(folder / "four.nc", engine="netcdf4")
 
 
-def _dem(folder):
-    """Write a digital elevation model of the U.S. Geological Survey, as narrow as VTK reads it."""
-
-    def record(*parts):
-        words = {int: "{:6d}", float: "{:24.15E}", str: "{:144}"}
-        text = "".join(words[type(part)].format(part) for part in parts)
-        # Words of numbers have the exponent of Fortran.
-        return text.replace("E", "D").ljust(1024)
-
-    columns, rows, step, low = 100, 4, 30.0, 3000.0
-    east, north = low + (columns - 1) * step, low + (rows - 1) * step
-    corners = [low, low, low, north, east, north, east, low]
-    head = record("hills", 1, 1, 1, 10, *[0.0] * 15, 2, 2, 4, *corners, 0.0, 999.0, 0.0, 0).rstrip()
-    head += f"{step:12.6E}{step:12.6E}{1:12.6E}{1:6d}{columns:6d}"
-    profiles = [
-        record(1, i + 1, rows, 1, low + i * step, low, 0.0, 0.0, 999.0, *range(i, i + rows))
-        for i in range(columns)
-    ]
-    (folder / "hills.dem").write_text(head.ljust(1024) + "".join(profiles))
-
-
 def write(folder):
     """Write all files whose packages are installed, and return their paths in order."""
-    for kind in (_vtk, _surfaces, _dem, _of_meshio, _tracts, _trx, _netcdf):
+    for kind in (_vtk, _surfaces, _of_meshio, _tracts, _trx, _netcdf):
         try:
             kind(folder)
         except ImportError:
