@@ -71,9 +71,9 @@ def arrays(valid):
     """Return arrays and what is none, derived from a valid array."""
     try:
         base = np.array([0.0, 0.0, 1.0] if valid is None else valid)
-        base = base if base.dtype.kind in "iufb" else np.array([0.0, 0.0, 1.0])
     except ValueError:
-        base = np.array([0.0, 0.0, 1.0])
+        base = np.array(0)
+    base = base if base.dtype.kind in "iufb" and base.ndim else np.array([0.0, 0.0, 1.0])
     base = base.astype(np.int64) if base.dtype == np.uint8 else base
     real = base.astype(np.float64)
     found = {
@@ -82,131 +82,85 @@ def arrays(valid):
         "object": np.array([None, "x", {}], dtype=object),
         "ragged": [[1.0, 2.0], [3.0]],
         "empty": np.zeros(0),
-        "empty list": [],
         "no rows": np.zeros((0, 3)),
         "0-d": np.array(0.5),
         "4-d": np.ones((2, 1, 2, 3)),
         "complex": real * (1 + 1j),
-        "bool": real > 0,
         "int8": np.clip(real, -100, 100).astype(np.int8),
         "datetime": np.full(real.shape, np.datetime64("2026-01-01")),
-        "bytes": b"xyz",
-        "set": {1.0, 2.0},
         "dict": {"a": 1},
         "masked": np.ma.masked_array(real, np.arange(real.size).reshape(real.shape) == 0),
-        "all masked": np.ma.masked_all(real.shape),
         "float16": real.astype(np.float16),
         "longdouble": real.astype(np.longdouble),
-        "1e308": np.full(real.shape, 1e308),
-        "5e-324": np.full(real.shape, 5e-324),
         "zeros": np.zeros(real.shape),
-        "all NaN": np.full(real.shape, np.nan),
-        "huge": np.broadcast_to(real[:1] if real.ndim else real, (HUGE, *real.shape[1:])),
+        "huge": np.broadcast_to(real[:1], (HUGE, *real.shape[1:])),
         "huge number": [10**400, 0, 0],
-        "strings": np.full(real.shape, "x"),
         "record": np.zeros(3, dtype=[("x", float), ("y", float)]),
         "swapped bytes": real.astype(">f8"),
         "negative": -base if base.dtype.kind in "if" else real,
+        "short last axis": base[..., :-1],
+        "long last axis": np.concatenate([base, base[..., :1]], axis=-1),
+        "short first axis": base[1:],
+        "one more axis": base[None],
+        "read-only": base.copy(),
+        "Fortran": np.asfortranarray(base),
+        "strided": np.repeat(base, 2, axis=0)[::-2],
+        "list": base.tolist(),
     }
-    if real.size:
-        for name, number in ("NaN", np.nan), ("inf", np.inf), ("-inf", -np.inf), ("1e200", 1e200):
+    found["read-only"].flags.writeable = False
+    for name, number in ("NaN", np.nan), ("inf", np.inf), ("1e308", 1e308), ("5e-324", 5e-324):
+        found[f"all {name}"] = np.full(real.shape, number)
+        if real.size:
             found[name] = real.copy()
             found[name].flat[real.size // 2] = number
-    if real.ndim:
-        found["short last axis"] = base[..., :-1]
-        found["long last axis"] = np.concatenate([base, base[..., :1]], axis=-1)
-        found["1 on the last axis"] = base[..., :1]
-        found["short first axis"] = base[1:]
-        found["one more axis"] = base[None]
-        found["read-only"] = base.copy()
-        found["read-only"].flags.writeable = False
-        found["Fortran"] = np.asfortranarray(base)
-        found["negative strides"] = np.ascontiguousarray(base[::-1])[::-1]
-        found["strided"] = np.repeat(base, 2, axis=0)[::2]
-        found["list"] = base.tolist()
-    if base.dtype.kind in "iu" and base.ndim:
-        found |= {
-            "beyond": base + 10**6,
-            "below": base - 10**6,
-            "halves": base + 0.5,
-            "int64 top": base + 2**62,
-        }
+    if base.dtype.kind in "iu":
+        found |= {"beyond": base + 10**6, "below": base - 10**6, "halves": base + 0.5}
     return found
 
 
 def numbers(valid):
     """Return numbers and what is none."""
     base = float(valid) if isinstance(valid, int | float | np.number) else 1.0
-    return {
-        "None": None,
-        "string": "x",
-        "empty string": "",
-        "NaN": np.nan,
-        "inf": np.inf,
-        "-inf": -np.inf,
-        "-1": -1,
-        "-0.5": -0.5,
-        "0": 0,
-        "10**400": 10**400,
-        "2**62": 2**62,
-        "1e300": 1e300,
-        "1e-300": 1e-300,
-        "5e-324": 5e-324,
-        "True": True,
-        "complex": 1j,
-        "array of one": np.array([base]),
-        "array of two": np.array([base, base]),
-        "float32": np.float32(base),
-        "int8": np.int8(min(base, 100)),
-        "0-d": np.array(base),
-        "masked": np.ma.masked,
-        "list": [base],
-        "dict": {},
-        "bytes": b"1",
-        "datetime": np.datetime64("2026-01-01"),
-    }
+    found = [None, "x", "", -1, -0.5, 0, 10**400, 2**62, 1e300, 5e-324, True, 1j, {}, b"1"]
+    found += [np.nan, np.inf, -np.inf, np.float32(base), np.int8(min(base, 100)), np.ma.masked]
+    found += [np.array(base), np.array([base]), np.array([base, base]), [base]]
+    return {f"{number!r:.20}": number for number in [*found, np.datetime64("2026-01-01")]}
 
 
 def flags(valid):
     """Return what is and is not a truth value."""
-    return {
-        "None": None, "string": "no", "2": 2, "NaN": np.nan, "0": 0, "1": 1, "True": True,
-        "np.True_": np.True_, "array": np.array([True, False]), "list": [], "object": object(),
-    }  # fmt: skip
+    found = [None, "no", 2, np.nan, 0, 1, True, np.True_, np.array([True, False]), [], object()]
+    return {f"{value!r:.20}": value for value in found}
 
 
 def texts(valid):
     """Return unknown names and what is none."""
-    return {
-        "None": None, "unknown": "no such name", "empty": "", "bytes": b"phong", "3": 3,
-        "0.5": 0.5,
-        "NaN": np.nan, "list": ["x"], "empty list": [], "array": np.array(["x", "y"]),
-        "NUL": "a\0b", "np.str_": np.str_("x"), "long": "x" * 10_000,
-        "surrogate": "\ud800", "dict": {},
-        "type": Ellipsis,
-        "set": {"x"}, "newline": "a\nb",
-    }  # fmt: skip
+    found = [None, "no such name", "", b"phong", 3, 0.5, np.nan, ["x"], [], {}, {"x"}, Ellipsis]
+    found += [np.array(["x", "y"]), np.str_("x"), "a\0b", "a\nb", "x" * 10_000, "\ud800"]
+    return {f"{value!r:.20}": value for value in found}
 
 
 def callables(valid):
     """Return functions that raise or return what they must not, and what is no function."""
     return {
-        "3": 3, "string": "x", "returns None": lambda *a: None, "returns text": lambda *a: "x",
-        "returns NaN": lambda *a: np.nan, "list": [],
-        "returns ragged": lambda *a: [[1.0], [1.0, 2.0]], "returns complex": lambda *a: a[0] * 1j,
+        "3": 3,
+        "string": "x",
+        "returns None": lambda *a: None,
+        "returns text": lambda *a: "x",
+        "returns NaN": lambda *a: np.nan,
+        "returns ragged": lambda *a: [[1.0], [1.0, 2.0]],
+        "returns complex": lambda *a: a[0] * 1j,
         "returns inf": lambda *a: np.asarray(a[0]) * np.inf,
-    }  # fmt: skip
+    }
 
 
 def others(valid):
     """Return objects of the wrong class."""
-    return {
-        "None": None, "string": "x", "dict": {}, "full dict": {"lights": 3}, "3": 3, "list": [],
-        "tuple of None": (None,), "array": np.ones(3), "class": vizlight.Scene, "object": object(),
-        "light": vizlight.Light(direction=(0, 0, 1)), "view": vizlight.View(direction=(0, 0, 1)),
-        "material": vizlight.Material(), "mesh": Maker(pv.Sphere), "scene": SCENE_4,
-        "solid": vizlight.Sphere(), "camera": Maker(pv.Camera), "bundle": vizlight.Bundle(),
-    }  # fmt: skip
+    found = [None, "x", {}, {"lights": 3}, 3, [], (None,), np.ones(3), vizlight.Scene, object()]
+    found += [vizlight.Light(direction=(0, 0, 1)), vizlight.View(direction=(0, 0, 1)), SCENE_4]
+    found += [vizlight.Material(), vizlight.Sphere(), vizlight.Bundle()]
+    made = {f"{value!r:.30}": value for value in found}
+    return made | {"mesh": Maker(pv.Sphere), "camera": Maker(pv.Camera)}
 
 
 def paths(valid):

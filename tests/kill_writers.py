@@ -8,19 +8,16 @@ a result.
 
 from __future__ import annotations
 
-import argparse
 import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from hostile.runner import ROOT
+from hostile.runner import ROOT, ask
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
 SUFFIXES = ("vtp", "vtk", "vtu")
@@ -28,17 +25,12 @@ SUFFIXES = ("vtp", "vtk", "vtu")
 SIDE = 300
 
 
-def command(path, out):
-    """Return the command that lights a file."""
-    return [sys.executable, "-m", "vizlight", "light", str(path), "-o", str(out)]
-
-
 def light(path, out, *, wait=None, by=None, random=None):
     """Run the command line; kill it as soon as it writes, after a share of the given time."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "VIZLIGHT_FAST": "0"}
-    started = subprocess.Popen(
-        command(path, out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-    )
+    command = [sys.executable, "-m", "vizlight", "light", path, "-o", out]
+    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environment}
+    started = subprocess.Popen(command, **how)
     if by is not None:
         while started.poll() is None and not drafts(out.parent):
             time.sleep(0.001)
@@ -67,12 +59,11 @@ def fault(code, error, by, out, old, new):
     return ""
 
 
-def run(total, seed, folder, *, suffixes=SUFFIXES, say=lambda text: None):
+def run(total, seed, folder, say, suffixes=SUFFIXES):
     """Kill runs of the command line; return the number of those that failed, hit and missed."""
     mesh = pv.Plane(i_resolution=SIDE, j_resolution=SIDE)
     mesh.save(folder / "plane.vtp")
-    counts: Counter[str] = Counter()
-    news, waits = {}, {}
+    counts, news, waits = Counter(), {}, {}
     for suffix in suffixes:
         out = folder / f"new.{suffix}"
         start = time.monotonic()
@@ -95,19 +86,5 @@ def run(total, seed, folder, *, suffixes=SUFFIXES, say=lambda text: None):
     return counts
 
 
-def main():
-    """Run as many kills as the command line says; the exit code is 1 if one failed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("count", type=int, nargs="?", default=89)
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        counts = run(
-            given.count, given.seed, Path(folder), say=lambda text: sys.stdout.write(f"{text}\n")
-        )
-    sys.stdout.write(", ".join(f"{n} {what}" for what, n in counts.items()) + "\n")
-    return int(bool(counts["failed"]))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    ask(run, 89)

@@ -9,19 +9,19 @@ counts are exempt, see ``UNCOUNTED``. What failed is kept in ``failed_files/``.
 
 from __future__ import annotations
 
-import argparse
 import collections
 import re
 import shutil
-import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 from hostile import runner, seeds
+from hostile.runner import ask
 
 #: Formats that do not say how much they hold: lines of such a file are a whole file.
 UNCOUNTED = (".obj",)
+#: Where files that failed are kept.
+KEPT = Path("failed_files")
 #: Files of one process, and the least number of bytes that matter in a mutation.
 BATCH = 100
 NUMBERS = (0, 1, -1, 2**31 - 1, 2**31, 2**32 - 1, 10**12)
@@ -100,14 +100,8 @@ def fault(run, path, data, out, mutation, whole):
     return ""
 
 
-def say(text):
-    """Print a line at once."""
-    sys.stdout.write(f"{text}\n")
-    sys.stdout.flush()
-
-
-def run(total, seed, folder, *, keep=None, report=None):
-    """Light mutated files and return how many were refused, lit, and failed, by suffix."""
+def run(total, seed, folder, say):
+    """Light mutated files and return how many were refused, lit, and failed."""
     (folder / "whole").mkdir()
     whole = seeds.write(folder / "whole")
     outs = [folder / f"{path.name}.vtk" for path in whole]
@@ -133,35 +127,14 @@ def run(total, seed, folder, *, keep=None, report=None):
         runs = runner.run([["light", str(path), "-o", str(out)] for path, _, out, *_ in jobs])
         for own, (path, data, out, mutation, source) in zip(runs, jobs, strict=True):
             wrong = fault(own, path, data, out, mutation, results[source])
-            what = "failed" if wrong else "refused" if own.code else "lit"
-            counts[path.suffix, what] += 1
+            counts["failed" if wrong else "refused" if own.code else "lit"] += 1
             if wrong:
-                (report or say)(f"{path.name}: {wrong}")
-                if keep is not None:
-                    keep.mkdir(exist_ok=True)
-                    shutil.copy(path, keep)
+                say(f"{path.name}: {wrong}")
+                KEPT.mkdir(exist_ok=True)
+                shutil.copy(path, KEPT)
             shutil.rmtree(path.parent)
     return counts
 
 
-def main():
-    """Run as many files as the command line says; the exit code is 1 if one failed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("count", type=int, nargs="?", default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        counts = run(given.count, given.seed, Path(folder), keep=Path("failed_files"))
-    say(f"{'format':10}{'tried':>8}{'refused':>9}{'lit':>6}{'failed':>8}")
-    kinds = ("refused", "lit", "failed")
-    for suffix in [*sorted({suffix for suffix, _ in counts}), ""]:
-        own = [
-            sum(n for (s, k), n in counts.items() if suffix in ("", s) and k == kind)
-            for kind in kinds
-        ]
-        say(f"{suffix or 'all':10}{sum(own):8}{own[0]:9}{own[1]:6}{own[2]:8}")
-    return int(any(kind == "failed" for _, kind in counts))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    ask(run, 200)

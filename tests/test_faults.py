@@ -66,7 +66,7 @@ def test_a_disk_that_is_too_small_leaves_the_old_file(ball, tmp_path):
 @pytest.mark.slow
 def test_kills_while_a_file_is_written(tmp_path):
     failed = []
-    counts = kill_writers.run(4, 1, tmp_path, suffixes=("vtp",), say=failed.append)
+    counts = kill_writers.run(4, 1, tmp_path, failed.append, ("vtp",))
     assert not failed
     assert counts["killed"] > 0
 

@@ -22,10 +22,10 @@ def test_hostile_files(tmp_path):
 @pytest.mark.slow
 def test_two_hundred_damaged_files(tmp_path):
     failed = []
-    counts = mutate_files.run(200, 1, tmp_path, report=failed.append)
+    counts = mutate_files.run(200, 1, tmp_path, failed.append)
     assert not failed, "\n".join(failed)
-    assert sum(counts.values()) == 200
-    assert min(sum(n for (_, k), n in counts.items() if k == kind) for kind in ("refused", "lit"))
+    assert counts["refused"] + counts["lit"] == 200
+    assert min(counts.values()) > 0
 
 
 @pytest.mark.parametrize(

@@ -9,17 +9,17 @@ A walk is repeated by its seed and number.
 
 from __future__ import annotations
 
-import argparse
+import collections
 import contextlib
 import functools
 import signal
-import sys
 import warnings
 
 import adversary
 import numpy as np
 import pyvista as pv
 from hostile import seeds
+from hostile.runner import ask
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, pieces
@@ -202,16 +202,17 @@ def _blocks(mesh):
     return [one for block in mesh if block is not None for one in _blocks(block)]
 
 
-def run(total, seed, say=lambda text: sys.stdout.write(f"{text}\n")):
-    """Take walks, each in a fork of this process, and return the number of those that failed."""
-    failed = 0
+def run(total, seed, folder, say):
+    """Take walks, each in a fork of this process, and count those that failed."""
+    counts = collections.Counter()
     for number in range(total):
         text, code = adversary.forked(functools.partial(_alone, seed, number))
         path, _, wrong = text.partition("\n")
-        if code or wrong:
-            failed += 1
-            say(f"{number}: {path}: {wrong}{f' (exit code {code})' if code else ''}")
-    return failed
+        failed = bool(code or wrong)
+        counts["failed" if failed else "walks"] += 1
+        if failed:
+            say(f"{number}: {path}: {wrong} (exit code {code})")
+    return counts
 
 
 def _alone(seed, number, file):
@@ -221,16 +222,5 @@ def _alone(seed, number, file):
         file.write("\n" + " ".join(walk(seed, number, file).split()))
 
 
-def main():
-    """Take as many walks as the command line says; the exit code is 1 if one failed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("count", type=int, nargs="?", default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    failed = run(given.count, given.seed)
-    sys.stdout.write(f"{given.count} walks, {failed} failed\n")
-    return int(failed > 0)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    ask(run, 100)

@@ -6,6 +6,7 @@ there the command line forks its own child, as it does when it is started from a
 
 from __future__ import annotations
 
+import argparse
 import atexit
 import contextlib
 import faulthandler
@@ -139,6 +140,21 @@ def _wait(pid, end):
             os.waitpid(pid, 0)
             return -signal.SIGKILL
         time.sleep(0.002)
+
+
+def ask(run, count):
+    """Be the command line of a tool, which a count and a seed repeat; end with 1 if a run failed.
+
+    ``run`` takes both, an empty folder, and what says a line; it counts what came out.
+    """
+    parser = argparse.ArgumentParser()
+    parser.add_argument("count", type=int, nargs="?", default=count)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        counts = run(given.count, given.seed, Path(folder), lambda text: print(text, flush=True))
+    print(", ".join(f"{n} {what}" for what, n in sorted(counts.items())))
+    sys.exit(int(bool(counts["failed"])))
 
 
 def warm_up():

@@ -6,6 +6,7 @@ import numpy as np
 import pyvista as pv
 
 import vizlight
+from vizlight import Light, Material, Scene
 
 
 def ball():
@@ -78,7 +79,8 @@ def _surfaces(folder):
     rows = [f"v {x:g} {y:g} {z:g}" for x, y, z in points]
     rows += [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (folder / "ball.obj").write_text("\n".join(rows) + "\n")
-    vizlight.save_gltf(ball_, vizlight.Scene(), folder / "ball.glb")
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
+    vizlight.save_gltf(ball_, scene, folder / "ball.glb")
 
 
 def _of_meshio(folder):
