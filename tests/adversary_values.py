@@ -108,8 +108,9 @@ def arrays(valid):
         "list": base.tolist(),
     }
     found["read-only"].flags.writeable = False
-    for name, number in ("NaN", np.nan), ("inf", np.inf), ("1e308", 1e308), ("5e-324", 5e-324):
+    for name, number in ("NaN", np.nan), ("1e308", 1e308), ("5e-324", 5e-324):
         found[f"all {name}"] = np.full(real.shape, number)
+    for name, number in ("NaN", np.nan), ("inf", np.inf), ("-inf", -np.inf), ("1e200", 1e200):
         if real.size:
             found[name] = real.copy()
             found[name].flat[real.size // 2] = number

@@ -31,16 +31,7 @@ def write(app):
             result, command = suite.read(KEPT), "python tests/stability"
             headings, rows = suite.worst(result.rows)
         else:
-            try:
-                result = studies.run(name, studies.load(name), quick=True)
-            except ImportError as error:
-                # A package of an extra is not installed here.
-                reason = _plain(f"Not measured here: {error}.")
-                page = [name, "=" * len(name), "", reason]
-                (folder / f"{name}.rst").write_text("\n".join(page) + "\n", encoding="utf-8")
-                (folder / f"_{name}.txt").write_text(f"{reason}\n", encoding="utf-8")
-                overview.append([f":doc:`{name} <studies/{name}>`", "", reason])
-                continue
+            result = studies.run(name, studies.load(name), quick=True)
             command = f"python gallery/studies {name} --quick"
             headings, rows = result.table()
         study = result.study

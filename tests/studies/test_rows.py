@@ -171,6 +171,7 @@ def test_rays_in_small_steps_see_a_wall():
     np.testing.assert_array_equal(seen, (np.arange(60) <= 30) | (np.arange(60) >= 40))
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:the sky changes inside of triangles")
 def test_the_sky_keeps_to_the_error_that_is_asked():
     (field,) = sky.of_field(48, 0.3, 0.02)
@@ -199,6 +200,7 @@ def test_stripes_are_read_along_not_across(degrees):
 
 
 @pytest.mark.opengl
+@pytest.mark.slow
 def test_the_example_prints_the_figures_of_the_study():
     result = studies.run("strokes", strokes.STUDY, quick=True)
     found = {row.way: row.error for row in result.rows}
