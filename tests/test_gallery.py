@@ -67,19 +67,15 @@ def pages():
 
 
 def broken_links(page):
-    broken = []
-    for target in read(page).targets:
+    def works(target):
         parts = urlsplit(target)
         if parts.scheme or target.startswith("//"):
-            continue
+            return True
         place = (page.parent / unquote(parts.path)).resolve() if parts.path else page
-        if not place.exists() or (
-            parts.fragment
-            and place.suffix == ".html"
-            and unquote(parts.fragment) not in read(place).anchors
-        ):
-            broken.append(target)
-    return broken
+        anchored = parts.fragment and place.suffix == ".html"
+        return place.exists() and (not anchored or unquote(parts.fragment) in read(place).anchors)
+
+    return [target for target in read(page).targets if not works(target)]
 
 
 def test_every_link_and_picture_is_there():
@@ -221,18 +217,10 @@ def visit(context, name, site=None):
     return page, read_files, said
 
 
-FIRST = [
-    "index",
-    "guide/index",
-    "guide/direction",
-    "examples/index",
-    "formulas",
-    "architecture",
-    "api",
-    "studies",
-    "peers",
-    "timed",
-]
+FIRST = (
+    "index", "guide/index", "guide/direction", "examples/index", "formulas", "architecture", "api",
+    "studies", "peers", "timed",
+)  # fmt: skip
 LONGEST = "api/vizlight.geometry.contours.isoluminance"
 
 
@@ -295,28 +283,28 @@ def test_keys_reach_the_content_and_the_search_finds(chromium, site):
         assert not said
 
 
+#: Words of users, and the title of a page that has them.
+WORDS = {
+    "colorbar": "What value",
+    "transparent": "What value",
+    "tractography": "tractography",
+    "opacity": "What value",
+    "jagged": "How wrong",
+    "dark": "Troubleshooting",
+    "EGL": "Troubleshooting",
+    "cell data": "What value",
+}
+
+
 @browser
-@pytest.mark.parametrize(
-    ("word", "page"),
-    [
-        ("colorbar", "What value"),
-        ("transparent", "What value"),
-        ("tractography", "tractography"),
-        ("opacity", "What value"),
-        ("jagged", "How wrong"),
-        ("dark", "Troubleshooting"),
-        ("EGL", "Troubleshooting"),
-        ("cell data", "What value"),
-    ],
-)
-def test_the_search_finds_the_words_of_users(chromium, site, word, page):
+@pytest.mark.parametrize("word", WORDS)
+def test_the_search_finds_the_words_of_users(chromium, site, word):
     """Served, as newer browsers let no script read the pages on a disk."""
     with chromium.new_context() as context:
-        found, _, said = visit(context, f"search.html?q={word}", site)
-        found.wait_for_selector("#search-results li a")
-        found.wait_for_function(
-            "title => document.querySelector('#search-results').innerText.includes(title)", arg=page
-        )
+        page, _, said = visit(context, f"search.html?q={word}", site)
+        page.wait_for_selector("#search-results li a")
+        found = "title => document.querySelector('#search-results').innerText.includes(title)"
+        page.wait_for_function(found, arg=WORDS[word])
         assert not said
 
 

@@ -55,3 +55,17 @@ def read():
     """Return the rows of the table that is kept, by scene and script."""
     with TABLE.open(encoding="utf-8", newline="") as file:
         return {(row["scene"], row["script"]): row for row in csv.DictReader(file)}
+
+
+def side_by_side(name, titles, pictures):
+    """Keep pictures of one height beside each other, with their titles."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    width, height = sum(part.width for part in pictures), pictures[0].height
+    sheet = Image.new("RGB", (width, height + 34), "white")
+    pen, font, left = ImageDraw.Draw(sheet), ImageFont.load_default(20), 0
+    for title, part in zip(titles, pictures, strict=True):
+        sheet.paste(part, (left, 34))
+        pen.text((left + 8, 5), title, "black", font)
+        left += part.width
+    sheet.save(HERE / f"{name}.webp", quality=80, method=6)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 from scipy.stats import spearmanr
 
 HERE = Path(__file__).resolve().parent
@@ -231,13 +231,7 @@ def keep(name, *pictures):
     for picture in pictures:
         whole = Image.fromarray(picture).convert("RGB")
         shown.append(whole.resize((HEIGHT * whole.width // whole.height, HEIGHT)))
-    sheet = Image.new("RGB", (sum(part.width for part in shown), HEIGHT + 34), "white")
-    pen, font, left = ImageDraw.Draw(sheet), ImageFont.load_default(20), 0
-    for title, part in zip(("PyVista", "vizlight"), shown, strict=True):
-        sheet.paste(part, (left, 34))
-        pen.text((left + 8, 5), title, "black", font)
-        left += part.width
-    sheet.save(HERE / f"plain_{name}.webp", quality=80, method=6)
+    kept.side_by_side(f"plain_{name}", ("PyVista", "vizlight"), shown)
 
 
 def main():
@@ -248,16 +242,8 @@ def main():
         if name in PAIRS:
             keep(name, beside, picture)
         lines = kept.code_lines(GALLERY / f"plot_{name}.py")
-        rows.append(
-            (
-                f":doc:`examples/plot_{name}`",
-                question,
-                figure,
-                f"{ours:.2g}",
-                f"{theirs:.2g}",
-                lines,
-            )
-        )
+        figures = f"{ours:.2g}", f"{theirs:.2g}"
+        rows.append((f":doc:`examples/plot_{name}`", question, figure, *figures, lines))
         print(*rows[-1], sep=", ")
         pv.close_all()
     with TABLE.open("w", encoding="utf-8", newline="") as file:

@@ -17,12 +17,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pyvista as pv
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 import vizlight
 from vizlight import Material, Scene, presets
 
 HERE = Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent))
+from peers import kept  # noqa: E402
+
 SIZE = (480, 420)
 WAYS = ("PyVista, default", "PyVista, ten lines", "vizlight, default", "vizlight, by question")
 
@@ -249,16 +252,6 @@ SETS = {
 }  # fmt: skip
 
 
-def sheet(name, drawn):
-    """Write the four pictures of a set side by side."""
-    whole = Image.new("RGB", (4 * SIZE[0], SIZE[1] + 34), "white")
-    pen, font = ImageDraw.Draw(whole), ImageFont.load_default(20)
-    for column, (title, picture) in enumerate(zip(WAYS, drawn, strict=True)):
-        whole.paste(picture, (column * SIZE[0], 34))
-        pen.text((column * SIZE[0] + 8, 5), title, "black", font)
-    whole.save(HERE / f"sheet_{name}.webp", quality=80, method=6)
-
-
 def draw(fill, look):
     """Return the picture that a function fills a plotter with, and its plotter."""
     plotter = pv.Plotter(off_screen=True, window_size=[2 * side for side in SIZE])
@@ -275,7 +268,7 @@ def main(folder):
     for name, (load, describe) in SETS.items():
         look = describe(load(folder))
         made = [draw(fill, look) for fill in look["ways"]]
-        sheet(name, [picture for picture, _ in made])
+        kept.side_by_side(f"sheet_{name}", WAYS, [picture for picture, _ in made])
         question, mesh, scene, options = look["measured"]
         # Of what PyVista draws the meter knows the lamps, neither tubes, arrows nor occlusion.
         lights = (*(Scene.from_plotter(plotter) for _, plotter in made[:2]), Scene(), scene)
