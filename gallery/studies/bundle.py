@@ -18,7 +18,7 @@ from studies import Row, Study
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.mesh import closed_meshes
 
-KINDS = ("isotropic", "aligned", "layered", "along the light", "lattice")
+KINDS = ("isotropic", "aligned", "layered", "along the light")
 #: Number of sides of a tube; its radius is such that its mean width is that of a cylinder.
 SIDES = 8
 LENGTH, TUBES, DIAMETER = 0.5, 4000, 0.006
@@ -45,15 +45,6 @@ def tubes(kind, points, *, seed=3):
         tangents = _unit([1, 0, 0] + 0.1 * tangents)
     elif kind == "along the light":
         tangents = _unit(TOWARD + 0.1 * tangents)
-    elif kind == "lattice":
-        # A hexagonal lattice of parallel lines, five diameters apart.
-        step, side = 5 * DIAMETER, int(TUBES**0.5)
-        row, column = np.divmod(np.arange(TUBES), side)
-        tangents = np.tile([1.0, 0, 0], (TUBES, 1))
-        along = random.uniform(-0.2, 0.2, TUBES)
-        across = step * (column + row % 2 / 2), step * row * 0.75**0.5
-        middles = np.stack([along, *across], axis=1)
-        middles -= middles.mean(axis=0)
     elif kind == "layered":
         layer = random.integers(6, size=TUBES)
         middles = random.uniform(-0.8, 0.8, (TUBES, 3))

@@ -109,33 +109,37 @@ def spaced(spacing, plotter):
     plotter.add_mesh(made.scale(1.005), color="black", line_width=4)
 
 
-def measure(way, parameter, draw):
-    """Return the row of strokes that a function draws on the globe."""
-    wind, camera = winds()
+def first_frame(fill):
+    """Return the picture of what a function adds to a plotter, and the time that it took."""
     start = time.process_time()
     plotter = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
-    plotter.add_mesh(wind.scale(0.995), color="lightsteelblue", smooth_shading=True)
-    draw(plotter)
-    plotter.camera = camera
+    fill(plotter)
+    plotter.camera = winds()[1]
     picture = np.asarray(plotter.screenshot(return_img=True), np.float64)
     spent = time.process_time() - start
     plotter.close()
+    return picture, 1e3 * spent
+
+
+def measure(way, parameter, draw):
+    """Return the row of strokes that a function draws on the globe."""
+    wind, camera = winds()
+
+    def fill(plotter):
+        plotter.add_mesh(wind.scale(0.995), color="lightsteelblue", smooth_shading=True)
+        draw(plotter)
+
+    picture, spent = first_frame(fill)
     true = ways(wind, "wind", camera, (SIZE, SIZE))
-    return [Row(way, parameter, read_off(picture, true, RIM), 1e3 * spent)]
+    return [Row(way, parameter, read_off(picture, true, RIM), spent)]
 
 
 def lit(way, scene):
     """Return the row of a light that is read by its key."""
     wind, camera = winds()
-    start = time.process_time()
-    plotter = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
-    plotter.vizlight.add_mesh(wind, scene=scene, **FIELD)
-    plotter.camera = camera
-    plotter.screenshot(return_img=True)
-    spent = time.process_time() - start
-    plotter.close()
+    _, spent = first_frame(lambda p: p.vizlight.add_mesh(wind, scene=scene, **FIELD))
     found = vizlight.legibility(wind, scene, view=camera, **FIELD).direction
-    return [Row(way, "", found.legend_median, 1e3 * spent)]
+    return [Row(way, "", found.legend_median, spent)]
 
 
 def steps(quick):
