@@ -66,15 +66,15 @@ OPTIONS = {
 }  # fmt: skip
 #: What has no effect in a place, and why.
 WITHOUT = {
-    ("Glsl", "components"): "a fragment has one colour",
-    ("Glsl", "precision"): "fragments are float32",
-    ("Oracle", "components"): "it always returns them",
-    ("Oracle", "precision"): "it has the one of its numbers",
-    ("Filter", "line_field"): "it matters between points, to refine and to the report",
-    ("Page", "line_field"): "it matters between points, to refine and to the report",
-    ("Page", "components"): "a page shows one picture",
-    ("Shell", "positions"): "lights in n-space are for scripts",
-    ("Shell", "occlusion"): "it is --sky there",
+    ("glsl", "components"): "a fragment has one colour",
+    ("glsl", "precision"): "fragments are float32",
+    ("oracle", "components"): "it always returns them",
+    ("oracle", "precision"): "it has the one of its numbers",
+    ("filtered", "line_field"): "it matters between points, to refine and to the report",
+    ("page", "line_field"): "it matters between points, to refine and to the report",
+    ("page", "components"): "a page shows one picture",
+    ("shell", "positions"): "lights in n-space are for scripts",
+    ("shell", "occlusion"): "it is --sky there",
 }
 
 
@@ -100,113 +100,87 @@ def two_options(name):
     return beside, beside | {name: value}
 
 
-class Points:
-    """What computes light of points alone, whose options have no names of arrays."""
-
-    def __init__(self, **_):
-        given = np.random.default_rng(3).normal(size=(3, 6, 3))
-        self.inputs = ShadingInputs(points=given[0], tangents=given[1][:, None], normals=given[2])
-
-    def plan(self, scene, options):
-        """Return the options, and the plan that they make."""
-        asked = ShadingOptions(**{k: v for k, v in options.items() if k != "tangents"})
-        return asked, decide(scene, self.inputs.layout, asked, asked.precision)
+GIVEN = np.random.default_rng(3).normal(size=(3, 6, 3))
+POINTS = ShadingInputs(points=GIVEN[0], tangents=GIVEN[1][:, None], normals=GIVEN[2])
 
 
-class NumPy(Points):
+def planned(scene, options):
+    """Return the options of points alone, which have no names of arrays, and their plan."""
+    asked = ShadingOptions(**{k: v for k, v in options.items() if k != "tangents"})
+    return asked, decide(scene, POINTS.layout, asked, asked.precision)
+
+
+def numpy(scene, options, folder, light=by_numpy):
     """The algebra of arrays."""
-
-    light = staticmethod(by_numpy)
-
-    def __call__(self, scene, options):
-        _, plan = self.plan(scene, options)
-        output = Output(plan, self.inputs.count)
-        self.light(plan, self.inputs, output)
-        return [(str(v.dtype), v.tolist()) for v in vars(output).values() if v is not None]
+    _, plan = planned(scene, options)
+    output = Output(plan, POINTS.count)
+    light(plan, POINTS, output)
+    return [(str(v.dtype), v.tolist()) for v in vars(output).values() if v is not None]
 
 
-class Loops(NumPy):
+def loops(scene, options, folder):
     """The algebra that writes loops for numba; its text is run as Python."""
+    return numpy(scene, options, folder, by_text)
 
-    light = staticmethod(by_text)
 
-
-class Glsl(Points):
+def glsl(scene, options, folder):
     """The algebra that writes text for fragments, with the numbers that it is given."""
-
-    def __call__(self, scene, options):
-        _, plan = self.plan(scene, options)
-        lights = [light.seen_from(scene.view) for light in scene.lights]
-        held = program.numbers(scene, lights, shown=program.Shown(), fur=0.0, tallest=1.0)
-        # The renderer holds the colours of the material.
-        colors = scene.material.color, scene.material.specular_color
-        return program.write(plan, turned=False), held, colors
+    _, plan = planned(scene, options)
+    lights = [light.seen_from(scene.view) for light in scene.lights]
+    held = program.numbers(scene, lights, shown=program.Shown(), fur=0.0, tallest=1.0)
+    # The renderer holds the colours of the material.
+    colors = scene.material.color, scene.material.specular_color
+    return program.write(plan, turned=False), held, colors
 
 
-class Oracle(Points):
+def oracle(scene, options, folder):
     """The second implementation."""
-
-    def __call__(self, scene, options):
-        asked, _ = self.plan(scene, options)
-        known = {k: v for k, v in vars(asked).items() if k not in ("components", "precision")}
-        rows = zip(
-            *(getattr(self.inputs, n) for n in ("points", "tangents", "normals")), strict=True
-        )
-        return [oracles.digits.light(*(v.tolist() for v in row), scene, **known) for row in rows]
+    asked, _ = planned(scene, options)
+    known = {k: v for k, v in vars(asked).items() if k not in ("components", "precision")}
+    rows = zip(POINTS.points, POINTS.tangents, POINTS.normals, strict=True)
+    return [oracles.digits.light(*(v.tolist() for v in row), scene, **known) for row in rows]
 
 
-class Filter:
+def mesh_of(options):
+    """Return lines for a bundle, else a body with edges."""
+    random = np.random.default_rng(5)
+    body = pv.Cylinder(resolution=12, capping=True).triangulate()
+    mesh = pv.MultipleLines(random.normal(size=(30, 3))) if "bundle" in options else body
+    mesh.clear_data()
+    places = np.asarray(mesh.points, float)
+    mesh["around"], mesh["place"] = np.cross(places, (0.3, 0.2, 1.0)), places * (1, 1, 2)
+    mesh["tilted"] = places + random.normal(size=places.shape)
+    mesh["share"] = np.linspace(0, 1, len(places))
+    return mesh
+
+
+def filtered(scene, options, folder):
     """The filter of meshes: all its point arrays."""
-
-    def __init__(self, folder, **_):
-        self.folder, random = folder, np.random.default_rng(5)
-        body = pv.Cylinder(resolution=12, capping=True).triangulate()
-        self.meshes = {False: body, True: pv.MultipleLines(random.normal(size=(30, 3)))}
-        for mesh in self.meshes.values():
-            mesh.clear_data()
-            places = np.asarray(mesh.points, float)
-            mesh["around"], mesh["place"] = np.cross(places, (0.3, 0.2, 1.0)), places * (1, 1, 2)
-            mesh["tilted"] = places + random.normal(size=places.shape)
-            mesh["share"] = np.linspace(0, 1, len(places))
-
-    def mesh(self, options):
-        """Return lines for a bundle, else a body with edges."""
-        return self.meshes["bundle" in options]
-
-    def __call__(self, scene, options):
-        lit = vizlight.illuminate(self.mesh(options), scene, **options)
-        return {k: (str(v.dtype), v.tolist()) for k, v in lit.point_data.items()}
+    lit = vizlight.illuminate(mesh_of(options), scene, **options)
+    return {k: (str(v.dtype), v.tolist()) for k, v in lit.point_data.items()}
 
 
-class Page(Filter):
+def page(scene, options, folder):
     """The page: all its data and texts."""
-
-    def __init__(self, monkeypatch, **given):
-        super().__init__(**given)
-        monkeypatch.setattr(html, "_picture", lambda _: "")
-
-    def __call__(self, scene, options):
-        path = vizlight.live_html(self.mesh(options), scene, self.folder / "a.html", **options)
-        return path.read_text("utf-8")
+    path = vizlight.live_html(mesh_of(options), scene, folder / "a.html", **options)
+    return path.read_text("utf-8")
 
 
-class Shell(Filter):
+def shell(scene, options, folder):
     """The command line: all arrays of the file that it writes, records among them."""
-
-    def __call__(self, scene, options):
-        paths = [str(self.folder / name) for name in ("a.vtp", "scene.json", "lit.vtp")]
-        self.mesh(options).save(paths[0])
-        Path(paths[1]).write_text(json.dumps(scene.to_dict()))
-        words = [
-            f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))
-            for k, v in options.items() if v is not False
-        ]  # fmt: skip
-        assert cli.main(["light", paths[0], "--scene", paths[1], *words, "-o", paths[2]]) == 0
-        lit = pv.read(paths[2])
-        return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
+    paths = [str(folder / name) for name in ("a.vtp", "scene.json", "lit.vtp")]
+    mesh_of(options).save(paths[0])
+    Path(paths[1]).write_text(json.dumps(scene.to_dict()))
+    words = [
+        f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))
+        for k, v in options.items() if v is not False
+    ]  # fmt: skip
+    assert cli.main(["light", paths[0], "--scene", paths[1], *words, "-o", paths[2]]) == 0
+    lit = pv.read(paths[2])
+    return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
 
 
-ALGEBRAS, WRITERS = (NumPy, Loops, Glsl, Oracle), (Filter, Page, Shell)
+ALGEBRAS, WRITERS = (numpy, loops, glsl, oracle), (filtered, page, shell)
 CASES = [
     (place, kind, field.name)
     for place in (*ALGEBRAS, *WRITERS)
@@ -218,16 +192,16 @@ CASES = [
 @pytest.mark.opengl
 @pytest.mark.parametrize(("place", "kind", "name"), CASES, ids=lambda x: getattr(x, "__name__", x))
 def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
-    made = place(folder=tmp_path, monkeypatch=monkeypatch)
+    monkeypatch.setattr(html, "_picture", lambda _: "")
+    ignored = (place.__name__, name) in WITHOUT
+    if ignored and place in WRITERS:
+        return
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if kind in BASES:
-            one, other = (made(scene, {}) for scene in two_scenes(kind, name))
-        elif place in WRITERS and (place.__name__, name) in WITHOUT:
-            return
+            one, other = (place(scene, {}, tmp_path) for scene in two_scenes(kind, name))
         else:
-            one, other = (made(SCENE, options) for options in two_options(name))
-    ignored = (place.__name__, name) in WITHOUT
+            one, other = (place(SCENE, options, tmp_path) for options in two_options(name))
     assert (one == other) == ignored, f"{place.__name__} and {kind.__name__}.{name}"
 
 
