@@ -13,8 +13,8 @@ import numpy as np
 
 from vizlight import _check, files
 from vizlight.draw import dialects, program
-from vizlight.draw.live import NORMALS, TANGENTS, Live
-from vizlight.draw.painters import Fragments, unfit, unfit_layout, without_highlight
+from vizlight.draw.fragments import Fragments, unfit, unfit_layout, without_highlight
+from vizlight.draw.live import NORMALS, TANGENTS
 from vizlight.draw.sources import sources_of
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
@@ -270,15 +270,14 @@ def save(
         _check.text("scalars", scalars, expected="the name of a point array")
     if scalars is not None and scalars not in source.mesh.point_data:
         raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
-    if reason := unfit(source.inputs, source.options, source.mesh):
+    if reason := unfit(source):
         raise ValueError(_unfit(reason))
     plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
-    painter = Fragments()
-    live = Live(source, used, painter)
-    painter.attach(live)
-    painter.see(live, source.inputs, used.view)
+    live = Fragments(source, used)
+    live.attach()
+    live.see(source.inputs, used.view)
     written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
-    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=painter.tallest)
+    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
     data = files.write_mesh(live.drawn, beside(path))
     text = made.script(data.resolve())
     return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))

@@ -406,7 +406,7 @@ def test_each_backend_draws_the_light_in_fragments(backend):
         pytest.skip(probe(backend).detail)
     code = (
         "import sys; sys.path[:0] = ['tests', 'tests/draw']\n"
-        "import test_painters as t, numpy as np\n"
+        "import test_fragments as t, numpy as np\n"
         "scene, options = t.SCENES['two in fog'], t.SURFACE['conditioned']\n"
         "a, b = t.pictures(t.torus(), scene, **options)\n"
         "print(np.abs(a - b).max(), int(b.std()))"
