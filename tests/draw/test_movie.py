@@ -284,7 +284,7 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
         ("t.png", {"picture": {"camera": 1}}, ValueError, "picture: expected no camera"),
         ("t.png", {"picture": "abc"}, TypeError, "picture: expected a mapping, got 'abc'"),
         ("t.png", {"picture": {"foo": 1}}, ValueError, "picture: expected options of a picture"),
-        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of turn, got"),
+        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of project, got"),
         ("t.png", {"scene": None}, ValueError, "scene: expected a scene, or a mesh with active"),
         ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
     ],
