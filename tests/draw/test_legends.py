@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import HEADLIT
 
 import vizlight
-from vizlight import Scene, View, presets
-from vizlight.draw import legends, render
+from vizlight import View, presets
+from vizlight.draw import render
 
 pytestmark = pytest.mark.opengl
 SIZE = (400, 300)
@@ -77,16 +76,6 @@ def test_what_is_asked_for_stays():
     _, bar = inked((400, 300), far, **asked)
     assert (bar.GetPosition()[0], bar.GetWidth(), bar.GetNumberOfLabels()) == (0.1, 0.3, 2)
     assert (bar.GetLabelFormat(), bar.GetTitle()) == ("%.1f", NAME)
-
-
-def test_no_data_is_named():
-    _, bar = inked((900, 600), holed)
-    assert legends.NO_DATA_NAME in bar.GetNanAnnotation()
-
-
-def test_words_of_a_truth_value_stand_alone():
-    _, bar = inked((400, 300), lambda heights: heights > 0, "up")
-    assert not bar.GetDrawTickLabels()
 
 
 def picture(**options):
@@ -170,9 +159,3 @@ def test_pictures_have_keys():
     # All of it in one corner.
     assert np.ptp(rows) < 100
     assert np.ptp(columns) < 140
-
-
-def test_a_bar_has_a_word_at_each_end():
-    bar = presets.key(presets.value(), clim=(2, 70))
-    assert list(bar.field_data["words"]) == ["2", "70"]
-    assert list(presets.key(Scene(**HEADLIT)).field_data["words"]) == ["a ball in this light"]

@@ -70,17 +70,6 @@ def test_faces_lines_and_vertices_have_the_light_of_their_points(sky):
     assert np.mean((expected > 0) & (faces == 0)) > 0.004
 
 
-def test_light_is_that_of_the_record_whatever_the_camera():
-    mesh = pv.Sphere(theta_resolution=150, phi_resolution=150)
-    aside = render.camera_on((-1, 1, -1, 1, -1, 1), (-0.2, 1, 0.3))
-    for scene in (SCENE, SCENE.replace(material=shiny(color="tan"))):
-        lit = vizlight.illuminate(mesh, scene)
-        name = "rgb" if scene.colored else "luminance"
-        options = {"camera": aside, "scalars": name}
-        error = np.abs(picture(lit, **options) - picture(lit, light="points", **options))
-        assert 0 < error.max() <= 4
-
-
 def test_tinted_pictures_are_right_between_the_points():
     shown = []
     # Colours of data have no highlight: what bends between the points is the diffuse light.

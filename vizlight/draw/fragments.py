@@ -225,8 +225,6 @@ class Fragments(Live):
         self.see(placed, scene.view)
         scene = lighting.fit_depth_cue(scene, [placed])
         data = self.scalars is not None
-        if data:
-            scene = without_highlight(scene)
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
         # A new text costs a compilation, some 0.1 s; moved lamps and cameras only set uniforms.
         key, prop = _structure(scene, lights, self.source), actor.GetProperty()
@@ -235,9 +233,9 @@ class Fragments(Live):
         if plan is None or renew:
             plan = decide(scene, *self.lit_as())
         # VTK has a specular colour only where it has lights of its own.
-        shown = program.Shown(prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor())
+        shown = prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor()
         given = program.numbers(
-            scene, lights, shown=shown, fur=plan.fur, tallest=self.tallest, data=data
+            scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data
         )
         if renew:
             turned = self.source.sided is not None
@@ -267,11 +265,6 @@ class Fragments(Live):
         if self._stroke.round:
             layout, options = Layout(normals=True, occluded=layout.occluded), options.for_surface()
         return layout, options
-
-
-def without_highlight(scene: Scene) -> Scene:
-    """Return a scene for colours of data, which no highlight hides."""
-    return scene.replace(material=dataclasses.replace(scene.material, specular=0.0))
 
 
 def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:

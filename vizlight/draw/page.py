@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.draw import dialects, program
-from vizlight.draw.fragments import Fragments, without_highlight
+from vizlight.draw.fragments import Fragments
 from vizlight.draw.live import NORMALS, TANGENTS, items, matrix_of
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.filters.key import TEXTS
@@ -251,11 +251,8 @@ class Page:
         for data, free, ended, i, j in itertools.product(yes_no, sources, yes_no, *counts):
             lamps = [_NEAR] * i + [_FAR] * j
             lit = scene.replace(lights=lamps, material=whole, depth_cue=cue if ended else None)
-            lit = without_highlight(lit) if data else lit
             plan, source = _plan(lit, sources[free]), sources[free]
-            given = program.numbers(
-                lit, lamps, shown=program.Shown(), fur=plan.fur, tallest=live.tallest, data=data
-            )
+            given = program.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
             if plan.occluded:
                 given.append(program.Uniform("vizSky", "float", (1.0,)))
             constants |= {n.name: list(n.value) for n in given if n.name in _CONSTANT}
