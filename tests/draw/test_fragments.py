@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
+import shapes
 from fields import swatches
 from lamps import SHINY, shiny
 
@@ -21,25 +22,14 @@ CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 def torus():
     """Return a fine surface with a tangent field that has no singular point."""
-    angles = np.linspace(0, 2 * np.pi, 240)
-    angles[-1] = 0.0
-    u, v = np.meshgrid(angles, angles, indexing="ij")
-    ring = 1 + 0.4 * np.cos(v)
-    grid = pv.StructuredGrid(ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v))
-    mesh = grid.extract_surface(algorithm=None)
-    a, b = (np.ravel(x, order="F") for x in (u, v))
-    mesh["Normals"] = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], 1)
+    mesh = shapes.torus(240)
+    mesh.rename_array("n", "Normals")
     mesh.point_data.active_normals_name = "Normals"
-    mesh["around"] = np.stack([-np.sin(a), np.cos(a), 0 * a], 1)
-    mesh["height"] = np.array(mesh.points[:, 2])
     return mesh
 
 
 def helix(count=12001):
-    t = np.linspace(0, 12 * np.pi, count)
-    mesh = pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.03 - 0.6], 1))
-    mesh["height"] = np.array(mesh.points[:, 2])
-    return mesh
+    return shapes.helix(count, turns=6, rise=0.03)
 
 
 def shot(plotter, camera=None):

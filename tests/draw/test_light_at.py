@@ -7,6 +7,7 @@ import pytest
 import pyvista as pv
 from fields import several_kinds
 from lamps import shiny
+from shapes import helix
 
 import vizlight
 from vizlight import Light, Scene, View, render
@@ -18,11 +19,6 @@ pytestmark = pytest.mark.opengl
 def one_sample_per_pixel(monkeypatch):
     """Draw pixels that are covered or not, whose colours can be compared."""
     monkeypatch.setattr(pv.global_theme, "multi_samples", 1)
-
-
-def helix(count):
-    t = np.linspace(0, 6 * np.pi, count)
-    return pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.06 - 0.6], 1))
 
 
 def picture(mesh, **options):

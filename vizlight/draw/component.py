@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.draw.fragments import Fragments, unfit
 from vizlight.draw.html import write_page
-from vizlight.draw.legends import PLACES, CornerKey, fitted, ink_on, name_no_data, settle
+from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
 from vizlight.draw.live import LightAt, Live, items
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.page import Shown
@@ -446,7 +446,7 @@ class Component:
                 drawing["rgb"] = True
             else:
                 drawing |= _map_of(drawing)
-                drawing["scalar_bar_args"] = fitted(plotter, scalars, asked)
+                drawing["scalar_bar_args"] = {"title": scalars} | asked
         live.attach()
         drawing = live.drawing(drawing)
         actor: pv.Actor = plotter.add_mesh(
