@@ -61,6 +61,17 @@ def test_title_numbers_and_bar_stand_apart(size):
     assert groups(ink[first : first + 6].any(axis=0)) >= 3
 
 
+def test_bars_stand_above_one_another():
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    for name in (NAME, f"another {NAME}"):
+        ball = pv.Sphere()
+        ball[name] = ball.points[:, 2]
+        plotter.vizlight.add_mesh(ball, scalars=name)
+    low, high = (bar.GetPosition()[1] for bar in plotter.scalar_bars.values())
+    assert high >= low + plotter.scalar_bars[NAME].GetHeight()
+    plotter.close()
+
+
 def test_a_bar_fits_its_subplot():
     ink, _ = inked((800, 300), holed, columns=2)
     assert not ink[:, 399:].any()

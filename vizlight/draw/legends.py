@@ -82,11 +82,15 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
     bar.SetPosition(left / wide, bar.GetPosition()[1])
     bar.SetWidth((right - left) / wide)
     bar.SetUnconstrainedFontSize(True)
-    for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
-        style.SetFontSize(letters)
+    for text in ("Label", "Title", "Annotation"):
+        getattr(bar, f"Get{text}TextProperty")().SetFontSize(letters)
     bar.SetAnnotationLeaderPadding(2)
     if not bar.GetOrientation():
         bar.SetHeight(max(bar.GetHeight(), (len(words) + 2) * LINE * letters / high))
+        # PyVista stacks bars by the height that its theme has for them.
+        place, y = plotter.theme.colorbar_horizontal, bar.GetPosition()[1]
+        above = (y - place.position_y) / place.height * bar.GetHeight()
+        bar.SetPosition(left / wide, place.position_y + above)
         # VTK puts the title of a bar that lies so near to the numbers that they touch.
         bar.GetTitleTextProperty().SetLineOffset(-0.4 * letters)
         bar.SetBarRatio(letters / (bar.GetHeight() * high))
