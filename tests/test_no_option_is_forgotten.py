@@ -127,7 +127,7 @@ def glsl(scene, options, folder):
     """The algebra that writes text for fragments, with the numbers that it is given."""
     _, plan = planned(scene, options)
     lights = [light.seen_from(scene.view) for light in scene.lights]
-    held = program.numbers(scene, lights, shown=program.Shown(), fur=0.0, tallest=1.0)
+    held = program.numbers(scene, lights, fur=0.0, tallest=1.0)
     # The renderer holds the colours of the material.
     colors = scene.material.color, scene.material.specular_color
     return program.write(plan, turned=False), held, colors
