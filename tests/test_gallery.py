@@ -16,26 +16,25 @@ import json
 import os
 import random
 import re
-import shutil
 import threading
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import browsers
 import numpy as np
 import pytest
 from PIL import Image
 
 ROOT = Path(__file__).parents[1]
 PAGES = Path(os.environ.get("VIZLIGHT_PAGES", ROOT / "build" / "gallery"))
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 WANTED = "VIZLIGHT_PAGES" in os.environ
 
 pytestmark = pytest.mark.skipif(
     not (PAGES / "index.html").exists() and not WANTED, reason=f"no pages in {PAGES}"
 )
-browser = pytest.mark.skipif(CHROMIUM is None and not WANTED, reason="no chromium here")
+browser = pytest.mark.skipif(browsers.CHROMIUM is None and not WANTED, reason="no chromium here")
 
 
 class _Links(HTMLParser):
@@ -184,8 +183,7 @@ def chromium():
     """A browser that pages are steered in."""
     driver = pytest.importorskip("playwright.sync_api", reason="pip install 'vizlight[docs]'")
     with driver.sync_playwright() as play:
-        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        yield play.chromium.launch(executable_path=CHROMIUM, args=options)
+        yield play.chromium.launch(executable_path=browsers.CHROMIUM, args=browsers.SOFTWARE)
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):
