@@ -317,11 +317,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             triangles = triangles + len(unit) * other[:, np.newaxis]
         rows = np.concatenate(columns, axis=1, dtype=np.float64)
         del unit, shown, averted, columns
-        near = any(lamp.position is not None for lamp in scene.lights)
-        near |= scene.view is not None and scene.view.position is not None
-        lit_facets = refinement.Facets(
-            rows, triangles, light, valid, near or scene.depth_cue is not None
-        )
+        lit_facets = refinement.LitTriangles(rows, triangles, light, valid)
         del rows, triangles
         bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:

@@ -36,9 +36,8 @@ MOST = 400_000
 #: That number where finer facets are tried, which keep thin walls between surfaces: the points
 #: of a unit sphere whose facets are 5e-5 from it.
 PATIENCE = 60_000
-#: Fewest segments of a circle, and ratio of radii below which circles have equal segments: the
-#: facets of a thin wall between them are then parallel.
-FEWEST, ALIKE = 24, 1.25
+#: Fewest segments of a circle.
+FEWEST = 24
 #: Grid of coordinates before a Boolean operation, so that equal places have equal coordinates.
 GRID = 2.0**36
 #: Distance by which coordinates are rounded, with a margin for the points where surfaces cross.
@@ -162,20 +161,10 @@ class _Tree:
 
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
-        radius = np.array([part.roundness for part in self.parts])
-        order = np.argsort(radius)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            jump = radius[order][1:] > ALIKE * radius[order][:-1]
-        group = np.empty(len(radius), np.intp)
-        # Radii that differ little form a group with equal facets, which are parallel in a thin
-        # shell.
-        group[order] = np.concatenate([[0], np.cumsum(jump)])
-        largest = np.zeros(len(radius))
-        np.maximum.at(largest, group, radius)
         return [
             4 * math.ceil(max(FEWEST, math.pi / math.acos(max(1 - tolerance / (4 * r), 0))) / 4)
             if r > 0 else FEWEST
-            for r in largest[group]
+            for r in (part.roundness for part in self.parts)
         ]  # fmt: skip
 
     def allowed(self, mesh: Mesh) -> float:
@@ -335,7 +324,7 @@ LEAN = 0.02
 REACH = 20
 #: Rounds of Newton's method.
 ROUNDS = 8
-#: Distance below which neighbouring points are one point.
+#: Distance below which a point is at an apex.
 SAME = 1e-9
 #: Twice the area below which a triangle has no side, to rounding of normalised points.
 FLAT = 1e-14
@@ -359,7 +348,7 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         triangle stay where they are.
     """
     points = _placed(mesh, tolerance)
-    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
+    found = mesh.replace(points, mesh.triangles, mesh.patch)
     return _kept(mesh, points) if flipped(found).any() else found
 
 
@@ -421,28 +410,3 @@ def _meeting(mesh: Mesh) -> Indices:
         basis[rows, slot] = rest[new] / size[new][:, np.newaxis]
         found[rows] += 1
     return which
-
-
-def _merge(mesh: Mesh) -> Mesh:
-    """Return the mesh with equal neighbouring points merged, where it stays closed."""
-    ends = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1)
-    gap = np.abs(np.diff(mesh.points[ends], axis=2)).max(axis=(2, 3))
-    short = ends[gap < SAME]
-    if not len(short):
-        return mesh
-    number = np.arange(len(mesh.points))
-    for _ in range(len(short)):
-        low = np.minimum(*number[short].T)
-        before = number.copy()
-        np.minimum.at(number, number[short].ravel(), np.repeat(low, 2))
-        number = number[number]
-        if np.array_equal(number, before):
-            break
-    triangles = number[mesh.triangles]
-    kept = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
-    triangles = triangles[kept]
-    edges = triangles * len(number) + np.roll(triangles, -1, axis=1)
-    if len(np.unique(edges)) < edges.size:
-        return mesh
-    used, triangles = np.unique(triangles, return_inverse=True)
-    return mesh.replace(mesh.points[used], triangles.reshape(-1, 3), mesh.patch[kept])
