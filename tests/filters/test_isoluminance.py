@@ -345,12 +345,6 @@ def test_points_that_no_face_uses_are_not_reported():
     assert "array" not in str(caught[0].message)
 
 
-def test_nothing_left_and_nothing_there():
-    found = isoluminance(Block() - Block(), DULL)
-    assert found["bands"].n_cells == 0
-    assert found["contours"].n_cells == 0
-
-
 @pytest.mark.parametrize(
     ("mesh", "options", "kind", "words"),
     [

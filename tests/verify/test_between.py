@@ -11,9 +11,8 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate, refine
-from vizlight.mesh.batches import inputs_of
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.shading.options import ShadingOptions
 from vizlight.verify import between
 from vizlight.verify.between import Between, Places
 from vizlight.verify.report import Run, unseen
@@ -188,14 +187,6 @@ def unit_space(frames):
     return rows @ rows.swapaxes(1, 2)
 
 
-def test_the_mean_of_vectors_that_agree_is_linear(random):
-    vectors = np.array([1.0, 0.2, 0.1]) + 0.3 * random.standard_normal((3, 1, 3))
-    weights = random.dirichlet(np.ones(3), 20)
-    places = Places(np.tile([0, 1, 2], (20, 1)), weights)
-    found = between.mean_spaces(vectors, places)[:, 0]
-    np.testing.assert_allclose(found, weights @ vectors[:, 0], atol=1e-14)
-
-
 @pytest.mark.parametrize("near", [False, True])
 @pytest.mark.parametrize("lines", [False, True])
 def test_the_peak_of_a_highlight_is_found(lines, near, random):
@@ -218,14 +209,6 @@ def test_the_peak_of_a_highlight_is_found(lines, near, random):
         other = field.light(Places(cells, np.tile(weights, (len(cells), 1))))[:, 0]
         inside = best > 0.95
         assert np.max(other[inside] - best[inside]) < 0.02
-
-
-def test_cells_of_what_a_filter_lights():
-    mesh = pv.Plane(i_resolution=2, j_resolution=1)
-    inputs = inputs_of(mesh, "", SCENE, LightOptions())
-    assert inputs.cells().shape == (4, 3)
-    line = pv.MultipleLines([[0, 0, 0], [1, 0, 0], [1, 1, 0]])
-    assert inputs_of(line, "", SCENE, LightOptions()).cells().tolist() == [[0, 1], [1, 2]]
 
 
 def test_rows_of_no_length_are_no_unit_vectors():

@@ -324,7 +324,7 @@ LEAN = 0.02
 REACH = 20
 #: Rounds of Newton's method.
 ROUNDS = 8
-#: Distance below which a point is at an apex.
+#: Distance below which neighbouring points are one point.
 SAME = 1e-9
 #: Twice the area below which a triangle has no side, to rounding of normalised points.
 FLAT = 1e-14
@@ -348,7 +348,7 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         triangle stay where they are.
     """
     points = _placed(mesh, tolerance)
-    found = mesh.replace(points, mesh.triangles, mesh.patch)
+    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
     return _kept(mesh, points) if flipped(found).any() else found
 
 
@@ -410,3 +410,28 @@ def _meeting(mesh: Mesh) -> Indices:
         basis[rows, slot] = rest[new] / size[new][:, np.newaxis]
         found[rows] += 1
     return which
+
+
+def _merge(mesh: Mesh) -> Mesh:
+    """Return the mesh with equal neighbouring points merged, where it stays closed."""
+    ends = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1)
+    gap = np.abs(np.diff(mesh.points[ends], axis=2)).max(axis=(2, 3))
+    short = ends[gap < SAME]
+    if not len(short):
+        return mesh
+    number = np.arange(len(mesh.points))
+    for _ in range(len(short)):
+        low = np.minimum(*number[short].T)
+        before = number.copy()
+        np.minimum.at(number, number[short].ravel(), np.repeat(low, 2))
+        number = number[number]
+        if np.array_equal(number, before):
+            break
+    triangles = number[mesh.triangles]
+    kept = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
+    triangles = triangles[kept]
+    edges = triangles * len(number) + np.roll(triangles, -1, axis=1)
+    if len(np.unique(edges)) < edges.size:
+        return mesh
+    used, triangles = np.unique(triangles, return_inverse=True)
+    return mesh.replace(mesh.points[used], triangles.reshape(-1, 3), mesh.patch[kept])
