@@ -354,7 +354,7 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
         valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
         both = valid & known
         off = np.abs(got[both] - true[both]).max(axis=1, initial=0.0)
-        places = np.empty(0)
+        places: Array = np.empty(0)
         if given.cells is not None and active.sample and between.measurable(given):
             places = between.measure(
                 given, scene, options, shading, given.cells(), count=active.sample,
