@@ -30,7 +30,7 @@ def polygons(mesh):
     offsets, corners = cells.GetOffsetsArray(), cells.GetConnectivityArray()
     return banding.Bands(
         np.asarray(mesh.points, dtype=float), pv.convert_array(offsets), pv.convert_array(corners),
-        mesh["luminance_band"], mesh["luminance"], None, None, None, None, 0,
+        mesh["band"], mesh["luminance"], None, None, None, None, 0,
     )  # fmt: skip
 
 
