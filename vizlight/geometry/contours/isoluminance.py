@@ -255,8 +255,9 @@ def _bands(
     """Return the closed surface: caps at both poles and strips between circles."""
     inside = np.flatnonzero((places > 0) & (places < 1))
     angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), inside, min(count, 400))
-    q = np.where(contour < 0, np.sin(angle / 2) ** 2, places[contour])[1:]
-    contour, rings = contour[1:], len(q)
+    q = np.sin(angle / 2) ** 2
+    q[contour >= 0] = places[contour[contour >= 0]]
+    q, contour, rings = q[1:], contour[1:], len(q) - 1
     if radius == 0:
         rings, q, contour = 0, q[:0], contour[:0]
 
