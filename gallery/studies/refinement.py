@@ -22,7 +22,7 @@ from vizlight.mesh.batches import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
-from vizlight.verify.between import Between, columns, error_between, random_places
+from vizlight.verify.between import Between, Places, columns, error_between, random_places
 
 SCENE = Scene(
     lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0.1, 0.3, 0.9)), material=SHINY
@@ -65,6 +65,34 @@ def uniform_size(cells, parts):
     return used + edges * (parts - 1) + len(cells) * (parts - 1) * (parts - 2) // 2
 
 
+def uniform_error(between, light, places, parts):
+    """Return the error at places where the sides of all cells have so many equal parts."""
+    if parts == 1:
+        return error_between(between, light, places)
+    within, share = sub_cells(places.weights, parts)
+    true = between.light(places)
+    shown = sum(
+        share[:, i : i + 1] * between.light(Places(places.corners, within[:, i]))
+        for i in range(share.shape[1])
+    )
+    return np.abs(true - shown).max(axis=1, initial=0)
+
+
+def sub_cells(weights, factor):
+    """Return the cell around each place where the sides of all cells are divided evenly.
+
+    Places have the shares of the corners of their cells, (M, s). Returned are the weights of the
+    corners of the smaller cells, (M, s, s), one per row, and the shares of those corners, (M, s).
+    """
+    s = weights.shape[1]
+    whole = np.minimum(np.floor(weights * factor), factor)
+    rest = weights * factor - whole
+    # Of a triangle's parts those that stand on a tip have shares that add up to 2.
+    turned = (rest.sum(axis=1) > 1.5)[:, np.newaxis] if s == 3 else np.zeros((1, 1), bool)
+    steps = np.where(turned[..., np.newaxis], 1 - np.eye(s), np.eye(s))
+    return (whole[:, np.newaxis] + steps) / factor, np.where(turned, 1 - rest, rest)
+
+
 def measure(name, errors, parts):
     """Return the rows of one mesh: its uniform refinements, then its adaptive ones."""
     mesh, tangents = SAMPLES[name]()
@@ -74,7 +102,7 @@ def measure(name, errors, parts):
     found, cells, light, places = _lit(mesh, options, 0)
     rows = []
     for count in parts:
-        off = error_between(found, light, places, count)
+        off = uniform_error(found, light, places, count)
         rows.append(_row(name, UNIFORM, count, off, uniform_size(cells, count)))
         if off.max() < min(errors) / 2:
             break

@@ -152,6 +152,18 @@ def test_the_points_of_a_uniform_refinement_are_counted(times):
     assert refinement.uniform_size(np.array([[0, 1], [1, 2]]), times) == 2 * times + 1
 
 
+@pytest.mark.parametrize("s", [2, 3])
+@pytest.mark.parametrize("factor", [1, 2, 5])
+def test_smaller_cells_hold_the_places(s, factor, random):
+    weights = random.dirichlet(np.ones(s), 500)
+    within, share = refinement.sub_cells(weights, factor)
+    assert np.min(share) > -1e-12
+    np.testing.assert_allclose(share.sum(axis=1), 1)
+    np.testing.assert_allclose(within.sum(axis=2), 1)
+    np.testing.assert_allclose(np.einsum("ms,msr->mr", share, within), weights)
+    np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)
+
+
 def test_shadows_of_hills():
     fast, exact, *compiled = relief.measure(128, repeats=1)
     assert 0 < fast.error < 3e-2

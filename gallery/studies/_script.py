@@ -7,25 +7,19 @@ float32 it is the baseline for the speed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
-    from vizlight.scene import Light, Scene, View
 
 
 def light(
-    points: Array,
-    tangents: Array | None,
-    scene: Scene,
+    points,
+    tangents,
+    scene,
     /,
     *,
-    normals: Array | None = None,
-    exponent: float = 1.0,
-    dtype: type[np.float32] | type[np.float64] = np.float64,
-) -> Array:
+    normals=None,
+    exponent=1.0,
+    dtype=np.float64,
+):
     """Return the luminance of lines, of a surface, or of lines conditioned by a surface.
 
     The terms are the ambient, the diffuse and the Phong term: Banks (1), (2), (3), (5), (6).
@@ -55,7 +49,6 @@ def light(
     points = points.astype(dtype, copy=False)
     tangent = None if tangents is None else _unit(tangents.astype(dtype, copy=False))
     normal = None if normals is None else _unit(normals.astype(dtype, copy=False))
-    assert scene.view is not None
     wo = _directions(scene.view, points)
     total = np.full(len(points), material.ambient * scene.ambient_intensity, dtype=dtype)
     for source in (light.seen_from(scene.view) for light in scene.lights):
@@ -70,8 +63,6 @@ def light(
             mirror = wi_n * wo_n - wi_t * wo_t
             shadow = dtype(1) if facing is None else facing
         else:
-            assert normal is not None
-            assert facing is not None
             reflected = 2 * facing[:, np.newaxis] * normal - wi
             diffuse = facing
             mirror = np.einsum("ij,ij->i", reflected, wo)
@@ -82,12 +73,11 @@ def light(
     return total
 
 
-def _unit(vectors: Array) -> Array:
-    result: Array = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-    return result
+def _unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _directions(owner: Light | View, points: Array) -> Array:
+def _directions(owner, points):
     """Return the unit directions from the points toward a light or an eye."""
     if owner.position is None or getattr(owner, "parallel", False):
         toward = np.asarray(owner.direction, dtype=points.dtype)
