@@ -1,9 +1,9 @@
-"""Cos-theta shadows on height fields: the fast method, the exact method, and a closed form.
+"""Cos-theta shadows on height fields: compiled code beside NumPy, and a closed form.
 
 The fields are random hills with a power spectrum like that of terrain, and a hemisphere on a plane.
-The shadow of the hemisphere is known in closed form; the error of both methods is there the
-discretisation error of the field, which falls with its spacing. Both methods are timed in turn, by
-NumPy alone; where the extra ``fast`` is installed, the exact method is timed as compiled code too.
+The shadow of the hemisphere is known in closed form; the error is there the discretisation error of
+the field, which falls with its spacing. Hills are timed by NumPy alone and, where the extra
+``fast`` is installed, as compiled code.
 Beside them stand the hard shadows of RVT's ``shadow_horizon`` where that is installed: the share of
 nodes that are on the wrong side, as of vizlight with a depth of nearly 0, from rays in small steps.
 """
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -57,42 +57,32 @@ def sun(height: float, azimuth: float = 40.0) -> Array:
 
 
 def measure(side: int, height: float = HEIGHT, repeats: int = 3) -> list[Row]:
-    """Return the rows of one field of hills, with the exact method as the reference.
+    """Return the rows of one field of hills, with NumPy's light as the reference.
 
     A sun at another height than HEIGHT degrees is named in the rows.
     """
     at = "" if height == HEIGHT else f", sun at {height:g}"
     x, z = np.linspace(0, 1, side), hills(side)
 
-    def light(method: shadowing.Method, setting: str = "0") -> Array:
+    def light(setting: str) -> Array:
         with _compiled.setting(setting):
-            t: Array = shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+            t: Array = shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height))
         return t
 
-    ways: dict[str, Callable[[], object]] = {
-        "fast": lambda: light("fast"),
-        "exact": lambda: light("exact"),
-    }
+    ways: dict[str, Callable[[], Array]] = {"NumPy": lambda: light("0")}
     if _compiled.active():
-        light("exact", "1")
-        ways["compiled"] = lambda: light("exact", "1")
+        light("1")
+        ways["compiled"] = lambda: light("1")
     seconds = take_turns(ways, repeats)
-    exact = light("exact")
-    error = np.abs(light("fast") - exact)
-    more = {
-        "largest error": float(error.max()),
-        "bytes per point": peak_memory(lambda: light("fast")) / side**2,
-    }
-    cost = {way: 1e9 * taken / side**2 for way, taken in seconds.items()}
-    rows = [
-        Row(f"hills, fast{at}", side, float(error.mean()), cost["fast"], more),
-        Row(f"hills, exact{at}", side, 0.0, cost["exact"]),
-    ]
-    if "compiled" in cost:
-        error = np.abs(light("exact", "1") - exact)
-        worst = {"largest error": float(error.max())}
-        mean = float(error.mean())
-        rows.append(Row(f"hills, compiled{at}", side, mean, cost["compiled"], worst))
+    right, rows = light("0"), []
+    for way, work in ways.items():
+        error = np.abs(work() - right)
+        more = {
+            "largest error": float(error.max()),
+            "bytes per point": peak_memory(work) / side**2,
+        }
+        cost = 1e9 * seconds[way] / side**2
+        rows.append(Row(f"hills, {way}{at}", side, float(error.mean()), cost, more))
     return rows
 
 
@@ -147,7 +137,7 @@ def hard(side: int, repeats: int = 3, places: int = 2000) -> list[Row]:
     ]  # fmt: skip
 
 
-def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Errors:
+def hemisphere(side: int, depth: float = 0.1) -> Errors:
     """Return errors of t for a unit hemisphere on a plane of 6 x 6.
 
     The errors are the mean error, the largest error, and the mean error at distances greater than
@@ -165,7 +155,7 @@ def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Error
     length = ground + np.maximum(middle + half - low, 0) * (half > 0)
     expected = depth / np.maximum(length, depth)
     with _compiled.setting("0"):
-        t = shadowing.shadow(x, x, z, depth=depth, direction=way, normals=normal, method=method)
+        t = shadowing.shadow(x, x, z, depth=depth, direction=way, normals=normal)
     error = np.abs(t - expected)
     kind = 2 * (z > 0) + (np.maximum(middle + half - low, 0) * (half > 0) > 0)
     near = 2 * math.ceil(MARGIN / (x[1] - x[0])) + 1
@@ -175,18 +165,11 @@ def hemisphere(side: int, method: shadowing.Method, depth: float = 0.1) -> Error
 
 def of_hemisphere(side: int, repeats: int = 1) -> list[Row]:
     """Return the rows of one hemisphere, with the closed form as the reference."""
-    rows = []
-    for method in get_args(shadowing.Method):
-        found: list[Errors] = []
-
-        def work(method: shadowing.Method = method, found: list[Errors] = found) -> None:
-            found.append(hemisphere(side, method))
-
-        taken = take_turns({"": work}, repeats)[""]
-        mean, worst, smooth = found[-1]
-        more = {"largest error": worst, "mean off the edges": smooth}
-        rows.append(Row(f"hemisphere, {method}", side, mean, 1e9 * taken / side**2, more))
-    return rows
+    found: list[Errors] = []
+    taken = take_turns({"": lambda: found.append(hemisphere(side))}, repeats)[""]
+    mean, worst, smooth = found[-1]
+    more = {"largest error": worst, "mean off the edges": smooth}
+    return [Row("hemisphere", side, mean, 1e9 * taken / side**2, more)]
 
 
 def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
@@ -209,7 +192,7 @@ def steps(quick: bool) -> list[Callable[[], Iterable[Row]]]:
 
 STUDY = Study(
     approximates="t of the cos-theta shadow of height fields, sun at 20 degrees unless stated",
-    reference="for hills, the exact method; for a hemisphere on a plane, the closed form",
+    reference="for hills, the light by NumPy; for a hemisphere on a plane, the closed form",
     parameter="points per side",
     error="mean error of t",
     cost="ns per point",

@@ -24,11 +24,11 @@ SCENE = Scene(lights=Light(direction=TOWARD), material=shiny(ambient=0.1, specul
 def test_every_kind_of_grid_has_the_same_shadow(kind):
     grid, options = grids()[kind]
     before = grid.copy()
-    out = relief_shadow(grid, SCENE, depth=0.2, method="exact", **options)
+    out = relief_shadow(grid, SCENE, depth=0.2, **options)
     assert grid == before
     assert type(out) is type(grid)
     assert out.active_scalars_name == "t"
-    expected = relief.shadow(X, Y, Z, depth=0.2, direction=TOWARD, method="exact")
+    expected = relief.shadow(X, Y, Z, depth=0.2, direction=TOWARD)
     i = np.rint((np.asarray(out.points)[:, 0] - X[0]) / 0.5).astype(int)
     j = np.rint((np.asarray(out.points)[:, 1] - Y[0]) / 0.25).astype(int)
     np.testing.assert_allclose(out["t"], expected[j, i], atol=1e-6)
@@ -62,7 +62,7 @@ def test_a_turned_grid_has_its_shadow_turned(kind, angle):
         return Scene(lights=lights, material=shiny(specular=0))
 
     one, other = (
-        relief_shadow(mesh, scene(*how), depth=0.4, method="exact", lit=True, components=True)
+        relief_shadow(mesh, scene(*how), depth=0.4, lit=True, components=True)
         for mesh, how in ((grid, (np.eye(3), np.zeros(3))), (turned, (turn, move)))
     )
     assert np.ptp(one["t_0"]) > 0.5
@@ -91,10 +91,8 @@ def test_a_turned_grid_at_map_coordinates(size, spacing, origin, angle, kind):
         straight["h"] = grid["h"] = np.tile(heights, size[1]).astype(float)
         way = np.array([3.0, 1, 4])
         turned = Scene(lights=Light(direction=turn @ way), material=SHINY)
-        t = relief_shadow(grid, turned, elevation="h", method="exact")["t"]
-        expected = relief_shadow(
-            straight, Scene(lights=Light(direction=way), material=SHINY), method="exact"
-        )["t"]
+        t = relief_shadow(grid, turned, elevation="h")["t"]
+        expected = relief_shadow(straight, Scene(lights=Light(direction=way), material=SHINY))["t"]
         np.testing.assert_allclose(t, expected, atol=1e-6)
 
 
@@ -374,7 +372,6 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (pv.ImageData(), {}, ValueError, "mesh: expected a grid of points, got an empty one"),
         (level(), {"thickness": 1}, ValueError, "thickness: expected none on a height field"),
         (level(), {"border": "x"}, ValueError, "border: expected 'extend' or 'wall'"),
-        (level(), {"method": "x"}, ValueError, "method: expected 'fast' or 'exact'"),
         (level(), {"samples": 0}, ValueError, "samples: expected an integer of at least 1"),
         (level(), {"angular_diameter": -1}, ValueError, "angular_diameter: expected a number"),
         (level(), {"name": ""}, ValueError, "name: expected a name for the point array"),
@@ -382,7 +379,6 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (BALL, {"elevation": "z"}, ValueError, "elevation: expected none on a surface"),
         (BALL, {"exaggeration": 2}, ValueError, "exaggeration: expected none on a surface, got 2"),
         (BALL, {"border": "wall"}, ValueError, "border: expected none on a surface, got 'wall'"),
-        (BALL, {"method": "exact"}, ValueError, "method: expected none on a surface, got 'exact'"),
         (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),
         (BALL, {"occluders": [pv.Plane()]}, ValueError, r"occluders\[0\]: expected a closed"),
         (pv.Line(), {}, ValueError, "mesh: expected a surface with faces"),

@@ -10,7 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, _progress, relief_shadow
-from vizlight.geometry.relief import sweeping
+from vizlight.geometry.relief import shadowing
 from vizlight.mesh import closed_meshes
 
 TOWARD = np.array([0.6, -0.5, 0.4])
@@ -99,7 +99,7 @@ def test_field_and_the_same_solid_as_a_mesh_agree():
     x = np.linspace(0, 2, 21)
     z = 0.3 * np.maximum(0, 1 - 2 * np.abs(x - 1)) + 0 * x[:, None]
     grid = pv.StructuredGrid(*np.meshgrid(x, x, indexing="ij"), z.T)
-    field = relief_shadow(grid, SCENE, depth=0.05, border="wall", method="exact")
+    field = relief_shadow(grid, SCENE, depth=0.05, border="wall")
     top = grid.extract_surface(algorithm="geometry").triangulate()
     side = pv.Plane(center=(1, 1, -9.0), direction=(0, 0, 1), i_size=4, j_size=4)
     solid = top.extrude_trim((0, 0, -1), side.triangulate()).triangulate().clean()
@@ -228,8 +228,7 @@ def test_progress_advances_within_one_light(kind, monkeypatch):
 
     monkeypatch.setattr(_progress, "progress", progress)
     monkeypatch.setattr(closed_meshes, "BLOCK", 100)
-    monkeypatch.setattr(sweeping, "BAND", 100)
-    # Compiled code has bands of its own, of many more rays.
+    monkeypatch.setattr(shadowing, "BLOCK", 100)
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
     mesh = pv.Sphere()
     if kind == "field":

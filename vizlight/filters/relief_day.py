@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import FeatureAngle
 
@@ -44,7 +43,6 @@ def relief_day(
     elevation: str | None = None,
     exaggeration: float = 1.0,
     border: Border = "extend",
-    method: Method = "fast",
     raster: float | None = None,
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
@@ -67,7 +65,7 @@ def relief_day(
         Directions toward the sun, in place of latitude, day and hours.
     sun : array_like, shape (H, 2), optional
         Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
-    angular_diameter, samples, name, depth, elevation, exaggeration, border, method, raster
+    angular_diameter, samples, name, depth, elevation, exaggeration, border, raster
         As for :func:`vizlight.relief_shadow`.
     thickness, feature_angle, occluders
         As for :func:`vizlight.relief_shadow`.

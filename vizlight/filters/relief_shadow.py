@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Keywords
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import FieldCaster, SolidCaster
     from vizlight.shading.options import FeatureAngle
@@ -93,7 +92,6 @@ def relief_shadow(
     elevation: str | None = None,
     exaggeration: float = 1.0,
     border: Border = "extend",
-    method: Method = "fast",
     raster: float | None = None,
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
@@ -141,7 +139,7 @@ def relief_shadow(
         sampled, else the active scalars. NaN is a hole.
     exaggeration : float, default: 1.0
         Factor of the heights; only for height fields.
-    border, method
+    border
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach
         down without end.
     raster : float, optional

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
     from vizlight.shading.options import FeatureAngle
 
@@ -36,7 +35,7 @@ FAR = 1e100
 #: Range of heights, as a share of the side of a map, below which its slopes are not seen.
 UNSEEN = 1e-4
 #: Options that only height fields have.
-FIELD_ALONE = ("elevation", "exaggeration", "border", "method", "raster")
+FIELD_ALONE = ("elevation", "exaggeration", "border", "raster")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +49,6 @@ class CasterOptions(Options):
     elevation: str | None = None
     exaggeration: float = 1.0
     border: Border = "extend"
-    method: Method = "fast"
     raster: float | None = None
     thickness: float | None = None
     feature_angle: FeatureAngle = None
@@ -110,7 +108,7 @@ class FieldCaster:
         self._field = height_field.make(found.x, found.y, found.z, border=options.border)
         self._normal = height_field.normals(self._field)
         self._holes = np.isnan(found.z)
-        self._to_points, self._method = found.to_points, options.method
+        self._to_points = found.to_points
         self._turn = found.turn
         # The nodes are then others than the points of the mesh.
         sampled = isinstance(found, Raster)
@@ -122,7 +120,7 @@ class FieldCaster:
         self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
         # The oracle follows single rays; it knows fields as they are, not resampled ones.
         field = self._field
-        size = max(field.x[-1], field.y[-1], field.top)
+        size = field.size
         if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * size:
             wanted = georeference.ENOUGH[0] * size / field.top * options.exaggeration
             _check.warn(
@@ -139,11 +137,9 @@ class FieldCaster:
         way, end = (
             None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
         )
-        ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method,
-            report=report,
-        )  # fmt: skip
+            self._field, self._normal, self.depth, direction=way, position=end, report=report
+        )
         t[self._holes] = 0
         t = self._to_points(t)
         t[~self.valid] = 0
