@@ -183,7 +183,7 @@ class SolidCaster:
         # underflow.
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
-        self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
+        self._solids = [closed_meshes.Solid(*one, self._origin, self._unit) for one in bodies]
         self.depth = _depth(options.depth, DEPTH * self._unit)
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
