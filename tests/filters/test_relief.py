@@ -379,7 +379,7 @@ BALL = pv.Sphere(theta_resolution=8, phi_resolution=8)
         (BALL, {"elevation": "z"}, ValueError, "elevation: expected none on a surface"),
         (BALL, {"exaggeration": 2}, ValueError, "exaggeration: expected none on a surface, got 2"),
         (BALL, {"border": "wall"}, ValueError, "border: expected none on a surface, got 'wall'"),
-        (BALL, {"thickness": 0}, ValueError, "thickness: expected more than 0"),
+        (BALL, {"thickness": 0}, ValueError, "thickness: expected a number above 0"),
         (BALL, {"occluders": [pv.Plane()]}, ValueError, r"occluders\[0\]: expected a closed"),
         (pv.Line(), {}, ValueError, "mesh: expected a surface with faces"),
         (pv.UnstructuredGrid(), {}, ValueError, "mesh: expected a surface with faces"),

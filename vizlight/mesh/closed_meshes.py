@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from embreex.rtcore_scene import EmbreeScene
-    from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Foreign, Indices
 
@@ -92,7 +91,7 @@ class Solid:
     """Triangles of a closed surface in float64, relative to an origin and in a unit."""
 
     def __init__(
-        self, vertices: Array, triangles: Indices, origin: ArrayLike = 0.0, unit: float = 1.0
+        self, vertices: Array, triangles: Indices, origin: Array | float = 0.0, unit: float = 1.0
     ) -> None:
         self.vertices, self.triangles = (vertices - origin) / unit, triangles
         self.corners = self.vertices[triangles]

@@ -180,10 +180,15 @@ def normals(field: Field) -> Array:
     next to a hole it is the slope of the only cell there.
     """
     normal = np.ones((*field.heights.shape, 3))
-    normal[..., 0] = -_slope(field.heights, field.x)
-    normal[..., 1] = -_slope(field.heights.T, field.y).T
+    right, up = slopes(field)
+    normal[..., 0], normal[..., 1] = -right, -up
     normal /= np.sqrt(np.einsum("ijk,ijk->ij", normal, normal))[..., np.newaxis]
     return normal
+
+
+def slopes(field: Field) -> tuple[Array, Array]:
+    """Return the slopes along x and along y at the nodes, shapes (ny, nx); see :func:`normals`."""
+    return _slope(field.heights, field.x), _slope(field.heights.T, field.y).T
 
 
 def _slope(heights: Array, nodes: Array) -> Array:
