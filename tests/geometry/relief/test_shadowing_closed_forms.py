@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fields import hills, sun, unit
-from scipy.interpolate import RegularGridInterpolator
+from fields import sun, unit
 
 from vizlight.geometry import relief
 
@@ -165,35 +164,6 @@ def test_shallow_depth_goes_to_the_clamped_cosine():
         errors.append(np.abs(t - cosine)[inner].max())
     assert errors[1] < 0.01
     assert np.log2(errors[0] / errors[1]) > 0.8
-
-
-def test_the_hard_boundary_is_that_of_the_horizon_angle():
-    """A point is lit where it faces a light above its horizon, found by sampling the field."""
-    x, y, z = hills(80)
-    surface = RegularGridInterpolator((y, x), z)
-    s = np.arange(1, 750) * 0.02
-    for azimuth in (20, 130, 265):
-        elevation = 14.0
-        way = sun(0, azimuth)
-        gx, gy = np.meshgrid(x, y)
-        horizon = np.full(z.shape, -np.inf)
-        for k in s:
-            beside = np.stack(
-                [np.clip(gy + k * way[1], 0, 10), np.clip(gx + k * way[0], 0, 10)], -1
-            )
-            horizon = np.maximum(horizon, (surface(beside) - z) / k)
-        margin = np.degrees(np.arctan(horizon)) - elevation
-        lit = relief.shadow(x, y, z, depth=0, direction=sun(elevation, azimuth)) > 0
-        # At the border a normal knows one side alone.
-        margin, lit = margin[1:-1, 1:-1], lit[1:-1, 1:-1]
-        down, right = (slope[1:-1, 1:-1] for slope in np.gradient(z, y, x))
-        facing = np.tan(np.radians(elevation)) > right * way[0] + down * way[1]
-        differs = lit != ((margin < 0) & facing)
-        assert 0.05 < lit.mean() < 0.95
-        assert differs.mean() < 0.01
-        assert np.abs(margin[differs]).max(initial=0) < 2
-        soft = relief.shadow(x, y, z, depth=0.03, direction=sun(elevation, azimuth))
-        assert soft[1:-1, 1:-1][margin > 5].max() < 0.4
 
 
 @pytest.mark.parametrize("depth", [0.05, 0.2, 0.5])
