@@ -84,7 +84,8 @@ class Tracer:
         """Return whether rays meet no triangle."""
         if self._scene is None:
             return self.first(start, way, reach) < 0
-        return np.asarray(self._scene.run(start, way, query="OCCLUDED")) != 0
+        hit: Indices = np.asarray(self._scene.run(start, way, query="OCCLUDED"))
+        return np.asarray(hit != 0)
 
 
 class Solid:
@@ -228,7 +229,7 @@ def _distances(body: Solid, start: Array, way: Array, ray: Indices, cell: Indice
     """Return the distances of hits along their rays."""
     normal, toward = body.normals[cell], way[ray]
     against = np.einsum("ij,ij->i", toward, normal)
-    s = np.einsum("ij,ij->i", body.corners[cell, 0] - start[ray], normal)
+    s: Array = np.einsum("ij,ij->i", body.corners[cell, 0] - start[ray], normal)
     s /= np.where(against == 0, 1, against)
     # Of a triangle along the ray the distance is ill-conditioned: it stays between the corners'.
     steep = np.flatnonzero(against**2 < STEEP**2 * np.einsum("ij,ij->i", normal, normal))

@@ -148,7 +148,7 @@ def sky(
             t = view.toward(way).exact(rows, columns, field.top)
         else:
             t = _by_steps(field, rows, columns, way, 1.02, 0.125)
-        wanted += _seen(t, *(slope[at] for slope in slopes), way, openness) / count
+        wanted += _seen(t, slopes[0][at], slopes[1][at], way, openness) / count
     count, last = FEWEST, math.inf
     total = sums(count, 0.0)
     while True:
@@ -287,14 +287,14 @@ class _View:
 
     def exact(self, rows: Indices, columns: Indices, top: float) -> Array:
         """Return slopes of the horizons of some nodes, through every cell, by compiled code."""
-        some = np.zeros(self.field.heights.shape, np.bool_)
-        some[np.ix_(rows, columns)] = True
+        some = np.zeros(self.field.heights.shape)
+        some[np.ix_(rows, columns)] = 1
         found = np.full(some.shape, np.nan)
         j, i = np.nonzero(self.of(some))
         slopes = np.empty(len(j))
         exact(self.z, self.x, self.y, j + self.near, i + self.near, self.slope, top, slopes)
         self.of(found)[j, i] = slopes
-        return found[np.ix_(rows, columns)]
+        return np.asarray(found[np.ix_(rows, columns)])
 
 
 def _padded(nodes: Array, sign: int, near: int) -> Array:
