@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pyvista as pv
 
-from vizlight.geometry.relief import walks
+from vizlight.geometry.relief import height_field, walks
 
-METHODS = ("fast", "exact")
 X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
 
 
@@ -81,11 +78,24 @@ def level(**changes):
 
 def by_cells(field, start, way):
     """Return lengths by NumPy, through every cell."""
+    largest, least, _, columns = field.bounds
+    size = field.corners[1:, 1:].size
+    # The last bound is that of the whole field, above which no ray is followed.
+    bounds = height_field.Bounds(
+        np.append(largest[:size], largest[-1]), least[:size], np.zeros(1, int), columns[:1]
+    )
+    return followed(walks.march, field, start, way, bounds)
+
+
+def followed(follow, field, start, way, bounds=None):
+    """Return lengths of parallel rays by one of the two codes."""
     count = start.shape[1]
-    ways = np.repeat(way[:, None], count, axis=1)
-    finest = dataclasses.replace(field)
-    vars(finest)["bounds"] = field.bounds[:1]
-    return walks.march(finest, start, ways, np.full(count, walks.FAR))
+    found, ways = np.empty(count), np.repeat(way[:, None], count, axis=1)
+    follow(
+        start, ways, np.full(count, walks.FAR), *field.edges, field.corners,
+        field.bounds if bounds is None else bounds, field.border == "wall", found,
+    )  # fmt: skip
+    return found
 
 
 def swatches(rows=6, columns=8):

@@ -1,9 +1,9 @@
-"""Cos-theta shadows on height fields: the fast method and the exact one, on random hills.
+"""Cos-theta shadows on height fields: compiled code beside NumPy, and a closed form.
 
-The hills have a power spectrum like that of terrain. Both methods are timed in turn, by NumPy
-alone; where the extra ``fast`` is installed, the exact method is timed as compiled code too. Of
-hard shadows, with a depth of nearly 0, the error is the share of nodes that are on the wrong side,
-from rays in small steps.
+Hills have a power spectrum like that of terrain; NumPy and, where the extra ``fast`` is installed,
+compiled code are timed in turn. The shadow of a hemisphere on a plane has a closed form; the error
+is there that of the nodes, which falls with their spacing. Of hard shadows, with a depth of nearly
+0, the error is the share of nodes that are on the wrong side, from rays in small steps.
 """
 
 from __future__ import annotations
@@ -43,22 +43,22 @@ def sun(height, azimuth=40.0):
 
 
 def measure(side, height=HEIGHT, repeats=3):
-    """Return the rows of one field of hills, with the exact method as the reference.
+    """Return the rows of one field of hills, with NumPy's light as the reference.
 
     A sun at another height than HEIGHT degrees is named in the rows.
     """
     at = "" if height == HEIGHT else f", sun at {height:g}"
     x, z = np.linspace(0, 1, side), hills(side)
 
-    def light(method, setting="0"):
+    def light(setting):
         with _compiled.setting(setting):
-            return shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height), method=method)
+            return shadowing.shadow(x, x, z, depth=DEPTH, direction=sun(height))
 
-    ways = {"fast": partial(light, "fast"), "exact": partial(light, "exact")}
+    ways = {"NumPy": partial(light, "0")}
     if _compiled.active():
-        ways["compiled"] = partial(light, "exact", "1")
+        ways["compiled"] = partial(light, "1")
         ways["compiled"]()
-    seconds, exact, rows = take_turns(ways, repeats), light("exact"), []
+    seconds, exact, rows = take_turns(ways, repeats), light("0"), []
     for way, work in ways.items():
         error = np.abs(work() - exact)
         more = {"largest error": float(error.max())}
@@ -103,18 +103,37 @@ def hard(side, repeats=3, places=2000):
     return [Row("hard shadow, depth 1e-6", side, error, cost)]
 
 
+def hemisphere(side, depth=0.1):
+    """Return the row of t for a unit hemisphere on a plane of 6 x 6."""
+    x = np.linspace(-3, 3, side)
+    z = np.sqrt(np.maximum(1 - x**2 - x[:, None] ** 2, 0))
+    places = np.stack([*np.meshgrid(x, x), z], axis=-1)
+    normal = np.where(z[..., None] > 0, places, [0, 0, 1.0])
+    start, way = places - depth * normal, sun(35, 20)
+    middle = -(start @ way)
+    half = np.sqrt(np.maximum(1 - np.einsum("ijk,ijk->ij", start, start) + middle**2, 0))
+    ground = np.maximum(-start[..., 2] / way[2], 0)
+    low = np.maximum(middle - half, ground)
+    length = ground + np.maximum(middle + half - low, 0) * (half > 0)
+    light = partial(shadowing.shadow, x, x, z, depth=depth, direction=way, normals=normal)
+    cost = 1e9 * take_turns({"": light}, 1)[""] / side**2
+    error = np.abs(light() - depth / np.maximum(length, depth))
+    return [Row("hemisphere", side, float(error.mean()), cost, {"largest error": error.max()})]
+
+
 def steps(quick):
-    """Return the steps: hills, hills under other suns, hard shadows."""
+    """Return the steps: hills, hills under other suns, hemispheres, hard shadows."""
     sides = (128, 256) if quick else (256, 512, 1024, 2048)
     small = [side for side in sides if side <= SMALL]
     made = [partial(measure, side, repeats=1 if quick else 3) for side in sides]
     made += [partial(measure, side, height, repeats=1) for height in HEIGHTS for side in small]
+    made += [partial(hemisphere, side) for side in (76, 151, 301)]
     return made + [partial(hard, side) for side in small]
 
 
 STUDY = Study(
     approximates="t of the cos-theta shadow of height fields, sun at 20 degrees unless stated",
-    reference="the exact method",
+    reference="for hills, the light by NumPy; for a hemisphere on a plane, the closed form",
     parameter="points per side",
     error="mean error of t",
     cost="ns per point",

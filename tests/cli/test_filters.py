@@ -501,7 +501,7 @@ def test_help_of_the_whole_loads_no_pyvista():
             "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",
             "lit.vti",
             "shade",
-            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01, "method": "fast"},
+            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01},
         ),
         (
             "fur flow.vti --contour r --density 0.3 --length r --toward -1,0,2 --bend 0.5 "

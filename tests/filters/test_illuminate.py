@@ -101,15 +101,6 @@ def test_conditioned_inherits_the_self_shadow():
     assert np.any(free["luminance"][facing == 0] > 0.2)
 
 
-def test_a_frame_of_two_vectors_is_a_surface():
-    plane = pv.Plane(i_resolution=3, j_resolution=3)
-    plane["frame"] = np.tile([2.0, 0, 0, 1, 3, 0], (plane.n_points, 1))
-    by_frame = illuminate(plane, SCENE, tangents="frame", components=True)
-    by_normal = illuminate(plane, SCENE, facing="eye", components=True)
-    for term in ("ambient", "diffuse", "specular", "luminance"):
-        np.testing.assert_allclose(by_frame[term], by_normal[term], atol=1e-6)
-
-
 def test_a_line_gets_a_surface_contrast_unless_told_otherwise():
     line = pv.Line((0, 0, 0), (1, 0, 0), resolution=4)
     line["T"] = np.tile([1.0, 0, 0], (5, 1))
@@ -214,15 +205,6 @@ def test_one_end_of_a_depth_cue(cue, ends):
     )
     told = vizlight.provenance(illuminate(blocks, scene)[0])["scene"]["depth_cue"]
     assert (told["front"], told["back"]) == ends
-
-
-def test_colour_gives_rgb():
-    plane = meshes()["PolyData"]
-    scene = SCENE.replace(material=shiny(color=(1, 0.25, 0.5), specular=0))
-    lit = illuminate(plane, scene, tangents="V")
-    np.testing.assert_allclose(
-        lit["rgb"], lit["luminance"][:, np.newaxis] * [1, 0.25, 0.5], rtol=1e-6
-    )
 
 
 def test_names_of_results():

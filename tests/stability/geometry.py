@@ -409,7 +409,7 @@ def _doubled(a, b, c):
 
 
 def inside_length(_, count, random):
-    """Length inside a plane field, exact method, of the field's size; hard case 10.
+    """Length inside a plane field of the field's size; hard case 10.
 
     A plane is bilinear, so the length has a closed form: depth over the rate at which a ray rises.
     """
@@ -428,7 +428,7 @@ def inside_length(_, count, random):
             down = 10 ** random.uniform(low, low + 1, many)
             place = np.stack([random.uniform(x[3], x[5], many), random.uniform(y[3], y[5], many)])
             points = np.stack([*place, a * place[0] + b * place[1] - down], axis=1)
-            work = partial(shadowing.inside_length, x, y, z, points, direction=way, method="exact")
+            work = partial(shadowing.inside_length, x, y, z, points, direction=way)
             value, taken = timed(work)
             seconds += taken
             size = oracles.exact(float(max(x[-1] - x[0], y[-1] - y[0])))
@@ -449,9 +449,7 @@ def inside_length(_, count, random):
         down = 10 ** random.uniform(-9, -1, len(place))
         points = np.column_stack([place, c * place[:, 0] * place[:, 1] - down])
         z = np.array([[0, 0], [0, c]])
-        work = partial(
-            shadowing.inside_length, corners, corners, z, points, direction=way, method="exact"
-        )
+        work = partial(shadowing.inside_length, corners, corners, z, points, direction=way)
         value, taken = timed(work)
         seconds += taken
         u, twist = oracles.unit(oracles.exact(way)), oracles.exact(c)
@@ -472,7 +470,7 @@ def inside_ends(_, count, random):
     x = y = np.cumsum(random.uniform(0.5, 2, 9))
     flat, size = np.zeros((9, 9)), float(x[-1] - x[0])
     inside = np.stack([*random.uniform(x[3], x[5], (2, many)), -random.uniform(0.1, 1, many)], 1)
-    solid = partial(shadowing.inside_length, x, y, method="exact")
+    solid = partial(shadowing.inside_length, x, y)
     walls = partial(solid, border="wall")
 
     def against(case, work, true):
@@ -534,7 +532,7 @@ def shadow(_, count, random):
             size = float(max(np.ptp(x), np.ptp(y), np.ptp(z)))
             depth = 0.0 if case == "depth 0" else size * 10 ** random.uniform(low, high) / 30
             way = np.array([*random.uniform(-0.6, 0.6, 2), 1.0])
-            work = partial(shadowing.shadow, x, y, z, depth=depth, direction=way, method="exact")
+            work = partial(shadowing.shadow, x, y, z, depth=depth, direction=way)
             value, taken = timed(work)
             seconds += taken
             normal = oracles.unit([-oracles.exact(a), -oracles.exact(b), 1])

@@ -164,13 +164,14 @@ def test_smaller_cells_hold_the_places(s, factor, random):
     np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)
 
 
-def test_shadows_of_hills():
-    fast, exact, *compiled = relief.measure(128, repeats=1)
-    assert 0 < fast.error < 3e-2
+def test_shadows_of_hills_and_of_a_hemisphere():
+    rows = relief.measure(128, repeats=1)
+    assert len(rows) == 1 + _compiled.active()
+    assert all(row.error < 1e-12 for row in rows)
     # What is worked on at a time has a fixed size; the rest grows with the field.
-    assert fast.more["bytes per point"] * 128**2 < 50e6 + 100 * 128**2
-    assert len(compiled) == _compiled.active()
-    assert all(row.error < 1e-12 for row in [exact, *compiled])
+    assert rows[0].more["bytes per point"] * 128**2 < 50e6 + 100 * 128**2
+    coarse, fine = (relief.hemisphere(n)[0].error for n in (151, 601))
+    assert fine < min(1e-3, coarse / 4)
     assert relief.hard(96)[0].error < 0.02
 
 

@@ -79,9 +79,7 @@ FILTERS = {
         torus(), SCENE_4, tangents="frame", positions="position", conditioned="frame"
     ),
     "project": lambda _: project(torus(), rotation=("xw", 0.5), distance=3.0, scene=SCENE_4),
-    "relief": lambda _: relief_shadow(
-        terrain(), SUN, elevation="z", method="exact", depth=0.5, lit=True
-    ),
+    "relief": lambda _: relief_shadow(terrain(), SUN, elevation="z", depth=0.5, lit=True),
 }
 
 
@@ -105,9 +103,9 @@ def test_every_filter(name, surface):
 
 
 SHADOWS = {
-    "two lights": (terrain, {"elevation": "z", "method": "exact"}),
-    "walls": (terrain, {"elevation": "z", "method": "exact", "border": "wall"}),
-    "sun's disc": (terrain, {"elevation": "z", "method": "exact", "angular_diameter": 0.1}),
+    "two lights": (terrain, {"elevation": "z"}),
+    "walls": (terrain, {"elevation": "z", "border": "wall"}),
+    "sun's disc": (terrain, {"elevation": "z", "angular_diameter": 0.1}),
     "ball": (pv.Sphere, {"occluders": pv.Cube(center=(1, 1, 1)).triangulate()}),
     "ball, disc": (pv.Sphere, {"angular_diameter": 0.2}),
     "shell": (pv.Plane, {"thickness": 0.1}),
@@ -138,9 +136,7 @@ def test_every_shadow_of_every_light(name, monkeypatch):
 
 def test_a_day_is_told_whole():
     with vizlight.report() as told:
-        day = vizlight.relief_day(
-            terrain(), latitude=0.8, day=172, hours=[9, 12, 15], depth=0.5, method="exact"
-        )
+        day = vizlight.relief_day(terrain(), latitude=0.8, day=172, hours=[9, 12, 15], depth=0.5)
     assert told.points == day.n_points
     assert told.bytes == day["t"].nbytes + day["t_mean"].nbytes
     assert told.error < 4e-3

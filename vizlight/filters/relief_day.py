@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import FeatureAngle
 
@@ -44,7 +43,6 @@ def relief_day(
     elevation: str | None = None,
     exaggeration: float = 1.0,
     border: Border = "extend",
-    method: Method = "fast",
     raster: float | None = None,
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
@@ -67,7 +65,7 @@ def relief_day(
         Directions toward the sun, in place of latitude, day and hours.
     sun : array_like, shape (H, 2), optional
         Azimuth, clockwise from north, and altitude of the sun in degrees, in place of directions.
-    angular_diameter, samples, name, depth, elevation, exaggeration, border, method, raster
+    angular_diameter, samples, name, depth, elevation, exaggeration, border, raster
         As for :func:`vizlight.relief_shadow`.
     thickness, feature_angle, occluders
         As for :func:`vizlight.relief_shadow`.
@@ -91,12 +89,17 @@ def relief_day(
         del options["mesh"]
         return blocks.each(mesh, lambda one: relief_day(one, **options))
     asked = ReliefOptions.of(options)
+    own: dict[str, ArrayLike | None] = {
+        "latitude": latitude,
+        "day": day,
+        "hours": hours,
+        "directions": directions,
+    }
     if sun is not None:
-        if latitude is not None or day is not None or hours is not None:
-            expected = "sun alone, or latitude, day and hours"
+        if any(value is not None for value in own.values()):
+            expected = "sun alone, without directions, latitude, day and hours"
             raise ValueError(_check.message("sun", expected, "both"))
-        directions = _from_angles(sun, directions)
-    own = {"latitude": latitude, "day": day, "hours": hours, "directions": directions}
+        directions = own["directions"] = _from_angles(sun)
     toward = _directions(latitude, day, hours, directions)
     up = [way for way in toward if way[2] > 0]
     if not up:
@@ -112,11 +115,9 @@ def relief_day(
     name = asked.name
     mean = f"{name}_mean"
     records.refuse_overwriting([(found, "")], name, [mean])
-    t, seen = np.zeros((found.n_points, len(toward))), 0
-    for hour, way in enumerate(toward):
-        if way[2] > 0:
-            t[:, hour] = found.point_data[f"{name}_{seen}"]
-            seen += 1
+    t = np.zeros((found.n_points, len(toward)))
+    for seen, hour in enumerate(np.flatnonzero(toward[:, 2] > 0)):
+        t[:, hour] = found.point_data[f"{name}_{seen}"]
     arrays: dict[str, NDArray[np.generic]] = {name: t, mean: t.mean(axis=1)}
     if name + VALID in found.point_data:
         arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
@@ -130,10 +131,8 @@ def relief_day(
     return found
 
 
-def _from_angles(sun: ArrayLike, directions: ArrayLike | None) -> Array:
+def _from_angles(sun: ArrayLike) -> Array:
     """Return directions toward the sun from azimuths and altitudes in degrees."""
-    if directions is not None:
-        raise ValueError(_check.message("sun", "sun alone, without directions", "both"))
     angles = np.atleast_2d(_check.floats("sun", sun))
     if angles.ndim != 2 or angles.shape[1] != 2:
         expected = "pairs of azimuth and altitude in degrees"

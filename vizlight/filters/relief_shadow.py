@@ -29,13 +29,12 @@ from vizlight.vtk.cells import check_whole, triangles
 from vizlight.vtk.parts import share_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Keywords
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import FieldCaster, SolidCaster
     from vizlight.shading.options import FeatureAngle
@@ -93,7 +92,6 @@ def relief_shadow(
     elevation: str | None = None,
     exaggeration: float = 1.0,
     border: Border = "extend",
-    method: Method = "fast",
     raster: float | None = None,
     thickness: float | None = None,
     feature_angle: FeatureAngle = None,
@@ -141,7 +139,7 @@ def relief_shadow(
         sampled, else the active scalars. NaN is a hole.
     exaggeration : float, default: 1.0
         Factor of the heights; only for height fields.
-    border, method
+    border
         As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach
         down without end.
     raster : float, optional
@@ -212,10 +210,13 @@ def relief_shadow(
     shadow = caster(own, scene, asked)
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
-    refuse_overwriting([(mesh, "")], name, components=False, colored=False)
-    records.refuse_overwriting([(mesh, "")], name, each)
+    made = [name, name + VALID, *each]
+    records.refuse_overwriting([(mesh, "")], _check.array_name("name", name), made)
     if asked.lit:
-        _check_names({name, name + VALID, *each})
+        taken = sorted({DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}.intersection(made))
+        if taken:
+            expected = "a name that the light does not use, with lit=True"
+            raise ValueError(_check.message("name", expected, repr(taken[0])))
         refuse_overwriting(
             [(mesh, "")], DEFAULT_NAME, components=asked.components, colored=scene.colored
         )
@@ -280,14 +281,6 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         )
 
 
-def _check_names(own: set[str]) -> None:
-    """Check that the arrays of the shadow do not replace the light's."""
-    taken = own & {DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}
-    if taken:
-        expected = "a name that the light does not use, with lit=True"
-        raise ValueError(_check.message("name", expected, repr(min(taken))))
-
-
 def _ratios(
     shadow: FieldCaster | SolidCaster,
     lights: list[Light],
@@ -305,7 +298,7 @@ def _ratios(
         for i, disc in enumerate(discs):
             column = np.zeros(count)
             for one in disc:
-                column += shadow.of(one, _further(done, report))
+                column += shadow.of(one, lambda now, done=done: report(done + now))  # type: ignore[misc]
                 done += count
                 report(done)
             t[:, i] = column / len(disc)
@@ -317,10 +310,6 @@ def _ratios(
     effort = shadow.effort * max(map(len, discs))
     note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
     return t
-
-
-def _further(before: int, report: Callable[[int], None]) -> Callable[[int], None]:
-    return lambda now: report(before + now)
 
 
 def sun_direction(sun: object, name: str = "sun") -> Array:

@@ -108,7 +108,7 @@ def read(
     inputs, sided = part.inputs, part.sided
     shares: bundles.Live | None = None
     if isinstance(options.bundle, Bundle):
-        _refuse_following(scene, bundled=True)
+        _refuse_following(scene)
         given = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
         shares = bundles.Live(mesh, inputs, options.bundle, given)
         inputs = shares.dimmed(inputs, scene)
@@ -123,14 +123,11 @@ def read(
     return source._replace(inputs=inputs, sided=sided)
 
 
-def _refuse_following(scene: Scene, *, bundled: bool) -> None:
+def _refuse_following(scene: Scene) -> None:
     """Refuse a light that follows the view beside shares of light that do not."""
-    if bundled and any(light.follows_view and light.intensity > 0 for light in scene.lights):
-        expected, remedy = (
-            "lights that stay beside it in a live light",
-            "give the scene fixed lights",
-        )
-        raise ValueError(_check.message("bundle", expected, "one that follows the view", remedy))
+    if any(light.follows_view and light.intensity > 0 for light in scene.lights):
+        expected, got = "lights that stay beside it in a live light", "one that follows the view"
+        raise ValueError(_check.message("bundle", expected, got, "give the scene fixed lights"))
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = DEFAULT_NAME) -> bool:
@@ -276,29 +273,15 @@ def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 
     kept = {name: value for name, value in options.items() if name != "occluders" or value}
-    made = ReliefOptions(**_own(ReliefOptions, kept) | {"lit": True, "components": False})
-    arguments = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
-    seen, field = _Seen(), mesh.copy(deep=False)
+    arguments = _own(ReliefOptions, kept) | {"lit": True, "components": False}
+    field = mesh.copy(deep=False)
     # Colours of data, which tint() has put in the place of the light's.
     field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
-    with engine.observed(seen), warnings.catch_warnings():
+    with warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
-        relief_shadow(field, scene, **arguments)
-    inputs, light = seen.runs[-1]
+        inputs, light = _runs(lambda: relief_shadow(field, scene, **arguments))[-1]
     return Source(mesh, inputs, light, None)
-
-
-class _Seen:
-    """Observer of the engine that keeps the inputs and the options of its runs."""
-
-    def __init__(self) -> None:
-        self.runs: list[tuple[ShadingInputs, ShadingOptions]] = []
-
-    def __call__(
-        self, inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions
-    ) -> None:
-        self.runs.append((inputs.stored(), options))
 
 
 def _of_fur(
@@ -311,17 +294,28 @@ def _of_fur(
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
         expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"
         raise ValueError(_check.message("mesh", expected, "one of them", remedy))
-    _refuse_following(scene, bundled=bool(options.get("bundle")))
+    if options.get("bundle"):
+        _refuse_following(scene)
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
-    seen = _Seen()
-    with engine.observed(seen):
-        fur(skin, scene, **_own(FurOptions, options))
+    runs = _runs(lambda: fur(skin, scene, **_own(FurOptions, options)))
     return [
         Source(block, inputs, light, None)
-        for block, (inputs, light) in zip((fibres, skin), seen.runs, strict=True)
+        for block, (inputs, light) in zip((fibres, skin), runs, strict=True)
     ]
+
+
+def _runs(work: Callable[[], object]) -> list[tuple[ShadingInputs, ShadingOptions]]:
+    """Return the inputs and the options with which a filter runs the engine."""
+    found: list[tuple[ShadingInputs, ShadingOptions]] = []
+
+    def keep(inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions) -> None:
+        found.append((inputs.stored(), options))
+
+    with engine.observed(keep):
+        work()
+    return found
 
 
 def _light_again(

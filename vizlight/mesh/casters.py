@@ -22,9 +22,8 @@ from vizlight.verify import rays
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, VectorLike
     from vizlight.geometry.relief.height_field import Border
-    from vizlight.geometry.relief.shadowing import Method
     from vizlight.scene import Light, Scene
     from vizlight.shading.options import FeatureAngle
 
@@ -36,7 +35,7 @@ FAR = 1e100
 #: Range of heights, as a share of the side of a map, below which its slopes are not seen.
 UNSEEN = 1e-4
 #: Options that only height fields have.
-FIELD_ALONE = ("elevation", "exaggeration", "border", "method", "raster")
+FIELD_ALONE = ("elevation", "exaggeration", "border", "raster")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +49,6 @@ class CasterOptions(Options):
     elevation: str | None = None
     exaggeration: float = 1.0
     border: Border = "extend"
-    method: Method = "fast"
     raster: float | None = None
     thickness: float | None = None
     feature_angle: FeatureAngle = None
@@ -65,7 +63,7 @@ class CasterOptions(Options):
             raise TypeError(_check.message("occluders", expected, _check.describe(given)))
         _check.set_fields(self, occluders=list(given))
         if self.thickness is not None:
-            _check.number("thickness", self.thickness, low=0.0)
+            _check.positive("thickness", self.thickness)
         if self.elevation is not None:
             _check.text("elevation", self.elevation, expected="the name of a point array")
         check_sides("auto", self.feature_angle)
@@ -107,105 +105,93 @@ class FieldCaster:
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
-        self._field = height_field.make(found.x, found.y, found.z, border=options.border)
-        self._normal = height_field.normals(self._field)
-        self._holes = np.isnan(found.z)
-        self._to_points, self._method = found.to_points, options.method
-        self._turn = found.turn
+        field = self._field = height_field.make(found.x, found.y, found.z, border=options.border)
+        self._normal, self._found = height_field.normals(field), found
+        # From the axes of the mesh to those of the grid's rows and columns.
+        self._turn = np.eye(3) if found.turn is None else found.turn
         # The nodes are then others than the points of the mesh.
         sampled = isinstance(found, Raster)
-        self.depth = _depth(options.depth, height_field.default_depth(self._field))
+        self.depth = _depth(options.depth, height_field.default_depth(field))
         self.points = found.points()
-        normals = self._normal if self._turn is None else self._normal @ self._turn
-        upright = found.to_points(np.where(self._holes[..., np.newaxis], 0, normals))
+        known = np.isfinite(found.z)
+        upright = found.to_points(np.where(known[..., np.newaxis], self._normal @ self._turn, 0))
         self.normals = kernels.unit_rows(upright) if sampled else upright
-        self.valid: Bools = found.covered() & (found.to_points(~self._holes * 1.0) > 0)
-        # The oracle follows single rays; it knows fields as they are, not resampled ones.
-        field = self._field
-        size = max(field.x[-1], field.y[-1], field.top)
-        if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * size:
-            wanted = georeference.ENOUGH[0] * size / field.top * options.exaggeration
+        self.valid: Bools = found.covered() & (found.to_points(known * 1.0) > 0)
+        if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * field.size:
+            wanted = georeference.ENOUGH[0] * field.size / field.top * options.exaggeration
             _check.warn(
-                f"the heights of the map range over {field.top / size:.1g} of its side, a relief "
-                f"that nobody sees; pass exaggeration={10 ** round(np.log10(wanted)):g}"
+                f"the heights of the map range over {field.top / field.size:.1g} of its side, a "
+                f"relief that nobody sees; pass exaggeration={10 ** round(np.log10(wanted)):g}"
             )
-        exact = not sampled and self.depth > shadowing.LEAST_DEPTH * size
-        self.effort = sum(self._field.heights.shape) if exact else 0
+        # The oracle follows single rays; it knows fields as they are, not resampled ones.
+        exact = not sampled and self.depth > shadowing.LEAST_DEPTH * field.size
+        self.effort = sum(field.heights.shape) if exact else 0
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
         """Return t at all points; ``report`` takes the number of rays followed so far."""
-        turn = np.eye(3) if self._turn is None else self._turn
-        # Lamps are turned into the frame of the grid's rows and columns.
-        way, end = (
-            None if v is None else turn @ np.array(v) for v in (light.direction, light.position)
-        )
-        ray = shadowing.toward(self._field, direction=way, position=end)
         t = shadowing.ratio(
-            self._field, self._normal, self.depth, ray, method=self._method,
-            report=report,
+            self._field, self._normal, self.depth, direction=self._turned(light.direction),
+            position=self._turned(light.position), report=report,
         )  # fmt: skip
-        t[self._holes] = 0
-        t = self._to_points(t)
+        t[np.isnan(self._found.z)] = 0
+        t = self._found.to_points(t)
         t[~self.valid] = 0
         return t
 
     def reference(self, point: int, light: Light) -> float:
         """Return t at one point by an independent method; NaN where that does not apply."""
-        field, turn = self._field, np.eye(3) if self._turn is None else self._turn
-        way = None if light.direction is None else turn @ np.array(light.direction)
+        field, way, end = self._field, self._turned(light.direction), self._turned(light.position)
         # Below the horizon every ray is inside for ever; the oracle does not integrate that.
         if not self.effort or (way is not None and way[2] <= 0):
             return math.nan
         return rays.relief_ratio(
-            field.x, field.y, field.heights,
-            turn @ self.points[point] - field.origin, turn @ self.normals[point], self.depth,
-            way=way,
-            end=None if light.position is None else turn @ np.array(light.position) - field.origin,
-            wall=field.border != "extend",
+            field.x, field.y, field.heights, self._turn @ self.points[point] - field.origin,
+            self._turn @ self.normals[point], self.depth, way=way,
+            end=None if end is None else end - field.origin, wall=field.border != "extend",
         )  # fmt: skip
+
+    def _turned(self, vector: VectorLike | None) -> Array | None:
+        return None if vector is None else self._turn @ np.array(vector)
 
 
 class SolidCaster:
     """Shadows of a closed surface and of the occluders."""
 
     def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
-        others = list(options.occluders)
         thickness = options.thickness
         if thickness is None:
             body = closed_meshes.closed(mesh)
         vectors = normals.normals_of(
             mesh, None, 3, normals.onlooker(scene), warn=options.feature_angle is None
         )
-        self.normals = kernels.unit_rows(np.asarray(vectors, dtype=np.float64))
+        self.normals = kernels.unit_rows(vectors)
         if thickness is not None:
-            if not thickness:
-                raise ValueError(_check.message("thickness", "more than 0", thickness))
             body = closed_meshes.shell(mesh, thickness, self.normals)
         # All bodies at once: lengths inside overlapping ones count once.
-        bodies = [body] + [closed_meshes.closed(o, f"occluders[{i}]") for i, o in enumerate(others)]
+        bodies = [body]
+        for i, other in enumerate(options.occluders):
+            bodies.append(closed_meshes.closed(other, f"occluders[{i}]"))
         # Lengths are in units of the size of the surface, so that products neither overflow nor
         # underflow.
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
-        self._solids = [closed_meshes.solid(*one, self._origin, self._unit) for one in bodies]
+        self._solids = [closed_meshes.Solid(*one, self._origin, self._unit) for one in bodies]
         self.depth = _depth(options.depth, DEPTH * self._unit)
+        self._share = self.depth / self._unit
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
+        self._places = (self.points - self._origin) / self._unit
         self.valid = np.any(self.normals, axis=1) & np.all(np.isfinite(self.points), axis=1)
         faces = sum(len(body.triangles) for body in self._solids)
-        self.effort = faces if self.depth / self._unit > shadowing.LEAST_DEPTH else 0
-        self._corners: list[Array] | None = None
+        self.effort = faces if self._share > shadowing.LEAST_DEPTH else 0
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
         """Return t at all points; ``report`` takes the number of rays followed so far."""
-        good = self.valid
-        depth = self.depth / self._unit
+        good, depth = self.valid, self._share
+        # At depth 0 the limit of t is the cosine where the way is free, else 0: rays start just
+        # outside the surface, so that they miss their own facet.
         limit = depth <= shadowing.LEAST_DEPTH
-        # At depth 0 the limit of t is the cosine where the way is free, else 0.
-        inset = 1e-7 if limit else depth
-        # For depth 0 rays start just outside the surface, so that they miss their own facet.
-        place = (self.points[good] - self._origin) / self._unit
         normal = self.normals[good]
-        start = place + inset * normal if limit else place - inset * normal
+        start = self._places[good] - (-1e-7 if limit else depth) * normal
         # A lamp at a place ends its rays; what stands behind it casts no shadow here.
         way, reach = self._toward(light, start)
         length = closed_meshes.inside_length(self._solids, start, way, reach, report)
@@ -219,25 +205,21 @@ class SolidCaster:
 
     def reference(self, point: int, light: Light) -> float:
         """Return t at one point by an independent method; NaN where that does not apply."""
-        if self._corners is None:
-            self._corners = [body.vertices[body.triangles] for body in self._solids]
-        place = (self.points[point] - self._origin) / self._unit
-        depth, normal = self.depth / self._unit, self.normals[point]
-        way, reach = self._toward(light, (place - depth * normal)[np.newaxis])
-        far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in self._corners))
-        return rays.solid_ratio(self._corners, place, normal, depth, way[0], far)
+        corners = [body.corners for body in self._solids]
+        place, normal = self._places[point], self.normals[point]
+        way, reach = self._toward(light, (place - self._share * normal)[np.newaxis])
+        far = min(float(reach[0]), 10.0 * max(float(np.abs(c).max()) for c in corners))
+        return rays.solid_ratio(corners, place, normal, self._share, way[0], far)
 
     def _toward(self, light: Light, start: Array) -> tuple[Array, Array]:
         if light.direction is not None:
-            way = np.array(light.direction) / max(abs(c) for c in light.direction)
-            way = np.repeat(way[np.newaxis] / np.linalg.norm(way), len(start), axis=0)
-            return way, np.full(len(start), np.inf)
+            way = kernels.unit_rows([light.direction])
+            return np.repeat(way, len(start), axis=0), np.full(len(start), np.inf)
         place = np.array(light.position) - self._origin
         place /= max(self._unit, np.abs(place).max() / FAR)
-        for body in self._solids:
-            if closed_meshes.is_inside(body, place):
-                expected, got = "a light outside the solid", light.position
-                raise ValueError(_check.message("position", expected, got, "move the light"))
+        if any(closed_meshes.is_inside(body, place) for body in self._solids):
+            expected, got = "a light outside the solid", light.position
+            raise ValueError(_check.message("position", expected, got, "move the light"))
         reach = np.linalg.norm(place - start, axis=1)
         return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
 

@@ -9,30 +9,26 @@ are not right enough yet.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import mutable
-from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.geometry.lines.bundle import segment_starts
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.mesh import blocks, closed_meshes
+from vizlight.mesh.closed_meshes import Tracer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from embreex.rtcore_scene import EmbreeScene
-
-    from vizlight._types import Array, Bools, Foreign, Indices
+    from vizlight._types import Array, Bools, Indices
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6
 #: Distance of a place beside a point, as a share of the distance of its triangle's middle.
 BESIDE = 0.05
-#: Distance from a triangle at which VTK finds a hit: at 0 rays pass through edges.
-TOLERANCE = 1e-9
+#: Length of rays in scenes of size 1.
+FAR = 2.0
 #: Numbers of rays per point at first and at most, rays that are followed at once, shifts of nets.
 FEWEST, MOST, AT_ONCE, SHIFTS = 32, 1 << 14, 1 << 17, 64
 #: Steps of additive nets in 2 and 3 dimensions, from the roots of x^3 = x + 1 and x^4 = x + 1.
@@ -94,49 +90,6 @@ class Seen(NamedTuple):
     rays: int
 
 
-class _Embree:
-    """Finds triangles on rays, all rays at once."""
-
-    name = "rays by Embree"
-
-    def __init__(self, scene: EmbreeScene) -> None:
-        self._scene = scene
-
-    def free(self, start: Array, way: Array) -> Bools:
-        hit: Indices = np.asarray(self._scene.run(start, way, query="OCCLUDED"))
-        return np.asarray(hit != 0)
-
-    def first(self, start: Array, way: Array) -> Indices:
-        return np.asarray(self._scene.run(start, way), dtype=np.intp)
-
-
-class _Locator:
-    name = "rays by VTK"
-
-    def __init__(self, points: Array, triangles: Indices) -> None:
-        self._tree = vtkStaticCellLocator()
-        self._tree.SetDataSet(blocks.polydata(points, triangles))
-        self._tree.BuildLocator()
-
-    def free(self, start: Array, way: Array) -> Bools:
-        return self.first(start, way) < 0
-
-    def first(self, start: Array, way: Array) -> Indices:
-        t, part, cell = mutable(0.0), mutable(0), mutable(0)
-        place, weights = [0.0] * 3, [0.0] * 3
-        find: Foreign = self._tree.IntersectWithLine
-        found = np.full(len(start), -1)
-        ends = start + 2 * way
-        for row, (a, b) in enumerate(zip(start.tolist(), ends.tolist(), strict=True)):
-            if find(a, b, TOLERANCE, t, place, weights, part, cell):
-                found[row] = int(cell)
-        return found
-
-
-#: Both return whether rays meet nothing, and the first triangle on each ray, -1 for none.
-_Tracer: TypeAlias = "_Embree | _Locator"
-
-
 class Occluders:
     """Triangles that hide the sky, scaled to size 1 about 0 so that float32 loses nothing."""
 
@@ -150,13 +103,7 @@ class Occluders:
         self.corners = (used - self.middle) / self.size
         a, b, c = self.corners.transpose(1, 0, 2)
         self.normals = np.cross(b - a, c - a)
-        scene = closed_meshes.embree_tree(self.corners) if len(used) else None
-        self.tracer: _Tracer
-        if scene is not None:
-            self.tracer = _Embree(scene)
-        else:
-            numbers = np.arange(3 * len(used)).reshape(-1, 3)
-            self.tracer = _Locator(self.corners.reshape(-1, 3), numbers)
+        self.tracer = Tracer(self.corners)
 
     def seen(
         self,
@@ -194,8 +141,8 @@ class Occluders:
             return Seen(share, valid, 0.0, 0)
         rows = np.flatnonzero(valid)
         radius = None if places.radius is None else places.radius / self.size
-        work = _Estimate(self.tracer, points[rows], ways[rows], radius, up)
-        share[rows], missed = work.until(error, report)
+        work = _Rays(self.tracer, points[rows], ways[rows], radius, up)
+        share[rows], missed = _until(error, work, report)
         dark = rows[share[rows] == 0]
         if not len(dark) or radius is not None:
             return Seen(share, valid, missed, work.rays)
@@ -209,77 +156,74 @@ class Occluders:
 
     def _buried(self, points: Array, normals: Array) -> Bools:
         """Return whether points see the inner side of triangles in most directions."""
-        local = _net(1, 64, 0)[0]
+        net = _net(1, 64, 0, line=False)[0]
         behind = np.zeros(len(points))
-        for part, (start, way) in _rays(points, normals, local, None):
-            hit = self.tracer.first(start, way)
+        for part, start, way in _starts(points, normals, net, 0.0):
+            hit = self.tracer.first(start, way, FAR)
             inner = np.einsum("ij,ij->i", way, self.normals[hit]) > 0
-            behind[part] = np.reshape((hit >= 0) & inner, (len(local[0]), -1)).mean(axis=0)
+            behind[part] = np.reshape((hit >= 0) & inner, (len(net[0]), -1)).mean(axis=0)
         return np.asarray(behind > 1 / 2)
 
 
-class _Estimate:
-    """Shares of points as means over halves of their rays."""
+class _Rays:
+    """Rays of points, tubes of a radius or a surface, by parts of their nets."""
 
     def __init__(
-        self, tracer: _Tracer, points: Array, ways: Array, radius: float | None, up: Array | None
+        self, tracer: Tracer, points: Array, ways: Array, radius: float | None, up: Array | None
     ) -> None:
-        self.tracer, self.points, self.ways, self.radius = tracer, points, ways, radius
+        self.tracer, self.points, self.ways = tracer, points, ways
+        self.line, self.away = radius is not None, OUTSIDE * (radius or 0.0)
         self.up = None if up is None else (up / np.linalg.norm(up)).astype(np.float32)
         # Neighbours in the order of points have other shifts.
         self.shift = np.random.default_rng(0).permutation(len(points)) % SHIFTS
         self.rays = 0
 
-    def until(self, error: float, report: Callable[[int], None]) -> tuple[Array, float]:
-        """Return the shares, and the error that 95 of 100 of them keep to."""
-        count = added = FEWEST // 2
-        going = np.arange(len(self.points))
-        one = self._free(going, 0, count)
-        share = np.zeros(len(going), np.float32)
-        squares = 0.0
-        while True:
-            other, total = self._free(going, count, added), count + added
-            # The square of a net's error falls with the power 1.5 of its rays, which gives that of
-            # both parts together from their difference.
-            square = (one - other) ** 2 * total**-1.5 / (count**-1.5 + added**-1.5)
-            mean = (count * one + added * other) / total
-            share[going] = mean
-            # Few points tell little: what nets err by as a rule stands for some more of each class.
-            rule = USUAL * mean * (1 - mean) * total**-1.5
-            kind = np.minimum((mean * CLASSES).astype(np.intp), CLASSES - 1)
-            size, found, usual = (
-                np.bincount(kind, rows, minlength=CLASSES) for rows in (None, square, rule)
-            )
-            pooled = (found + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
-            done = (QUANTILE * np.sqrt(pooled) <= error)[kind] | (total >= MOST)
-            squares += float(pooled[kind[done]].sum())
-            going, one = going[~done], mean[~done]
-            report(len(share) - len(going))
-            if not len(going):
-                return share, QUANTILE * float(np.sqrt(squares / len(share)))
-            count, added = total, total // 2
-
-    def _free(self, rows: Indices, first: int, count: int) -> Array:
-        """Return the share of some rays of each point that meet nothing."""
-        line = self.radius is not None
-        nets = _net(SHIFTS, count, first, line=line)
+    def free(self, rows: Indices, first: int, count: int) -> Array:
+        """Return the share of ``count`` rays of each point, from a first one on, that are free."""
         found = np.empty(len(rows), np.float32)
         self.rays += len(rows) * count
-        order = np.argsort(self.shift[rows], kind="stable")
-        ends = np.searchsorted(self.shift[rows][order], np.arange(SHIFTS + 1))
-        for number in range(SHIFTS):
-            own = order[ends[number] : ends[number + 1]]
+        for number, net in enumerate(_net(SHIFTS, count, first, line=self.line)):
+            own = np.flatnonzero(self.shift[rows] == number)
             at = rows[own]
-            parts = _rays(self.points[at], self.ways[at], nets[number], self.radius)
-            for part, (start, way) in parts:
-                free = self.tracer.free(start, way)
+            for part, start, way in _starts(self.points[at], self.ways[at], net, self.away):
+                free = self.tracer.free(start, way, FAR)
                 if self.up is not None:
                     free &= way @ self.up > 0
                 found[own[part]] = free.reshape(count, -1).mean(axis=0)
         return found
 
 
-def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[tuple[Array, Array]]:
+def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Array, float]:
+    """Return the shares of points, and the error that 95 of 100 of them keep to."""
+    count = added = FEWEST // 2
+    going = np.arange(len(work.points))
+    one = work.free(going, 0, count)
+    share = np.zeros(len(going), np.float32)
+    squares = 0.0
+    while True:
+        other, total = work.free(going, count, added), count + added
+        # The square of a net's error falls with the power 1.5 of its rays, which gives that of
+        # both parts together from their difference.
+        square = (one - other) ** 2 * total**-1.5 / (count**-1.5 + added**-1.5)
+        mean = (count * one + added * other) / total
+        share[going] = mean
+        # Few points tell little: what nets err by as a rule stands for some more of each class.
+        rule = USUAL * mean * (1 - mean) * total**-1.5
+        kind = np.minimum((mean * CLASSES).astype(np.intp), CLASSES - 1)
+        size, found, usual = (
+            np.bincount(kind, rows, minlength=CLASSES) for rows in (None, square, rule)
+        )
+        pooled = (found + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
+        done = (QUANTILE * np.sqrt(pooled) <= error)[kind] | (total >= MOST)
+        squares += float(pooled[kind[done]].sum())
+        going, one = going[~done], mean[~done]
+        report(len(share) - len(going))
+        if not len(going):
+            return share, QUANTILE * float(np.sqrt(squares / len(share)))
+        count, added = total, total // 2
+
+
+def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array, Array]]:
     """Return shifted parts of a net of directions, weighted by the cosine."""
     net = (np.arange(first, first + count)[:, np.newaxis] + 0.5) * RATES[3 if line else 2]
     made = []
@@ -298,25 +242,17 @@ def _net(shifts: int, count: int, first: int, *, line: bool = False) -> list[tup
     return made
 
 
-def _rays(
-    points: Array, ways: Array, net: tuple[Array, Array], radius: float | None
-) -> Iterator[tuple[slice, tuple[Array, Array]]]:
+def _starts(
+    points: Array, ways: Array, net: tuple[Array, Array], away: float
+) -> Iterator[tuple[slice, Array, Array]]:
     """Yield some points, and the starts and directions of their rays, one ray of each at a time."""
     toward, outward = net
     count = len(toward)
-    for first in range(0, len(points), max(1, AT_ONCE // count)):
-        part = slice(first, first + max(1, AT_ONCE // count))
-        frame = _frames(ways[part])
-        across = frame.transpose(1, 0, 2).reshape(3, -1)
+    for part in _pool.blocks(len(points), max(1, AT_ONCE // count)):
+        across = _frames(ways[part]).transpose(1, 0, 2).reshape(3, -1)
         way = (toward @ across).reshape(-1, 3)
-        if radius is None:
-            begin = (points[part] + OFFSET * ways[part]).astype(np.float32)
-            start: Array = np.tile(begin, (count, 1))
-        else:
-            away = (OUTSIDE * radius + OFFSET) * outward
-            start = (away @ across).reshape(count, -1, 3) + points[part].astype(np.float32)
-            start = start.reshape(-1, 3)
-        yield part, (np.ascontiguousarray(start, np.float32), way)
+        start = ((away + OFFSET) * outward @ across).reshape(count, -1, 3)
+        yield part, (start + points[part].astype(np.float32)).reshape(-1, 3), way
 
 
 def _frames(ways: Array) -> Array:

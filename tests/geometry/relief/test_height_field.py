@@ -4,42 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fields import METHODS, sun
+from fields import sun
 
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field
 
 
-@pytest.mark.parametrize(
-    "nodes",
-    [
-        np.linspace(0.0, 1.0, 1000),
-        np.cumsum(np.geomspace(1e-9, 1.0, 50)),
-        np.array([0.0, 1e-300, 1e70]),
-        np.array([-3.0, -1.0]),
-    ],
-    ids=["even", "ever wider", "smallest and largest", "one cell"],
-)
-def test_intervals_are_those_of_a_binary_search(nodes, random):
-    near = [np.nextafter(nodes, end) for end in (-np.inf, np.inf)]
-    between = random.uniform(nodes[0], nodes[-1], 1000)
-    place = np.concatenate([nodes, *near, between, [-1e70, 1e70]])
-    found = height_field.locate(nodes, place)
-    assert np.array_equal(found, np.searchsorted(nodes, place, side="right"))
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_holes(method):
+def test_holes():
     """A flat field stays flat under holes; with walls, light comes in through them."""
     x = np.arange(21.0)
     z = np.zeros((21, 21))
     z[8:12, 9:13] = np.nan
     way = sun(30, 0)
-    t = relief.shadow(x, x, z, depth=0.5, direction=way, method=method)
+    t = relief.shadow(x, x, z, depth=0.5, direction=way)
     hole = np.isnan(z)
     assert not t[hole].any()
     np.testing.assert_allclose(t[~hole], 0.5, atol=1e-12)
-    wall = relief.shadow(x, x, z, depth=1.0, direction=way, border="wall", method=method)
+    wall = relief.shadow(x, x, z, depth=1.0, direction=way, border="wall")
     row = 10
     # The wall stands at x = 8: the ray from depth 1 reaches it before the surface.
     expected = np.where((x <= 8) & (8 - x < 3**0.5), 1 / np.maximum((8 - x) * 2 / 3**0.5, 1), 0.5)
@@ -48,12 +28,11 @@ def test_holes(method):
 
 
 @pytest.mark.parametrize("shape", [(2, 2), (2, 7), (9, 2), (3, 3)])
-@pytest.mark.parametrize("method", METHODS)
-def test_small_fields(shape, method, random):
+def test_small_fields(shape, random):
     y, x = (np.arange(float(n)) for n in shape)
     z = random.uniform(0, 0.1, shape)
     for way in (sun(45, 10), sun(5, 200), sun(90, 0)):
-        t = relief.shadow(x, y, z, depth=0.1, direction=way, method=method)
+        t = relief.shadow(x, y, z, depth=0.1, direction=way)
         assert np.all((t > 0) & (t <= 1))
 
 
@@ -85,7 +64,6 @@ UP = {"direction": (0, 0, 1)}
             ValueError,
             "position: expected a light outside the solid, above 0 there",
         ),
-        (FLAT, {"depth": 1, **UP, "method": "slow"}, ValueError, "method: expected 'fast' or"),
         (FLAT, {"depth": 1, **UP, "border": "none"}, ValueError, "border: expected 'extend' or"),
         (FLAT, {"depth": 1, **UP, "normals": np.zeros((3, 3))}, ValueError, r"normals: .*\(2, 3"),
         (([0, 1], [0, 1], np.full((2, 2), np.nan)), {"depth": 1, **UP}, ValueError, "NaN every"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fields import METHODS, hills, places, sun
+from fields import hills, places, sun
 
 from vizlight.geometry import relief
 from vizlight.geometry.relief import height_field
@@ -16,11 +16,9 @@ def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     x, y, z = hills(20)
     points = places(x, y, z, 24, random).reshape(2, 3, 4, 3)
     for light in ({"direction": sun(30, 10)}, {"position": (3, 3, 4)}):
-        found = relief.inside_length(x, y, z, points, method="exact", **light)
+        found = relief.inside_length(x, y, z, points, **light)
         assert found.shape == (2, 3, 4)
-        one = [
-            relief.inside_length(x, y, z, p, method="exact", **light) for p in points.reshape(-1, 3)
-        ]
+        one = [relief.inside_length(x, y, z, p, **light) for p in points.reshape(-1, 3)]
         np.testing.assert_allclose(found.ravel(), one, atol=1e-13)
     assert relief.inside_length(x, y, z, np.empty((0, 3)), direction=(0, 0, 1)).shape == (0,)
     odd = relief.inside_length(x, y, z, [[1, 1, np.nan], [1, 1, -1]], direction=(0, 0, 1))
@@ -30,14 +28,13 @@ def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     assert odd[1] > 1
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_more_occluder_is_less_light(method):
+def test_more_occluder_is_less_light():
     x = np.linspace(0, 10, 101)
     tower = (np.abs(x - 6) < 0.5) & (np.abs(x[:, None] - 5) < 1.5)
     before = None
     for height in (0, 0.2, 0.5, 1, 2, 4):
         z = np.where(tower, height, 0.0)
-        t = relief.shadow(x, x, z, depth=0.3, direction=sun(25, 15), method=method)
+        t = relief.shadow(x, x, z, depth=0.3, direction=sun(25, 15))
         t = t[:, x < 5]
         if before is not None:
             assert np.all(t <= before + 1e-12)
@@ -46,25 +43,21 @@ def test_more_occluder_is_less_light(method):
     assert before.max() <= np.sin(np.radians(25)) + 1e-12
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_mirrors_turns_and_scale(method):
+def test_mirrors_turns_and_scale():
     x, y, z = hills(40, 55)
     way = sun(20, 35)
-    shade = {"depth": 0.2, "method": method}
+    shade = {"depth": 0.2}
     t = relief.shadow(x, y, z, direction=way, **shade)
     mirrored = relief.shadow(-x[::-1], y, z[:, ::-1], direction=way * [-1, 1, 1], **shade)
     np.testing.assert_allclose(mirrored[:, ::-1], t, atol=1e-10)
     turned = relief.shadow(y, x, z.T, direction=way[[1, 0, 2]], **shade)
     np.testing.assert_allclose(turned.T, t, atol=1e-10)
     for scale in (1e-60, 1e60):
-        big = relief.shadow(
-            scale * x, scale * y, scale * z, direction=way, depth=0.2 * scale, method=method
-        )
+        big = relief.shadow(scale * x, scale * y, scale * z, direction=way, depth=0.2 * scale)
         np.testing.assert_allclose(big, t, atol=1e-10)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_far_from_the_origin_in_float32(method):
+def test_far_from_the_origin_in_float32():
     """What float32 was given is kept: the same field near the origin has the same t."""
     x = (5e6 + 30 * np.arange(60)).astype(np.float32)
     y = (5.1e6 + 30 * np.arange(50)).astype(np.float32)
@@ -74,10 +67,8 @@ def test_far_from_the_origin_in_float32(method):
         ({"direction": sun(20, 60)}, {"direction": sun(20, 60)}),
         ({"position": light}, {"position": light - [5e6, 5.1e6, 0]}),
     ):
-        t = relief.shadow(x, y, z, depth=40, method=method, **ray)
-        near = relief.shadow(
-            x.astype(float) - 5e6, y.astype(float) - 5.1e6, z, depth=40, method=method, **moved
-        )
+        t = relief.shadow(x, y, z, depth=40, **ray)
+        near = relief.shadow(x.astype(float) - 5e6, y.astype(float) - 5.1e6, z, depth=40, **moved)
         np.testing.assert_allclose(t, near, atol=1e-9)
 
 
@@ -86,7 +77,7 @@ def test_far_from_the_origin_in_float32(method):
 def test_no_normal_no_light(normal, depth):
     x, y, z = hills(12, 9)
     normals = height_field.normals(height_field.make(x, y, z, border="extend"))
-    options = {"depth": depth, "direction": sun(50, 30), "method": "exact"}
+    options = {"depth": depth, "direction": sun(50, 30)}
     expected = relief.shadow(x, y, z, normals=normals, **options)
     expected[2, 3] = 0
     normals[2, 3] = normal
@@ -102,7 +93,7 @@ def test_a_light_far_away_is_a_direction(way, far):
     position = far * np.array(way)
     for depth in (0, 0.1):
         near, sunny = (
-            relief.shadow(x, y, z, depth=depth, method="exact", **light)
+            relief.shadow(x, y, z, depth=depth, **light)
             for light in ({"position": position}, {"direction": way})
         )
         np.testing.assert_allclose(near, sunny, atol=1e-9)

@@ -26,7 +26,7 @@ def windings(body, start, way):
 
 
 def solid(mesh):
-    return closed_meshes.solid(*closed_meshes.closed(mesh), np.zeros(3))
+    return closed_meshes.Solid(*closed_meshes.closed(mesh))
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
 import scipy
@@ -16,14 +16,24 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-#: Number of nodes in a block.
-BLOCK = 1 << 16
-
 Border = Literal["extend", "wall"]
 
 #: Default depth of cos-theta shadows: share of a cell's width at most and at least, and of the mean
 #: difference of heights from node to node.
 DEPTH_OF_CELL, LEAST_OF_CELL, DEPTH_OF_STEP = 1 / 8, 1e-3, 1 / 2
+
+
+class Bounds(NamedTuple):
+    """Largest and least heights over squares of 2^l x 2^l cells, for all l one after the other.
+
+    Level l begins at ``offset[l]`` and has rows of ``columns[l]`` squares. Without a solid both
+    heights are -inf.
+    """
+
+    largest: Array
+    least: Array
+    offset: Indices
+    columns: Indices
 
 
 @dataclass(frozen=True)
@@ -63,42 +73,33 @@ class Field:
         return np.pad(self.heights, 1, mode="edge")
 
     @cached_property
-    def bounds(self) -> list[tuple[Array, Array]]:
-        """Largest and least heights over 2^l x 2^l cells, l = 0, 1, ...; -inf without a solid."""
-        return _pyramid(self.corners, self.border)
+    def bounds(self) -> Bounds:
+        """Bounds of the heights on every scale."""
+        corners = self.corners
+        four = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]]
+        largest, least = np.maximum.reduce(four), np.minimum.reduce(four)
+        empty = np.isnan(largest)
+        if self.border == "wall":
+            empty[[0, -1]] = True
+            empty[:, [0, -1]] = True
+        largest[empty] = least[empty] = -np.inf
+        levels = [(largest, least)]
+        while max(largest.shape) > 1:
+            largest = _halve(largest, np.maximum, -np.inf)
+            least = _halve(least, np.minimum, np.inf)
+            levels.append((largest, least))
+        sizes = np.array([largest.size for largest, _ in levels])
+        return Bounds(
+            np.concatenate([largest.ravel() for largest, _ in levels]),
+            np.concatenate([least.ravel() for _, least in levels]),
+            np.cumsum(sizes) - sizes,
+            np.array([largest.shape[1] for largest, _ in levels]),
+        )
 
-    def height(self, x: Array, y: Array) -> Array:
-        """Return heights at positions relative to the origin, -inf where there is no solid."""
-        i, j = self.cell(0, x), self.cell(1, y)
-        u, v = self.share(0, i, x), self.share(1, j, y)
-        z = self.corners
-        low = z[j, i] + u * (z[j, i + 1] - z[j, i])
-        high = z[j + 1, i] + u * (z[j + 1, i + 1] - z[j + 1, i])
-        solid = np.isfinite(self.bounds[0][0][j, i])
-        return np.where(solid, low + v * (high - low), -np.inf)
-
-    def cell(self, axis: int, place: Array) -> Indices:
-        """Return the index of the cell of an axis that contains each position."""
-        return locate(self.edges[axis][1:-1], place)
-
-    def share(self, axis: int, cell: Indices, place: Array) -> Array:
-        """Return positions relative to their cells, from 0 to 1; 0 in an unbounded cell."""
-        edges = self.edges[axis]
-        low, high = edges[cell], edges[cell + 1]
-        ends = np.isfinite(low) & np.isfinite(high)
-        width = np.where(ends, high, 1.0) - np.where(ends, low, 0.0)
-        return np.where(ends, (place - np.where(ends, low, 0.0)) / width, 0.0)
-
-
-def locate(nodes: Array, place: Array) -> Indices:
-    """Return the number of rising nodes at or below each position, fast for even spacing."""
-    with np.errstate(over="ignore"):
-        steps = (place - nodes[0]) / (nodes[1] - nodes[0])
-    guess: Indices = np.clip(steps, 0, len(nodes) - 2).astype(np.intp)
-    odd = np.flatnonzero((place < nodes.take(guess)) | (place >= nodes.take(guess + 1)))
-    guess += 1
-    guess[odd] = np.searchsorted(nodes, place.take(odd), side="right")
-    return guess
+    @property
+    def size(self) -> float:
+        """Longest side, the height included."""
+        return float(max(self.x[-1], self.y[-1], self.top))
 
 
 def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
@@ -178,40 +179,28 @@ def normals(field: Field) -> Array:
     A node has the slope of the parabola through it and its two neighbours; at a border or
     next to a hole it is the slope of the only cell there.
     """
-    normal = np.empty((*field.heights.shape, 3))
-    # Blocks of rows that fit the cache, each with one more row on either side.
-    rows = max(BLOCK // len(field.x), 1)
-    for first in range(0, len(field.y), rows):
-        last = min(first + rows, len(field.y))
-        low, high = max(first - 1, 0), min(last + 1, len(field.y))
-        heights, own = field.heights[low:high], slice(first - low, last - low)
-        right = _slope(heights[own], field.x, 1)
-        up = _slope(heights, field.y[low:high], 0)[own]
-        size = np.sqrt(right * right + up * up + 1)
-        part = normal[first:last]
-        part[..., 0], part[..., 1], part[..., 2] = -right / size, -up / size, 1 / size
+    normal = np.ones((*field.heights.shape, 3))
+    right, up = slopes(field)
+    normal[..., 0], normal[..., 1] = -right, -up
+    normal /= np.sqrt(np.einsum("ijk,ijk->ij", normal, normal))[..., np.newaxis]
     return normal
 
 
-def _slope(heights: Array, nodes: Array, axis: int) -> Array:
-    """Return the slope at the nodes along one axis, 0 at nodes without a neighbour."""
-    if not np.isnan(heights).any():
-        return np.asarray(np.gradient(heights, nodes, axis=axis))
-    z = np.moveaxis(heights, axis, -1)
-    step = np.diff(nodes)
-    rise = np.diff(z, axis=-1) / step
+def slopes(field: Field) -> tuple[Array, Array]:
+    """Return the slopes along x and along y at the nodes, shapes (ny, nx); see :func:`normals`."""
+    return _slope(field.heights, field.x), _slope(field.heights.T, field.y).T
+
+
+def _slope(heights: Array, nodes: Array) -> Array:
+    """Return the slope at the nodes along the last axis, 0 at nodes without a neighbour."""
+    sides = [(0, 0), (1, 1)]
+    step = np.pad(np.diff(nodes), 1, mode="edge")
+    rise = np.pad(np.diff(heights), sides, constant_values=np.nan) / step
+    before, after = rise[:, :-1], rise[:, 1:]
     # The weight of the slope on one side is the length of the step on the other side.
-    weight = np.where(np.isnan(rise), 0.0, 1.0)
-    rise = np.where(np.isnan(rise), 0.0, rise)
-    total, weights = np.zeros(z.shape), np.zeros(z.shape)
-    for node, opposite in ((np.s_[..., :-1], step[:-1]), (np.s_[..., 1:], step[1:])):
-        # At a border there is no other side, so the weight does not matter.
-        far = np.ones(len(nodes))
-        far[1:-1] = opposite
-        total[node] += rise * weight * far[node]
-        weights[node] += weight * far[node]
-    result: Array = np.moveaxis(total / np.where(weights > 0, weights, 1), -1, axis)
-    return result
+    slope = (before * step[1:] + after * step[:-1]) / (step[1:] + step[:-1])
+    slope = np.where(np.isnan(before), after, np.where(np.isnan(after), before, slope))
+    return np.nan_to_num(slope, copy=False)
 
 
 def _axis(name: str, values: ArrayLike) -> Array:
@@ -228,23 +217,6 @@ def _axis(name: str, values: ArrayLike) -> Array:
 
 def _edges(nodes: Array) -> Array:
     return np.concatenate([[-np.inf], nodes - nodes[0], [np.inf]])
-
-
-def _pyramid(corners: Array, border: Border) -> list[tuple[Array, Array]]:
-    """Return the largest and the least height over squares of 2^l x 2^l cells, l = 0, 1, ..."""
-    four = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]]
-    largest, least = np.maximum.reduce(four), np.minimum.reduce(four)
-    empty = np.isnan(largest)
-    if border == "wall":
-        empty[[0, -1]] = True
-        empty[:, [0, -1]] = True
-    largest[empty] = least[empty] = -np.inf
-    bounds = [(largest, least)]
-    while max(largest.shape) > 1:
-        largest = _halve(largest, np.maximum, -np.inf)
-        least = _halve(least, np.minimum, np.inf)
-        bounds.append((largest, least))
-    return bounds
 
 
 def _halve(cells: Array, extreme: np.ufunc, neutral: float) -> Array:

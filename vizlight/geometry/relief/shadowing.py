@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, Protocol, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight.geometry.relief import height_field, strips, sweeping, walks
+from vizlight.geometry.relief import height_field, walks
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
@@ -17,13 +16,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices, VectorLike
+    from vizlight._types import Array, VectorLike
     from vizlight.geometry.relief.height_field import Border, Field
 
 
 __all__ = ["inside_length", "shadow"]
-
-Method = Literal["fast", "exact"]
 
 #: Number of rays in a block, whose arrays fit the cache.
 BLOCK = 1 << 14
@@ -43,7 +40,6 @@ def inside_length(
     direction: VectorLike | None = None,
     position: VectorLike | None = None,
     border: Border = "extend",
-    method: Method = "fast",
 ) -> Array:
     """Return the length inside a height field of segments from points to a light.
 
@@ -64,11 +60,6 @@ def inside_length(
         without end, and a hole has the height of the nearest node by index. "wall": the solid ends
         there in vertical walls, and likewise at each cell that lacks a corner. Walls are part of
         the solid: a ray that runs in the plane of one is inside below the wall's upper edge.
-    method : {"fast", "exact"}
-        Method of following the rays. "exact": cells are crossed one by one, or 2^l x 2^l at once
-        where all of them are above or below the ray. "fast": the same for a light with a position
-        and, with the extra ``fast``, for every light; without it the field is resampled, for a
-        light at infinity, in profiles along the light's azimuth.
 
     Returns
     -------
@@ -88,15 +79,11 @@ def inside_length(
     -----
     The surface is bilinear, not triangulated. It has no diagonals to choose, so a mirrored field
     has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
-    found in closed form. The error of "exact" is at most ``3 eps`` times the size of the field for
-    each time that a ray crosses the surface without grazing it. The error of profiles decreases
-    with the square of the spacing, as does the error of the bilinear surface for a smooth one; on
-    ground that is rough from node to node it does not: the mean error of t is 1e-3 on smooth hills,
-    2e-2 on rough mountains and up to 8e-2 on noise, where single points are off by up to 0.94. The
-    cost is O(log N) squares, or steps of a profile, for each time that a ray crosses the surface.
-    Per ray, with a sun from 40 to 5 degrees high over 512 x 512 or 1024 x 1024 nodes, compiled code
-    takes 0.2 to 0.6 microseconds of processor time, profiles 0.7 to 2, "exact" without the extra
-    ``fast`` 3 to 20: without it neither of the two replaces the other.
+    found in closed form. The error is at most ``3 eps`` times the size of the field for each time
+    that a ray crosses the surface without grazing it. The cost is O(log N) squares for each time
+    that a ray crosses the surface: with a sun from 40 to 5 degrees high over 512 x 512 or 1024 x
+    1024 nodes a ray takes 0.3 to 3 microseconds of processor time, without the extra ``fast`` 2
+    to 20.
     Source: cos-theta, section 2.
 
     Examples
@@ -112,12 +99,8 @@ def inside_length(
     # Such rays are followed from 0 and get NaN at the end.
     odd = ~np.all(np.abs(flat) <= _check.FARTHEST, axis=1)
     flat[odd] = 0
-    ray = toward(field, direction=direction, position=position)
-
-    def start(rays: Indices, _quick: bool = False, /) -> Array:
-        return flat.take(rays, axis=0).T
-
-    length = lengths(field, start, len(flat), ray, method)
+    ways = toward(field, direction, position)
+    length = _lengths(field, lambda rows: flat[rows].T, len(flat), ways)
     length[odd] = np.nan
     return length.reshape(starts.shape[:-1])
 
@@ -133,13 +116,12 @@ def shadow(
     position: VectorLike | None = None,
     normals: ArrayLike | None = None,
     border: Border = "extend",
-    method: Method = "fast",
 ) -> Array:
     """Return the cos-theta shadow of a height field at its nodes.
 
     Parameters
     ----------
-    x, y, z, direction, position, border, method
+    x, y, z, direction, position, border
         As for :func:`inside_length`.
     depth : float
         Depth d below the surface at which the light is collected, 0 or more, in the unit of the
@@ -163,7 +145,7 @@ def shadow(
     Notes
     -----
     On a plane t is the cosine of the angle between n and the direction from p' to the light, for
-    every d. The error of "exact" there is at most ``(8 + S/d) eps``, where S is the size of the
+    every d. The error there is at most ``(8 + S/d) eps``, where S is the size of the
     field, and 8 eps at depth 0. As d goes to 0, t goes to the clamped cosine where nothing occludes
     the light and to 0 elsewhere; depth 0 gives this limit. Where d is much less than the spacing, t
     depends on the slope of the cell on the side of a node that faces the light. The source prints
@@ -181,41 +163,18 @@ def shadow(
             raise ValueError(_check.message("normals", expected, normal))
         dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
         normal[dark] = 0
-    ray = toward(field, direction=direction, position=position)
-    t = ratio(field, normal, depth, ray, method=method)
+    t = ratio(field, normal, depth, direction=direction, position=position)
     t[dark] = 0
     return t
 
 
-class Start(Protocol):
-    """Starts of rays by their indices, shape (3, rays); if ``quick`` by compiled code."""
-
-    def __call__(self, rays: Indices, quick: bool = False, /) -> Array: ...
-
-
-class Ray:
-    """Directions from positions toward one light, relative to a field's origin."""
-
-    def __init__(self, direction: Array | None, position: Array | None) -> None:
-        self.direction, self.position = direction, position
-
-    def from_places(self, start: Array) -> tuple[Array, Array]:
-        """Return unit directions (3, N) and lengths (N,) of the rays from positions (3, N)."""
-        if self.direction is not None:
-            way = np.repeat(self.direction[:, np.newaxis], start.shape[1], axis=1)
-            return way, np.full(start.shape[1], walks.FAR)
-        assert self.position is not None
-        way = self.position[:, np.newaxis] - start
-        size = kernels.length(way)
-        unit = way / np.where(size > 0, size, 1)
-        unit[np.abs(unit) < ROUNDING] = 0
-        return unit, np.minimum(size, walks.FAR)
-
-
 def toward(
-    field: Field, *, direction: VectorLike | None = None, position: VectorLike | None = None
-) -> Ray:
-    """Return the :class:`Ray` toward a light, which must not be inside the solid."""
+    field: Field, direction: VectorLike | None, position: VectorLike | None
+) -> Callable[[Array], tuple[Array, Array]]:
+    """Return a function from starts (3, N) to the unit directions (3, N) and lengths (N,) of rays.
+
+    Starts and lengths are relative to the field's origin. A lamp must not be inside the solid.
+    """
     if (direction is None) == (position is None):
         got = "neither" if direction is None else "both"
         raise ValueError(_check.message("direction, position", "one of them", got))
@@ -228,209 +187,98 @@ def toward(
         way = np.array(vector) / max(abs(c) for c in vector)
         # The sine of 180 degrees is not 0 in a computer; a ray in a plane of nodes stays there.
         way[np.abs(way) < ROUNDING] = 0
-        return Ray(way / np.linalg.norm(way), None)
+        way /= np.linalg.norm(way)
+        return lambda start: (
+            np.repeat(way[:, np.newaxis], start.shape[1], axis=1),
+            np.full(start.shape[1], walks.FAR),
+        )
+    lamp = np.array(vector) - field.origin
+    above, inside = np.array([[0.0], [0.0], [1.0]]), np.empty(1)
+    _follow(field, lamp[:, np.newaxis], above, np.array([walks.FAR]), inside)
     # A lamp may stand on the ground; 1e-9 of the size is rounding.
-    place = np.array(vector) - field.origin
-    height = float(field.height(place[:1], place[1:2])[0])
-    size = max(field.x[-1], field.y[-1], field.top)
-    if place[2] < height - 1e-9 * size:
-        expected = f"a light outside the solid, above {height + field.origin[2]:.9g} there"
+    if inside[0] > 1e-9 * field.size:
+        height = lamp[2] + inside[0] + field.origin[2]
+        expected = f"a light outside the solid, above {height:.9g} there"
         raise ValueError(_check.message("position", expected, vector, "raise the light"))
-    return Ray(None, place)
+
+    def to_lamp(start: Array) -> tuple[Array, Array]:
+        way = lamp[:, np.newaxis] - start
+        size = kernels.length(way)
+        unit = way / np.where(size > 0, size, 1)
+        unit[np.abs(unit) < ROUNDING] = 0
+        return unit, np.minimum(size, walks.FAR)
+
+    return to_lamp
 
 
 def ratio(
     field: Field,
     normal: Array,
     depth: float,
-    ray: Ray,
     *,
-    method: Method = "fast",
-    report: Callable[[int], None] | None = None,
+    direction: VectorLike | None = None,
+    position: VectorLike | None = None,
+    report: Callable[[int], None] = lambda _: None,
 ) -> Array:
     """Return :func:`shadow` for a validated field and its normals.
 
     ``report`` takes the number of rays that are done.
     """
-    size = max(field.x[-1], field.y[-1], field.top)
-    if depth * LEAST_DEPTH > size:
-        expected = f"at most {size / LEAST_DEPTH:g}, 1e9 times the size of the field"
+    if depth * LEAST_DEPTH > field.size:
+        expected = f"at most {field.size / LEAST_DEPTH:g}, 1e9 times the size of the field"
         raise ValueError(_check.message("depth", expected, depth))
+    ways = toward(field, direction, position)
     # At depth 0 t is a limit: the cosine where the ray leaves at once, else 0.
-    limit = depth <= LEAST_DEPTH * size
-    inset = 0.0 if limit else depth
-    shape = field.heights.shape
-    normals, heights = normal.reshape(-1, 3), field.heights.ravel()
+    limit = depth <= LEAST_DEPTH * field.size
+    shape, normals, heights = field.heights.shape, normal.reshape(-1, 3), field.heights.ravel()
 
-    def start(rays: Indices, quick: bool = False, /) -> Array:
-        if quick:
-            place = np.empty((3, len(rays)))
-            strips.inset(rays, field.x, field.y, heights, normals.ravel(), inset, place)
-            return place
-        row, column = np.divmod(rays, shape[1])
-        place = np.stack([field.x.take(column), field.y.take(row), heights.take(rays)])
-        return np.asarray(place - inset * normals.take(rays, axis=0).T)
+    def start(rows: slice) -> Array:
+        row, column = np.divmod(np.arange(rows.start, rows.stop), shape[1])
+        nodes = np.stack([field.x[column], field.y[row], heights[rows]])
+        return nodes if limit else nodes - depth * normals[rows].T
 
-    count = normal.shape[0] * normal.shape[1]
-    t = lengths(field, start, count, ray, method, inset, report)
+    t = _lengths(field, start, len(heights), ways, report)
     if limit:
-        step = min(np.diff(field.x).min(), np.diff(field.y).min())
         # A ray that grazes its own cell by rounding has not been occluded.
-        free = t <= 1e-6 * step
+        free = t <= 1e-6 * min(np.diff(field.x).min(), np.diff(field.y).min())
         for rows in _pool.blocks(len(t), BLOCK):
-            way, _ = ray.from_places(start(np.arange(rows.start, rows.stop)))
-            cosine = np.einsum("ij,ji->i", normal.reshape(-1, 3)[rows], way)
+            cosine = np.einsum("ij,ji->i", normals[rows], ways(start(rows))[0])
             t[rows] = np.where(free[rows], np.clip(cosine, 0, 1), 0)
     else:
-        # t = d / r in place; r of less than d, of a ray that leaves aside, counts as d.
-        np.maximum(t, depth, out=t)
-        np.divide(depth, t, out=t)
+        # r of less than d, of a ray that leaves aside, counts as d.
+        t = depth / np.maximum(t, depth)
     return t.reshape(shape)
-
-
-def lengths(
-    field: Field,
-    start: Start,
-    count: int,
-    ray: Ray,
-    method: Method,
-    below: float | None = None,
-    report: Callable[[int], None] | None = None,
-) -> Array:
-    """Return the lengths inside the solid of rays that begin at ``start(rays)``, shape (3, rays).
-
-    ``start`` is called for one block of indices at a time. ``below`` is the largest distance from
-    the surface at which rays start; for None it is found from all of them.
-    """
-    _check.choice("method", method, get_args(Method))
-    with contextlib.suppress(_compiled.FailedError):
-        return _lengths(field, start, count, ray, method, below, report)
-    # Compiled code is off from here on.
-    return _lengths(field, start, count, ray, method, below, report)
 
 
 def _lengths(
     field: Field,
-    start: Start,
+    start: Callable[[slice], Array],
     count: int,
-    ray: Ray,
-    method: Method,
-    below: float | None,
-    report: Callable[[int], None] | None,
+    ways: Callable[[Array], tuple[Array, Array]],
+    report: Callable[[int], None] = lambda _: None,
 ) -> Array:
+    """Return the lengths inside the solid of rays, whose starts (3, N) a function of rows gives."""
     length = np.empty(count)
-    # A lamp below the horizon of ground without an end: no ray ever leaves it.
-    if ray.direction is not None and ray.direction[2] < 0 and field.border == "extend":
-        length[:] = np.inf
-        return length
-    if ray.direction is not None and count:
-        if below is None:
-            below = _largest_offset(field, start(np.arange(count)))
-        if _compiled.active():
-            # All rays of a lamp at infinity are parallel: sorted by strips they share what they
-            # read.
-            made = strips.strips(field, ray.direction, below, count)
-            if made is not None and strips.lengths.pays(walks.SAVED * count):
-                _by_strip(made, start, length, report)
-                return length
-        elif method == "fast":
-            # Without a compiler a resampled field is several times faster than the exact walk.
-            profiles = sweeping.profiles(field, ray.direction, below)
-            if profiles is not None:
-                _by_profile(profiles, start, length, report)
-                return length
     fast = walks.walk.pays(walks.SAVED * count)
-    # Asked for once, before threads need them.
-    pyramid = field.bounds
-    bounds = walks.levels(pyramid) if fast else None
 
     def work(rows: slice) -> int:
-        places = start(np.arange(rows.start, rows.stop))
-        way, reach = ray.from_places(places)
-        if bounds is None:
-            length[rows] = walks.march(field, places, way, reach)
-        else:
-            walks.walk(
-                np.ascontiguousarray(places), np.ascontiguousarray(way), reach, *field.edges,
-                field.corners, bounds, float(field.top),
-                field.border == "wall", length[rows],
-            )  # fmt: skip
+        places = start(rows)
+        _follow(field, places, *ways(places), length[rows], fast=fast)
         return int(rows.stop)
 
-    _all(work, _pool.blocks(count, BLOCK), report)
+    for done in _pool.run(work, _pool.blocks(count, BLOCK)):
+        report(done)
     return length
 
 
-def _by_strip(
-    made: strips.Strips,
-    start: Start,
-    length: Array,
-    report: Callable[[int], None] | None,
+def _follow(
+    field: Field, start: Array, way: Array, reach: Array, out: Array, *, fast: bool = False
 ) -> None:
-    """Fill in lengths by compiled code, one band of strips and its rays after the other."""
-    width = made.width(len(length))
-    band: Indices = np.empty(len(length), np.int32)
-
-    def find(rows: slice) -> int:
-        band[rows] = made.band(start(np.arange(rows.start, rows.stop), True), width)
-        return int(rows.stop)
-
-    _all(find, _pool.blocks(len(length), BLOCK))
-    order, ends = made.order(band, width)
-
-    def work(part: slice) -> int:
-        made.write(start(order[part], True), order[part], length)
-        return int(part.stop)
-
-    parts = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-    _all(work, parts, report)
-
-
-def _by_profile(
-    profiles: sweeping.Profiles,
-    start: Start,
-    length: Array,
-    report: Callable[[int], None] | None,
-) -> None:
-    """Fill in lengths, one band of profiles and its rays after the other."""
-    count = len(length)
-    # The number of a band fits 16 bits, because such integers are sorted fast.
-    width = max(profiles.width(count), profiles.count >> 15)
-    band = np.empty(count, np.uint16)
-
-    def sort(rows: slice) -> int:
-        band[rows] = profiles.profile_index(start(np.arange(rows.start, rows.stop))) // width
-        return int(rows.stop)
-
-    _all(sort, _pool.blocks(count, BLOCK))
-    short = np.int32 if count < 1 << 31 else np.int64
-    order: Indices = np.argsort(band, kind="stable").astype(short)
-    ends = np.cumsum(np.bincount(band))
-    parts = [slice(a, b) for a, b in zip([0, *ends[:-1]], ends, strict=True) if b > a]
-
-    def work(part: slice) -> int:
-        own = order[part]
-        made = profiles.band(int(band[own[0]]) * width, width)
-        for rows in _pool.blocks(len(own), 2 * sweeping.BAND):
-            some = own[rows]
-            length[some] = made.lengths(start(some))
-        return int(part.stop)
-
-    _all(work, parts, report)
-
-
-def _all(
-    work: Callable[[slice], int],
-    parts: list[slice],
-    report: Callable[[int], None] | None = None,
-) -> None:
-    for done in _pool.run(work, parts):
-        if report is not None:
-            report(done)
-
-
-def _largest_offset(field: Field, places: Array) -> float:
-    """Return the largest distance of positions from the field, sideways or downwards."""
-    ends = [(0.0, field.x[-1]), (0.0, field.y[-1]), (0.0, np.inf)]
-    out = [np.maximum(low - p, p - high) for p, (low, high) in zip(places, ends, strict=True)]
-    return max(float(np.nanmax(np.stack(out), initial=0.0)), 0.0)
+    """Write the lengths inside the solid of rays, by compiled code where it is fast and works."""
+    walls = field.border == "wall"
+    rays = np.ascontiguousarray(start), np.ascontiguousarray(way), reach
+    if fast:
+        with contextlib.suppress(_compiled.FailedError):
+            walks.walk(*rays, *field.edges, field.corners, field.bounds, walls, out)
+            return
+    walks.march(*rays, *field.edges, field.corners, field.bounds, walls, out)

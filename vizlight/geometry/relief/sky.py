@@ -13,7 +13,6 @@ followed through every cell, and azimuths double until 95 of 100 of those nodes 
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Indices
 
 #: First and largest number of azimuths; columns that are crossed one by one at first and at most,
 #: and error from which half as many do.
@@ -113,141 +112,111 @@ def sky(
     """
     error = _check.number("error", error, low=LEAST, high=LARGEST)
     field = height_field.make(x, y, np.asarray(z), border="wall")
-    search = _Search(field, openness=openness, progress=progress)
-    return search.until(error)
+    there, done = np.isfinite(field.heights), 0
+    fast = _compiled.active() and azimuth.pays(SAVED * FEWEST * there.size)
+    near = 0 if not fast else NEAR if error < ROUGHLY else NEAR // 2
+    random = np.random.default_rng(0)
+    # Nodes at the crossings of some rows and columns, so that NumPy can take them at once.
+    rows, columns = (np.sort(random.choice(n, min(n, SAMPLES), replace=False)) for n in there.shape)
+    if not there[np.ix_(rows, columns)].any():
+        known = np.argwhere(there)
+        rows, columns = known[len(known) // 2][:, np.newaxis]
+    at = np.ix_(rows, columns)
+    slopes = height_field.slopes(field)
 
-
-class _Search:
-    """Azimuths of one field, added until the error that is measured is small enough."""
-
-    def __init__(
-        self,
-        field: height_field.Field,
-        *,
-        openness: bool,
-        progress: Callable[[int], None] | None,
-    ) -> None:
-        self.x, self.y, self.z = field.x, field.y, field.heights
-        self.field = field
-        self.top, self.openness = field.top, openness
-        self.progress = progress
-        self.done = 0
-        random = np.random.default_rng(0)
-        # Nodes at the crossings of some rows and columns, so that NumPy can take them at once.
-        rows, columns = (random.choice(n, min(n, SAMPLES), replace=False) for n in self.z.shape)
-        self.at: tuple[Indices, Indices] = (np.sort(rows), np.sort(columns))
-        self.there: Bools = np.isfinite(self.z[np.ix_(*self.at)])
-        if not self.there.any():
-            rows, columns = np.nonzero(np.isfinite(self.z))
-            middle = len(rows) // 2
-            self.at = (rows[middle : middle + 1], columns[middle : middle + 1])
-            self.there = np.ones((1, 1), np.bool_)
-        self.quick = _compiled.active() and azimuth.pays(SAVED * FEWEST * self.z.size)
-
-    def until(self, error: float) -> Sky:
-        """Return the sky with an error, or the least that is found."""
-        near = (NEAR if error < ROUGHLY else NEAR // 2) if self.quick else 0
-        count, last = FEWEST, math.inf
-        scan = _Scan(self, near) if self.quick else None
-        wanted = self._reference(scan)
-        total = self._sum(scan, count, 0.0)
-        while True:
-            share = total[np.ix_(*self.at)] / count
-            missed = np.sort(np.abs(share - wanted)[self.there])
-            # With 95 % confidence the quantile of all nodes is not above this one.
-            rank = len(missed) - 1 - int(0.05 * len(missed) / 2)
-            found = float(missed[rank])
-            if found <= error or count >= MOST or (not self.quick and count >= 4 * FEWEST):
-                break
-            if found > STALLED * last and self.quick and near < FARTHEST_NEAR:
-                near *= 2
-                scan = _Scan(self, near)
-                total = self._sum(scan, count, 0.0)
-                last = math.inf
-                continue
-            last = found
-            total = total + self._sum(scan, count, 0.5)
-            count *= 2
-        total /= np.float32(count)
-        if not self.openness:
-            np.clip(total, 0, 1, out=total)
-        total[np.isnan(self.z)] = np.nan
-        return Sky(total, found, count, near)
-
-    def _ways(self, count: int, shift: float) -> list[tuple[float, float]]:
-        turns = 2 * np.pi * (np.arange(count) + shift + TURN * FEWEST / count) / count
-        return [(math.cos(turn), math.sin(turn)) for turn in turns]
-
-    def _sum(self, scan: _Scan | None, count: int, shift: float) -> Array:
-        """Return the sum over azimuths at all nodes."""
-        ways = self._ways(count, shift)
-        if scan is not None:
-            return scan.sums(ways, self._report)
-        rows, columns = (np.arange(n) for n in self.z.shape)
-        total = np.zeros(self.z.shape, np.float32)
-        for way in ways:
-            total += self._by_steps(rows, columns, way, GROWTH, 0.5)
-            self._report()
+    def sums(count: int, shift: float) -> Array:
+        nonlocal done
+        total = np.zeros(there.shape, np.float32)
+        view = _View(field, slopes, near)
+        for way in _ways(count, shift):
+            if fast:
+                view.toward(way).add(total, openness)
+            else:
+                whole = np.arange(there.shape[0]), np.arange(there.shape[1])
+                t = _by_steps(field, *whole, way, GROWTH, 0.5)
+                total += _seen(t, *slopes, way, openness)
+            done += 1
+            if progress is not None:
+                progress(done)
         return total
 
-    def _report(self) -> None:
-        self.done += 1
-        if self.progress is not None:
-            self.progress(self.done)
+    wanted = np.zeros((len(rows), len(columns)))
+    count = REFERENCE if fast else REFERENCE // 4
+    view = _View(field, slopes, near)
+    for way in _ways(count, 0.0):
+        if fast:
+            t = view.toward(way).exact(rows, columns, field.top)
+        else:
+            t = _by_steps(field, rows, columns, way, 1.02, 0.125)
+        wanted += _seen(t, slopes[0][at], slopes[1][at], way, openness) / count
+    count, last = FEWEST, math.inf
+    total = sums(count, 0.0)
+    while True:
+        missed = np.sort(np.abs(total[at] / count - wanted)[there[at]])
+        # With 95 % confidence the quantile of all nodes is not above this one.
+        found = float(missed[len(missed) - 1 - int(0.05 * len(missed) / 2)])
+        if found <= error or count >= (MOST if fast else 4 * FEWEST):
+            break
+        if found > STALLED * last and 0 < near < FARTHEST_NEAR:
+            near, last = 2 * near, math.inf
+            total = sums(count, 0.0)
+            continue
+        last = found
+        total += sums(count, 0.5)
+        count *= 2
+    total /= np.float32(count)
+    if not openness:
+        np.clip(total, 0, 1, out=total)
+    total[~there] = np.nan
+    return Sky(total, found, count, near)
 
-    def _reference(self, scan: _Scan | None) -> Array:
-        """Return the sky of the sampled nodes, through every cell."""
-        if scan is not None:
-            rows, columns = np.meshgrid(*self.at, indexing="ij")
-            out = np.zeros(rows.size)
-            ways = np.array(self._ways(REFERENCE, 0.0))
-            z, x, y = scan.fields[False]
-            back = (x[-1] - x[::-1], y[-1] - y[::-1])
-            exact(
-                z.ravel(), x - x[0], y - y[0], back, scan.near, rows.ravel(), columns.ravel(), ways,
-                self.top, int(self.openness), out,
-            )  # fmt: skip
-            return out.reshape(rows.shape) / REFERENCE
-        count = REFERENCE // 4
-        total = np.zeros(self.there.shape)
-        for way in self._ways(count, 0.0):
-            total += self._by_steps(*self.at, way, 1.02, 0.125)
-        return total / count
 
-    def _by_steps(
-        self, rows: Indices, columns: Indices, way: tuple[float, float], growth: float, least: float
-    ) -> Array:
-        """Return what nodes see toward an azimuth, from heights at growing distances."""
-        z, heights = self.z[np.ix_(rows, columns)], self.z
-        cell = min(self.x[-1] / (len(self.x) - 1), self.y[-1] / (len(self.y) - 1))
-        # Beyond the border heights go on, so that even an endless wall is met aslant.
-        reach = BEYOND * math.hypot(self.x[-1], self.y[-1])
-        t = np.zeros(z.shape)
-        step = distance = least * cell
-        while distance < reach:
-            j, v = _between(self.y, self.y[rows] + distance * way[1])
-            i, u = _between(self.x, self.x[columns] + distance * way[0])
-            low, high = heights[j], heights[j + 1]
-            v = v[:, np.newaxis]
-            across = np.where(v == 0, low, np.where(v == 1, high, low + v * (high - low)))
-            left, right = across[:, i], across[:, i + 1]
-            height = np.where(u == 0, left, np.where(u == 1, right, left + u * (right - left)))
-            np.fmax(t, (height - z) / distance, out=t)
-            step = step if distance < NEAR * cell else distance * (growth - 1)
-            distance += step
-        if self.openness:
-            return np.pi / 2 - np.arctan(t)
-        normal = self.normals[np.ix_(rows, columns)]
-        upright = normal[..., 2]
-        rise = -(normal[..., 0] * way[0] + normal[..., 1] * way[1]) / upright
-        t = np.maximum(t, rise)
-        square = 1 / (1 + t * t)
-        return np.asarray(upright * (square - rise * (np.arctan2(1, t) - t * square)))
+def _ways(count: int, shift: float) -> list[tuple[float, float]]:
+    turns = 2 * np.pi * (np.arange(count) + shift + TURN * FEWEST / count) / count
+    return [(math.cos(turn), math.sin(turn)) for turn in turns]
 
-    @cached_property
-    def normals(self) -> Array:
-        """Normals at the nodes, for NumPy."""
-        return height_field.normals(self.field)
+
+def _seen(t: Array, p: Array, q: Array, way: tuple[float, float], openness: bool) -> Array:
+    """Return what is seen above horizons of slope t from ground of slopes p and q.
+
+    The integral over elevation from the horizon up is closed.
+    """
+    t = np.maximum(t, 0.0)
+    if openness:
+        return np.asarray(np.arctan2(1.0, t))
+    rise = p * way[0] + q * way[1]
+    t = np.maximum(t, rise)
+    square = 1 / (1 + t * t)
+    value = (square - rise * (np.arctan2(1.0, t) - t * square)) / np.sqrt(1 + p * p + q * q)
+    return np.asarray(value)
+
+
+def _by_steps(
+    field: height_field.Field, rows: Indices, columns: Indices, way: tuple[float, float],
+    growth: float, least: float,
+) -> Array:  # fmt: skip
+    """Return slopes of the horizons of nodes, from heights at growing distances, by NumPy."""
+    heights = field.heights
+    z = heights[np.ix_(rows, columns)]
+    cell = min(field.x[-1] / (len(field.x) - 1), field.y[-1] / (len(field.y) - 1))
+    # Beyond the border heights go on, so that even an endless wall is met aslant.
+    reach = BEYOND * math.hypot(field.x[-1], field.y[-1])
+    t = np.zeros(z.shape)
+    step = distance = least * cell
+    while distance < reach:
+        j, v = _between(field.y, field.y[rows] + distance * way[1])
+        i, u = _between(field.x, field.x[columns] + distance * way[0])
+        across = _mixed(heights[j], heights[j + 1], v[:, np.newaxis])
+        height = _mixed(across[:, i], across[:, i + 1], u)
+        np.fmax(t, (height - z) / distance, out=t)
+        step = step if distance < NEAR * cell else distance * (growth - 1)
+        distance += step
+    return t
+
+
+def _mixed(low: Array, high: Array, share: Array) -> Array:
+    """Return heights between two nodes, at one of them whatever the other is: it may be a hole."""
+    return np.where(share == 0, low, np.where(share == 1, high, low + share * (high - low)))
 
 
 def _between(nodes: Array, place: Array) -> tuple[Indices, Array]:
@@ -257,109 +226,91 @@ def _between(nodes: Array, place: Array) -> tuple[Indices, Array]:
     return before, (place - nodes[before]) / (nodes[before + 1] - nodes[before])
 
 
-class _Scan:
-    """A field that is padded by near cells, and its transposed copy, for compiled code."""
+class _View:
+    """A field, padded by near cells, turned so that an azimuth goes toward rising columns and rows.
 
-    def __init__(self, search: _Search, near: int) -> None:
-        self.near, self.mode = near, int(search.openness)
-        self.shape = search.z.shape
-        # Near cells beyond the border exist, so that a walk through them asks for no bounds.
-        wide = np.pad(search.z, near, mode="edge")
-        x, y = (_padded(axis, near) for axis in (search.x, search.y))
-        self.fields = {False: (wide, x, y), True: (np.ascontiguousarray(wide.T), y, x)}
+    Columns lie along the axis on which the azimuth runs faster.
+    """
 
-    def sums(self, ways: list[tuple[float, float]], report: Callable[[], None]) -> Array:
-        """Return the sum over azimuths at all nodes."""
-        total = np.zeros(self.shape, np.float32)
-        turned = np.zeros(self.shape[::-1], np.float32)
-        for dx, dy in ways:
-            self._add(dx, dy, total, turned)
-            report()
-        total += turned.T
-        return total
+    def __init__(self, field: height_field.Field, slopes: tuple[Array, Array], near: int) -> None:
+        self.field, self.slopes, self.near = field, slopes, near
+        self.turn: tuple[bool, int, int] | None = None
 
-    def _add(self, dx: float, dy: float, total: Array, turned: Array) -> None:
-        """Add what the nodes see toward an azimuth to one of two sums."""
-        _, x, y = self.fields[False]
-        steps = [np.ptp(axis) / (len(axis) - 1) for axis in (x, y)]
-        # Columns lie along the axis on which the azimuth runs faster; else the field is transposed.
-        swap = bool(abs(dy) * steps[0] > abs(dx) * steps[1])
-        if swap:
-            dx, dy = dy, dx
-        field, x, y = self.fields[swap]
-        out = turned if swap else total
-        rows, columns = field.shape
-        base, row, column = 0, columns, 1
-        own, own_row, own_column = 0, out.shape[1], 1
-        if dx < 0:
-            x, base, column = -x[::-1], base + columns - 1, -1
-            own, own_column = own + out.shape[1] - 1, -1
-        if dy < 0:
-            y, base, row = -y[::-1], base + (rows - 1) * columns, -columns
-            own, own_row = own + out.size - out.shape[1], -out.shape[1]
-        x, y = x - x[0], y - y[0]
-        slope = abs(dy) / abs(dx)
-        spacing = y[-1] / (rows - 1)
-        # Lines from below the last node of the first row to above the first one of the last.
-        # Scan lines are parallel to the azimuth, a row's spacing apart.
-        first = -slope * x[-1] - spacing
-        count = int((y[-1] - first) / spacing) + 2
+    def toward(self, way: tuple[float, float]) -> _View:
+        """Turn the field to an azimuth, if it is not."""
+        field = self.field
+        widths = [axis[-1] / (len(axis) - 1) for axis in (field.x, field.y)]
+        swap = bool(abs(way[1]) * widths[0] > abs(way[0]) * widths[1])
+        turn = (swap, 1 if way[0] >= 0 else -1, 1 if way[1] >= 0 else -1)
+        rates = abs(way[0]), abs(way[1])
+        self.slope = rates[0] / rates[1] if swap else rates[1] / rates[0]
+        if turn != self.turn:
+            self.turn = turn
+            axes = _padded(field.x, turn[1], self.near), _padded(field.y, turn[2], self.near)
+            # Near cells beyond the border exist, so that a walk through them asks for no bounds.
+            turned = np.ascontiguousarray(self.of(field.heights))
+            self.z = np.pad(turned, self.near, mode="edge")
+            rises = [turn[k] * self.of(self.slopes[k - 1]) for k in (1, 2)]
+            self.x, self.y = axes[::-1] if swap else axes
+            self.p, self.q = map(np.ascontiguousarray, rises[::-1] if swap else rises)
+        return self
+
+    def of(self, values: Array) -> Array:
+        """Return values of the nodes of the field as the view has them."""
+        assert self.turn is not None
+        swap, right, up = self.turn
+        turned = values[::up, ::right]
+        return turned.T if swap else turned
+
+    def add(self, total: Array, openness: bool) -> None:
+        """Add what all nodes see toward the azimuth, by compiled code."""
+        rows, mean = len(self.y), self.y[-1] / (len(self.y) - 1)
+        # Scan lines are parallel to the azimuth, a mean row apart: from below the last node of the
+        # first row to above the first one of the last.
+        first = -self.slope * self.x[-1] - mean
+        count = int((self.y[-1] - first) / mean) + 2
         # Most nodes of a column between two lines: uneven rows may crowd.
-        crowd = int(np.max(np.searchsorted(y, y + spacing * (1 + 1e-9)) - np.arange(rows)))
+        last = np.searchsorted(self.y, self.y + mean * (1 + 1e-9))
+        crowd = int(np.max(last - np.arange(rows))) + 1
+        out, part = self.of(total), np.zeros(self.p.shape, np.float32)
 
-        def work(part: slice) -> int:
+        def work(lines: slice) -> int:
             azimuth(
-                field.ravel(), (base, row, column), x, y, slope, (first, spacing),
-                (int(part.start), int(part.stop)), self.near, crowd + 1, self.mode, out.ravel(),
-                (own, own_row, own_column),
+                self.z, self.x, self.y, self.p, self.q, self.slope, (first, mean),
+                (int(lines.start), int(lines.stop)), self.near, crowd, openness, part,
             )  # fmt: skip
-            return int(part.stop)
+            return int(lines.stop)
 
         for _ in _pool.run(work, _pool.blocks(count, LINES)):
             pass
+        out += part
+
+    def exact(self, rows: Indices, columns: Indices, top: float) -> Array:
+        """Return slopes of the horizons of some nodes, through every cell, by compiled code."""
+        some = np.zeros(self.field.heights.shape)
+        some[np.ix_(rows, columns)] = 1
+        found = np.full(some.shape, np.nan)
+        j, i = np.nonzero(self.of(some))
+        slopes = np.empty(len(j))
+        exact(self.z, self.x, self.y, j + self.near, i + self.near, self.slope, top, slopes)
+        self.of(found)[j, i] = slopes
+        return np.asarray(found[np.ix_(rows, columns)])
 
 
-def _padded(nodes: Array, near: int) -> Array:
-    """Return nodes with as many before and after them, in the spacing of the outermost."""
+def _padded(nodes: Array, sign: int, near: int) -> Array:
+    """Return nodes in a direction from 0, with ``near`` more at both ends in the spacing there."""
+    nodes = np.sort(sign * nodes)
     low, high = nodes[1] - nodes[0], nodes[-1] - nodes[-2]
     more = np.arange(1, near + 1)
-    return np.concatenate([nodes[0] - low * more[::-1], nodes, nodes[-1] + high * more])
+    wide = np.concatenate([nodes[0] - low * more[::-1], nodes, nodes[-1] + high * more])
+    return wide - wide[0]
 
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
-def slope_of(before: float, here: float, after: float, low: float, high: float) -> float:
-    """Return the slope of the parabola through three nodes; of one side next to a hole."""
-    one, other = (here - before) / low, (after - here) / high
-    # NaN alone differs from itself: a hole.
-    if one != one:
-        return 0.0 if other != other else other
-    if other != other:
-        return one
-    return (one * high + other * low) / (low + high)
-
-
-@_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
-def slopes(
-    z: Array, way: tuple[int, int, int], x: Array, y: Array, i: int, j: int, near: int
-) -> tuple[float, float]:
-    """Return the slopes along the columns and the rows at a node of a padded field."""
-    base, row, column = way
-    at = base + j * row + i * column
-    left = z[at - column] if i > near else math.nan
-    right = z[at + column] if i < len(x) - 1 - near else math.nan
-    low = z[at - row] if j > near else math.nan
-    high = z[at + row] if j < len(y) - 1 - near else math.nan
-    return (
-        slope_of(left, z[at], right, x[i] - x[i - 1], x[i + 1] - x[i]),
-        slope_of(low, z[at], high, y[j] - y[j - 1], y[j + 1] - y[j]),
-    )
-
-
-@_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
-def seen(t: float, rise: float, upright: float, mode: int) -> float:
+def seen(t: float, rise: float, upright: float, openness: bool) -> float:
     """Return what is seen above a horizon of slope t from ground that rises toward it."""
     t = max(t, 0.0)
-    if mode == 1:
+    if openness:
         return math.atan2(1.0, t)
     t = max(t, rise)
     square = 1 / (1 + t * t)
@@ -413,12 +364,12 @@ def between(low: float, high: float, share: float) -> float:
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
 def beyond(
-    z: Array, at: int, step: int, nodes: Array, first: int, end: int, origin: float, scale: float,
-    here: float, t: float,
+    heights: Array, nodes: Array, first: int, end: int, origin: float, scale: float, here: float,
+    t: float,
 ) -> float:  # fmt: skip
     """Return the largest slope to the nodes of the last row or column, where a ray leaves it."""
     for m in range(first, end):
-        place = z[at + m * step]
+        place = heights[m]
         if place == place:
             t = max(t, (place - here) / ((nodes[m] - origin) * scale))
     return t
@@ -450,15 +401,13 @@ def arc(
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
 def crossed(
-    z: Array, way: tuple[int, int, int], x: Array, y: Array, i: int, j: int, slope: float,
-    end: int, t: float, top: float,
+    z: Array, x: Array, y: Array, i: int, j: int, slope: float, end: int, t: float, top: float
 ) -> float:  # fmt: skip
     """Return the largest slope from a node to the bilinear surface, up to a column.
 
     ``top`` is the largest height: the walk ends where nothing can be higher than the horizon.
     """
-    base, row, column = way
-    here = z[base + j * row + i * column]
+    here = z[j, i]
     length = math.sqrt(1 + slope * slope)
     inverse = 1 / slope if slope > 0 else math.inf
     a, b, u, v, before, last = i, j, 0.0, 0.0, 0.0, here
@@ -466,8 +415,7 @@ def crossed(
     while a < end and b < rows - 1:
         to_column = x[a + 1] - x[i]
         to_row = (y[b + 1] - y[j]) * inverse if slope > 0 else math.inf
-        at = base + b * row + a * column
-        z00, z01, z10, z11 = z[at], z[at + column], z[at + row], z[at + row + column]
+        z00, z01, z10, z11 = z[b, a], z[b, a + 1], z[b + 1, a], z[b + 1, a + 1]
         if to_column < to_row:
             now, u1 = to_column, 1.0
             v1 = min((y[j] + now * slope - y[b]) / (y[b + 1] - y[b]), 1.0) if slope > 0 else 0.0
@@ -492,10 +440,10 @@ def crossed(
         if (top - here) < t * before * length:
             break
     if b == rows - 1:
-        return beyond(z, base + b * row, column, x, a + 1, end + 1, x[i], length, here, t)
+        return beyond(z[b], x, a + 1, end + 1, x[i], length, here, t)
     if a == len(x) - 1 and slope > 0:
         scale = inverse * length
-        return beyond(z, base + a * column, row, y, b + 1, rows, y[j], scale, here, t)
+        return beyond(z[:, a], y, b + 1, rows, y[j], scale, here, t)
     return t
 
 
@@ -515,18 +463,15 @@ def under(nodes: Array, k: int, side: float) -> int:
 
 @_compiled.kernel(rounding=_compiled.ROUNDING, seconds=3.0)
 def azimuth(
-    z: Array, way: tuple[int, int, int], x: Array, y: Array, slope: float,
-    grid: tuple[float, float], some: tuple[int, int], near: int, crowd: int, mode: int, out: Array,
-    own: tuple[int, int, int],
+    z: Array, x: Array, y: Array, p: Array, q: Array, slope: float, grid: tuple[float, float],
+    some: tuple[int, int], near: int, crowd: int, openness: bool, out: Array,
 ) -> None:  # fmt: skip
-    """Add what the nodes between some scan lines see toward an azimuth.
+    """Write what the nodes between some scan lines see toward an azimuth.
 
-    ``way`` and ``own`` have the index of the first node and the steps of the index from row to row
-    and from column to column, in ``z``, which is padded by ``near`` nodes, and in ``out``. ``grid``
-    has the height of scan line 0 at column 0 and the distance of lines, ``crowd`` is the largest
-    number of nodes of a column between two of them.
+    ``z`` is padded by ``near`` nodes; ``p`` and ``q``, the slopes of the ground along columns and
+    rows, are not. ``grid`` has the height of scan line 0 at column 0 and the distance of lines,
+    ``crowd`` is the largest number of nodes of a column between two of them.
     """
-    base, row, column = way
     first, spacing = grid
     columns, rows = len(x), len(y)
     length = math.sqrt(1 + slope * slope)
@@ -539,7 +484,7 @@ def azimuth(
         start = first + line * spacing
         leaves = start + slope * x[columns - 1]
         while edge_row >= 0 and y[edge_row] > leaves:
-            place = z[base + edge_row * row + (columns - 1) * column]
+            place = z[edge_row, columns - 1]
             if place == place and slope > 0:
                 edge = pushed(bx, bz, edge, y[edge_row], place)
             edge_row -= 1
@@ -556,9 +501,7 @@ def azimuth(
             while r > 0 and y[r] > side:
                 r -= 1
             # Heights on the line, between the two nodes of a column.
-            v = (side - y[r]) / (y[r + 1] - y[r])
-            at = base + r * row + m * column
-            place = between(z[at], z[at + row], v)
+            place = between(z[r, m], z[r + 1, m], (side - y[r]) / (y[r + 1] - y[r]))
             if place == place:
                 top = pushed(hx, hz, top, x[m] * length, place)
             # The node itself lies between two lines; its horizon is taken from both hulls.
@@ -569,9 +512,8 @@ def azimuth(
                 above = under(y, above, side_of(first, spacing, line + 1, aside))
                 k = above
                 while k >= 0 and y[k] >= side:
-                    here = z[base + k * row + i * column]
                     if near <= k < rows - near:
-                        t = tangent(hx, hz, top, x[i] * length, here)
+                        t = tangent(hx, hz, top, x[i] * length, z[k, i])
                         other = upper[(line + 1) & 1, taken]
                         taken += 1
                         share = (y[k] - side) / spacing
@@ -579,12 +521,11 @@ def azimuth(
                         t = max(t, other) if min(t, other) == NONE else between(t, other, share)
                         # The hull holds what is beyond the near columns; those are crossed cell by
                         # cell here.
-                        t = crossed(z, way, x, y, i, k, slope, m, t, math.inf)
-                        p, q = slopes(z, way, x, y, i, k, near)
-                        rise = (p + slope * q) / length
-                        # The integral over elevation from the horizon up is closed.
-                        value = seen(t, rise, 1 / math.sqrt(1 + p * p + q * q), mode)
-                        out[own[0] + (k - near) * own[1] + (i - near) * own[2]] += value
+                        t = crossed(z, x, y, i, k, slope, m, t, math.inf)
+                        right, up = p[k - near, i - near], q[k - near, i - near]
+                        upright = 1 / math.sqrt(1 + right * right + up * up)
+                        rise = (right + slope * up) / length
+                        out[k - near, i - near] = seen(t, rise, upright, openness)
                     k -= 1
             # Nodes from the line before up to this one.
             if line > some[0]:
@@ -593,38 +534,16 @@ def azimuth(
                 k = below
                 while k >= 0 and y[k] >= prior:
                     if near <= k < rows - near:
-                        here = z[base + k * row + i * column]
-                        upper[line & 1, stored] = tangent(hx, hz, top, x[i] * length, here)
+                        upper[line & 1, stored] = tangent(hx, hz, top, x[i] * length, z[k, i])
                         stored += 1
                     k -= 1
 
 
 @_compiled.kernel(seconds=2.0)
 def exact(
-    z: Array, x: Array, y: Array, back: tuple[Array, Array], near: int, rows: Indices,
-    columns: Indices, ways: Array, top: float, mode: int, out: Array,
+    z: Array, x: Array, y: Array, rows: Indices, columns: Indices, slope: float, top: float,
+    out: Array,
 ) -> None:  # fmt: skip
-    """Add what some nodes of a padded field see toward azimuths, through every cell.
-
-    ``back`` has the nodes of both axes in the opposite order, from 0.
-    """
-    across, down = len(x), len(y)
+    """Write slopes of the horizons of some nodes toward an azimuth, through every cell."""
     for n in range(len(out)):
-        j, i = rows[n] + near, columns[n] + near
-        p, q = slopes(z, (0, across, 1), x, y, i, j, near)
-        upright = 1 / math.sqrt(1 + p * p + q * q)
-        for k in range(len(ways)):
-            dx, dy = ways[k, 0], ways[k, 1]
-            a, b, base, row, column = i, j, 0, across, 1
-            along, aside = x, y
-            if dx < 0:
-                along, a, base, column = back[0], across - 1 - i, across - 1, -1
-            if dy < 0:
-                aside, b, base, row = back[1], down - 1 - j, base + (down - 1) * across, -across
-            if abs(dx) >= abs(dy):
-                rate = abs(dy) / abs(dx)
-                t = crossed(z, (base, row, column), along, aside, a, b, rate, across - 1, NONE, top)
-            else:
-                rate = abs(dx) / abs(dy)
-                t = crossed(z, (base, column, row), aside, along, b, a, rate, down - 1, NONE, top)
-            out[n] += seen(t, p * dx + q * dy, upright, mode)
+        out[n] = crossed(z, x, y, columns[n], rows[n], slope, len(x) - 1, NONE, top)

@@ -2,8 +2,7 @@
 
 :func:`march` follows many rays at once by NumPy, :func:`walk` one after the other by compiled
 code. Both cross squares of 2^l x 2^l cells at once where all of them are above or below a ray, and
-find the crossings with the bilinear surface of a cell in closed form. :mod:`strips` is faster for
-most lights at infinity, and its closed form serves the compiled cells here, too.
+find the crossings with the bilinear surface of a cell in closed form.
 """
 
 from __future__ import annotations
@@ -14,82 +13,74 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _compiled
-from vizlight.geometry.relief.strips import Triple, positive
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.relief.height_field import Field
+    from vizlight.geometry.relief.height_field import Bounds
 
 
 #: Represents infinity on a ray; unlike infinity it gives 0 when multiplied by 0.
 FAR = 1e300
+#: Processor time that a compiled ray saves compared with one of :func:`march`, in seconds.
+SAVED = 5e-6
 
 
-def march(field: Field, start: Array, way: Array, reach: Array) -> Array:
-    """Return the length of rays inside the solid; infinity where it is unbounded.
+def march(
+    start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Bounds,
+    walls: bool, out: Array,
+) -> None:  # fmt: skip
+    """Write the length of rays inside the solid; infinity where it is unbounded.
 
     Parameters
     ----------
-    field : Field
-        Height field.
-    start : ndarray, shape (3, N)
-        Start of each ray, relative to the field's origin, in float64.
-    way : ndarray, shape (3, N)
-        Unit directions.
+    start, way : ndarray, shape (3, N)
+        Starts of rays relative to the field's origin, and unit directions, in float64.
     reach : ndarray, shape (N,)
         Lengths of the rays, at most FAR.
+    x, y, corners, bounds
+        Edges, heights and bounds of a :class:`~vizlight.geometry.relief.height_field.Field`.
+    walls : bool
+        Whether there are cells without a solid.
+    out : ndarray, shape (N,)
+        Result.
     """
-    length = np.zeros(start.shape[1])
-    first, end = _clip(field, start, way, reach)
-    row = np.flatnonzero(first < end)
-    rays = _Rays(field, start[:, row], way[:, row], first[row], end[row])
-    with np.errstate(divide="ignore", invalid="ignore"):
+    out[:] = 0
+    top = bounds.largest[-1]
+    # Above the highest node there is nothing to meet. With a rise near 0 its distance exceeds FAR.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        place = (top - start[2]) / way[2]
+    first = np.where(way[2] < 0, np.maximum(place, 0.0), 0.0)
+    end = np.where(way[2] > 0, np.minimum(place, reach), reach)
+    row = np.flatnonzero((first < end) & ~((way[2] == 0) & (start[2] >= top)))
+    rays = _Rays(start[:, row], way[:, row], first[row], end[row], (x, y), corners, bounds, walls)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         while len(row):
             # Each ray has its own row, so no addition is lost.
-            length[row] += rays.step()
+            out[row] += rays.step()
             going = rays.s < rays.end
             if np.count_nonzero(going) < 0.8 * len(row):
                 rays.keep(going)
                 row = row[going]
-    length[length >= 0.5 * FAR] = np.inf
-    return length
-
-
-def _clip(field: Field, start: Array, way: Array, reach: Array) -> tuple[Array, Array]:
-    """Return the distances between which rays are below the highest node."""
-    rise, z = way[2], start[2]
-    # With a rise near 0 the distance may exceed FAR.
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        place = (field.top - z) / rise
-    first = np.where(rise < 0, place, 0.0)
-    last = np.where(rise > 0, place, FAR)
-    outside = (rise == 0) & (z >= field.top)
-    return np.maximum(first, 0.0), np.where(outside, -1.0, np.minimum(last, reach))
+    out[out >= 0.5 * FAR] = np.inf
 
 
 class _Rays:
     """Rays in progress, each in a square of 2^l x 2^l cells; every step advances all of them."""
 
-    def __init__(self, field: Field, start: Array, way: Array, s: Array, end: Array) -> None:
-        levels = field.bounds
-        self.top = len(levels) - 1
-        self.columns = np.array([largest.shape[1] for largest, _ in levels], np.int32)
-        self.offset = np.cumsum([0] + [largest.size for largest, _ in levels], dtype=np.int32)
-        self.largest = np.concatenate([largest.ravel() for largest, _ in levels])
-        self.least = np.concatenate([least.ravel() for _, least in levels])
-        self.edges = field.edges
-        self.corners = field.corners.ravel()
-        self.stride = field.corners.shape[1]
-
+    def __init__(
+        self, start: Array, way: Array, s: Array, end: Array, edges: tuple[Array, Array],
+        corners: Array, bounds: Bounds, walls: bool,
+    ) -> None:  # fmt: skip
         self.start, self.way, self.s, self.end = start, way, s, end
+        self.edges, self.corners, self.bounds = edges, corners, bounds
+        self.top = len(bounds.offset) - 1
         self.level = np.zeros(len(s), np.int32)
         place = start[:2] + s * way[:2]
-        self.cell = np.stack([field.cell(a, place[a]) for a in (0, 1)]).astype(np.int32)
+        inner = [np.searchsorted(edges[a][1:-1], place[a], side="right") for a in (0, 1)]
+        self.cell = np.stack(inner).astype(np.int32)
         #: Whether rays run in a plane of nodes, and so beside cells of which one may be empty.
-        self.beside = np.zeros((2, len(s)), np.bool_)
-        if field.border == "wall":
-            at = np.stack([self.edges[a][self.cell[a]] for a in (0, 1)])
-            self.beside = (way[:2] == 0) & (start[:2] == at)
+        at = np.stack([edges[a][self.cell[a]] for a in (0, 1)])
+        self.beside = walls & (way[:2] == 0) & (start[:2] == at)
 
     def keep(self, going: Bools) -> None:
         """Drop the rays that have reached their end."""
@@ -105,10 +96,9 @@ class _Rays:
         z0 = self.start[2] + s * self.way[2]
         z1 = self.start[2] + leave * self.way[2]
         own = self._own_cell()
-        at = self.offset[level] + own[1] * self.columns[level] + own[0]
-        above = np.minimum(z0, z1) >= self.largest[at]
-        below = np.maximum(z0, z1) <= self.least[at]
-        clear = above | below
+        at = self.bounds.offset[level] + own[1] * self.bounds.columns[level] + own[0]
+        below = np.maximum(z0, z1) <= self.bounds.least[at]
+        clear = below | (np.minimum(z0, z1) >= self.bounds.largest[at])
         inside = np.where(below, leave - s, 0.0)
         leaf = np.flatnonzero(~clear & (level == 0))
         inside[leaf] = self._in_cell(leaf, own[:, leaf], leave[leaf])
@@ -119,27 +109,24 @@ class _Rays:
         i += np.where(by_x & onward, np.where(x >= 0, 1, -1), 0).astype(np.int32)
         j += np.where(onward & ~by_x, np.where(y >= 0, 1, -1), 0).astype(np.int32)
         np.copyto(s, leave, where=~descend)
-        if self.top:
-            # ... or into the square twice as wide, if both begin at the same place ...
-            entry = np.where(by_x, i ^ (x < 0), j ^ (y < 0)) & 1
-            low = (level < self.top) & ~self.beside.any(axis=0)
-            ascend = (onward & (entry == 0) & low).astype(np.int32)
-            i >>= ascend
-            j >>= ascend
-            level += ascend
-            # ... or down into the quarter that contains the ray.
-            self._descend(np.flatnonzero(descend))
+        # ... or into the square twice as wide, if both begin at the same place ...
+        entry = np.where(by_x, i ^ (x < 0), j ^ (y < 0)) & 1
+        low = (level < self.top) & ~self.beside.any(axis=0)
+        ascend = (onward & (entry == 0) & low).astype(np.int32)
+        i >>= ascend
+        j >>= ascend
+        level += ascend
+        # ... or down into the quarter that contains the ray.
+        self._descend(np.flatnonzero(descend))
         return inside
 
     def _own_cell(self) -> Indices:
         """Return the squares of rays; in a plane of nodes the one beside it that is not empty."""
         found: Indices = self.cell.astype(np.intp)
         rows = np.flatnonzero(self.beside.any(axis=0))
-        if not len(rows):
-            return found
         for back in ((0, 0), (1, 0), (0, 1), (1, 1)):
             i, j = found[:, rows]
-            empty = np.isneginf(self.largest[j * self.columns[0] + i])
+            empty = np.isneginf(self.bounds.largest[j * self.bounds.columns[0] + i])
             allowed = np.all(np.array(back, np.bool_) <= self.beside[:, rows].T, axis=1)
             other = rows[empty & allowed]
             found[:, other] = self.cell[:, other] - np.array(back)[:, np.newaxis]
@@ -149,12 +136,9 @@ class _Rays:
         """Return the distances at which rays leave their square along an axis."""
         way, edges = self.way[axis], self.edges[axis]
         out = np.minimum((self.cell[axis] + (way >= 0)) << self.level, len(edges) - 1)
-        with np.errstate(over="ignore"):
-            return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
+        return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
 
     def _descend(self, which: Indices) -> None:
-        if not len(which):
-            return
         level = self.level[which] - 1
         for axis in (0, 1):
             edges = self.edges[axis]
@@ -166,13 +150,12 @@ class _Rays:
 
     def _in_cell(self, which: Indices, own: Indices, leave: Array) -> Array:
         """Return the length below the bilinear surface of one cell, where f = h - z > 0."""
-        (i, j), s = own, self.s[which]
-        at = j * self.stride + i
-        z00, z01 = self.corners[at], self.corners[at + 1]
-        z10, z11 = self.corners[at + self.stride], self.corners[at + self.stride + 1]
+        (i, j), s, corners = own, self.s[which], self.corners
+        z00, z10 = corners[j, i], corners[j + 1, i]
         (u, du), (v, dv) = (self._share(axis, own[axis], which, s) for axis in (0, 1))
         # h = z00 + u a + v b + u v c, where u and v are linear in the distance along the ray.
-        a, b, c = z01 - z00, z10 - z00, (z11 - z10) - (z01 - z00)
+        a, b = corners[j, i + 1] - z00, z10 - z00
+        c = (corners[j + 1, i + 1] - z10) - a
         z = self.start[2, which] + s * self.way[2, which]
         f0 = (z00 - z) + u * a + v * (b + u * c)
         f1 = du * (a + v * c) + dv * (b + u * c) - self.way[2, which]
@@ -193,22 +176,26 @@ class _Rays:
 def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
     """Return the length of the part of [0, end] where f0 + f1 s + f2 s^2 > 0."""
     square = f1 * f1 - 4 * f0 * f2
-    root = np.sqrt(np.maximum(square, 0))
-    # Both roots without cancellation; where f2 is 0 one of them is infinite.
-    q = -0.5 * (f1 + np.copysign(root, f1))
-    one, other = q / np.where(f2 == 0, 0.0, f2), f0 / q
-    low, high = np.minimum(one, other), np.maximum(one, other)
-    between = np.minimum(np.maximum(high, 0), end) - np.minimum(np.maximum(low, 0), end)
+    # Both roots without cancellation; where f2 is 0 one of them is infinite. The sum makes -0 to 0.
+    q = -0.5 * (f1 + np.copysign(np.sqrt(np.maximum(square, 0)), f1))
+    one, other = (np.minimum(np.maximum(root, 0), end) for root in (f0 / q, q / (f2 + 0.0)))
+    between = np.abs(one - other)
     length = np.where(f2 >= 0, end - between, between)
     # Without a root, or for a constant f, the sign is the same everywhere.
     whole = (square < 0) | (q == 0)
     return np.where(whole, np.where(np.maximum(f0, f0 + f2) > 0, end, 0.0), length)
 
 
-#: Processor time that a compiled ray saves compared with one of :func:`march`, in seconds.
-SAVED = 5e-6
-
-Levels = tuple["Array", "Array", "Indices", "Indices"]
+@_compiled.kernel(inline=True)
+def positive(f0: float, f1: float, f2: float, end: float) -> float:
+    """Return the length of the part of [0, end] where f0 + f1 s + f2 s^2 > 0."""
+    square = f1 * f1 - 4 * f0 * f2
+    q = -0.5 * (f1 + math.copysign(math.sqrt(max(square, 0.0)), f1))
+    if (square < 0) | (q == 0):
+        return end if max(f0, f0 + f2) > 0 else 0.0
+    one, other = min(max(f0 / q, 0.0), end), min(max(q / (f2 + 0.0), 0.0), end)
+    between = abs(one - other)
+    return end - between if f2 >= 0 else between
 
 
 @_compiled.kernel(inline=True)
@@ -222,35 +209,6 @@ def locate(edges: Array, place: float) -> int:
         else:
             high = middle
     return low
-
-
-@_compiled.kernel(inline=True)
-def in_cell(corners: Array, i: int, j: int, place: Triple, rate: Triple, length: float) -> float:
-    """Return the length inside the solid in one cell.
-
-    ``place`` holds the relative position (u, v) in the cell and the height at its entry, ``rate``
-    their changes per unit of length.
-    """
-    # Bilinear height minus the ray's: with u, v and z linear in the way s, a quadratic f0 + f1 s +
-    # f2 s^2, positive where the ray is inside.
-    z00, z10 = corners[j, i], corners[j + 1, i]
-    a, b = corners[j, i + 1] - z00, z10 - z00
-    c = (corners[j + 1, i + 1] - z10) - a
-    u, v, z = place
-    du, dv, dz = rate
-    f0 = (z00 - z) + u * a + v * (b + u * c)
-    f1 = du * (a + v * c) + dv * (b + u * c) - dz
-    inside: float = positive(f0, f1, du * dv * c, length)
-    return inside
-
-
-@_compiled.kernel(inline=True)
-def below_top(top: float, z: float, rise: float, reach: float) -> tuple[float, float]:
-    """Return the distances between which a ray is below the highest node."""
-    if rise == 0:
-        return (0.0, reach) if z < top else (0.0, -1.0)
-    place = (top - z) / rise
-    return (0.0, min(place, reach)) if rise > 0 else (max(place, 0.0), reach)
 
 
 @_compiled.kernel(inline=True)
@@ -291,19 +249,20 @@ def beside(largest: Array, at: int, before_x: int, before_y: int) -> tuple[int, 
 
 @_compiled.kernel(seconds=1.4)
 def walk(
-    start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Levels,
-    top: float, walls: bool, out: Array,
+    start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Bounds,
+    walls: bool, out: Array,
 ) -> None:  # fmt: skip
-    """Write the lengths of rays inside the solid, as :func:`march` returns them.
-
-    ``walls`` tells that there are cells without a solid.
-    """
+    """Write the lengths of rays inside the solid, as :func:`march` does."""
     largest, least, offset, columns = bounds
+    top = largest[-1]
     for ray in range(len(out)):
         px, py, pz = start[0, ray], start[1, ray], start[2, ray]
         wx, wy, wz = way[0, ray], way[1, ray], way[2, ray]
         # Above the highest node there is nothing to meet.
-        s, end = below_top(top, pz, wz, reach[ray])
+        place = (top - pz) / wz if wz != 0 else 0.0
+        s, end = max(place, 0.0) if wz < 0 else 0.0, reach[ray]
+        if wz > 0 or (wz == 0 and pz >= top):
+            end = min(end, place)
         # A ray begins in its own cell and climbs to larger squares as it goes.
         i, j, level, length = locate(x, px + s * wx), locate(y, py + s * wy), 0, 0.0
         before_x = 1 if walls and wx == 0 and px == x[i] else 0
@@ -329,10 +288,15 @@ def walk(
                     i = child(x, i, level, px + s * wx)
                     j = child(y, j, level, py + s * wy)
                     continue
-                u, du = relative(x, i - back_x, px + s * wx, wx)
-                v, dv = relative(y, j - back_y, py + s * wy, wy)
-                own = in_cell(corners, i - back_x, j - back_y, (u, v, z), (du, dv, wz), leave - s)
-                length += own
+                column, row = i - back_x, j - back_y
+                u, du = relative(x, column, px + s * wx, wx)
+                v, dv = relative(y, row, py + s * wy, wy)
+                z00, z10 = corners[row, column], corners[row + 1, column]
+                a, b = corners[row, column + 1] - z00, z10 - z00
+                c = (corners[row + 1, column + 1] - z10) - a
+                f0 = (z00 - z) + u * a + v * (b + u * c)
+                f1 = du * (a + v * c) + dv * (b + u * c) - wz
+                length += positive(f0, f1, du * dv * c, leave - s)
             if leave >= end:
                 break
             s = leave
@@ -347,14 +311,3 @@ def walk(
                 i, j, level = i >> 1, j >> 1, level + 1
         # A way that has grown to FAR has never left the solid.
         out[ray] = length if length < 0.5 * FAR else math.inf
-
-
-def levels(bounds: list[tuple[Array, Array]]) -> Levels:
-    """Return the bounds of a field as one array each, with the offset and row length of levels."""
-    sizes = np.array([largest.size for largest, _ in bounds])
-    return (
-        np.concatenate([largest.ravel() for largest, _ in bounds]),
-        np.concatenate([least.ravel() for _, least in bounds]),
-        np.cumsum(sizes) - sizes,
-        np.array([largest.shape[1] for largest, _ in bounds]),
-    )
