@@ -18,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataSet,
     vtkPointSet,
     vtkPolyData,
+    vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
@@ -329,11 +330,14 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     Raises
     ------
     ValueError
-        If a cell or an array does not fit.
+        If a cell, an array or the points of a grid do not fit.
     """
     if not isinstance(mesh, vtkDataSet):
         return
     count = mesh.GetNumberOfPoints()
+    if isinstance(mesh, vtkStructuredGrid) and len(places(mesh)) != count:
+        expected = f"{count} points by the dimensions {tuple(mesh.GetDimensions())}"
+        raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
     for of, data, rows in (
         ("point", point_data(mesh), count),
         ("cell", cell_data(mesh), mesh.GetNumberOfCells()),
