@@ -147,8 +147,9 @@ def read(
     -----
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
-    states: .stl, .ply, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same time: what VTK says is told
-    apart by thread, and no stream is redirected. Libraries other than VTK may print.
+    states: .stl, .ply, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same
+    time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
+    VTK may print.
     """
     path = _path("file", path)
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
