@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Scene, View
-from vizlight.mesh.normals import split_edges, welded
+from vizlight.mesh.normals import welded
 from vizlight.vtk import cells, corners, normals, orientation, topology
 
 
@@ -69,16 +69,6 @@ def test_points_are_split_as_by_vtk(name, monkeypatch):
         for f, place, i in zip(face, whole.points[theirs].tolist(), theirs.tolist(), strict=True)
     }
     assert len(pairs) == len(origin) == whole.n_points > mesh.n_points
-
-
-def test_polygons_that_stand_twice_are_split_like_those_that_stand_once():
-    once = pv.Cube().clean()
-    faces = np.concatenate([once.regular_faces, np.roll(once.regular_faces[:2], 1, axis=1)])
-    twice = pv.PolyData.from_regular_faces(once.points, faces)
-    split = split_edges(twice, 30)
-    assert (split.n_points, split.n_cells) == (24, 8)
-    for i, other in ((0, 6), (1, 7)):
-        assert set(split.regular_faces[i]) == set(split.regular_faces[other])
 
 
 @pytest.mark.parametrize("name", SURFACES)

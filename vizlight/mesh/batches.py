@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -25,12 +25,9 @@ from vizlight.vtk.cells import (
 
 if TYPE_CHECKING:
     Key: TypeAlias = tuple[object, ...]
-    SplitsT = TypeVar("SplitsT", bound="Splits | None")
     from collections.abc import Iterable, Sequence
 
-    from typing_extensions import Self
-
-    from vizlight._types import Indices
+    from vizlight._types import Foreign, Indices
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
@@ -112,16 +109,12 @@ def _alone(meshes: Sequence[pv.DataSet], members: Iterable[int]) -> list[Batch]:
     return [Batch(meshes[i], [i]) for i in reversed(list(members))]
 
 
-class Splits(Protocol):
-    """What belongs to the points of a batch."""
+def split(groups: Sequence[Batch], of_groups: Sequence[Foreign]) -> list[Foreign]:
+    """Return what belongs to each mesh, from what belongs to each batch.
 
-    def part(self, i: int, rows: slice, /) -> Self:
-        """Return what belongs to a member, by its number in the batch and its points."""
-
-
-def split(groups: Sequence[Batch], of_groups: Sequence[SplitsT]) -> list[SplitsT]:
-    """Return what belongs to each mesh, from what belongs to each batch."""
-    found: dict[int, SplitsT] = {}
+    Its ``part`` takes the number of a member in the batch, and its points.
+    """
+    found: dict[int, Foreign] = {}
     for group, whole in zip(groups, of_groups, strict=True):
         if group.starts is None or whole is None:
             found |= dict.fromkeys(group.members, whole)
