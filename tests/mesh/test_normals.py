@@ -65,7 +65,7 @@ def test_points_are_split_as_by_vtk(name, monkeypatch):
     places = [(f, *place) for f, place in zip(face, mesh.points[ids].tolist(), strict=True)]
     found = dict(zip(places, split.tolist(), strict=True))
     pairs = {
-        (found[f, *place], i)
+        (found[(f, *place)], i)
         for f, place, i in zip(face, whole.points[theirs].tolist(), theirs.tolist(), strict=True)
     }
     assert len(pairs) == len(origin) == whole.n_points > mesh.n_points
