@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from vizlight import _pool
 from vizlight.vtk.cells import mixed, places, triangles
@@ -229,22 +227,32 @@ def _record(
 def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> Indices:
     """Return for each of some points the first of those that edges connect it with.
 
+    Points are hooked to neighbours of lower numbers until all edges lie in one tree each.
+
     Parameters
     ----------
     a, b : ndarray of int, shape (n,)
-        Ends of the edges.
+        Ends of the edges, the lower one first.
     count : int
         Number of points.
     kind : type
         Type of the result.
     """
-    joins = np.ones(len(a), dtype=np.bool_)
-    graph = coo_matrix((joins, (a, b)), shape=(count, count))
-    label = connected_components(graph, directed=False)[1]
-    first = np.empty(label.max(initial=-1) + 1, dtype=kind)
-    # Of points with one label the last that is written is the first.
-    first[label[::-1]] = np.arange(count - 1, -1, -1, dtype=kind)
-    return first[label]
+    root: Indices = np.arange(count, dtype=kind)
+    root[b] = a
+    while True:
+        while not np.array_equal(further := root[root], root):
+            root = further
+        left_a, left_b = [], []
+        for block in _pool.blocks(len(a), EDGES):
+            one, other = root[a[block]], root[b[block]]
+            apart = one != other
+            left_a.append(np.minimum(one[apart], other[apart]))
+            left_b.append(np.maximum(one[apart], other[apart]))
+        a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
+        if not len(a):
+            return root
+        np.minimum.at(root, b, a)
 
 
 def coincident(points: NDArray[np.generic], owners: Owners) -> Indices | None:
