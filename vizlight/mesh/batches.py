@@ -206,7 +206,7 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
     """Return some meshes of one key as one mesh."""
     if len(members) == 1:
         return Batch(meshes[members[0]], members)
-    own = [meshes[i] for i in members]
+    own: list[Foreign] = [meshes[i] for i in members]
     starts = np.concatenate([[0], np.cumsum([point_count(mesh) for mesh in own])])
     surfaces = isinstance(own[0], pv.PolyData)
     append = vtkAppendPolyData() if surfaces else vtkAppendFilter()

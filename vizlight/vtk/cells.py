@@ -281,7 +281,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
         return
     count = mesh.GetNumberOfPoints()
     if isinstance(mesh, vtkStructuredGrid) and len(places(mesh)) != count:
-        expected = f"{count} points by the dimensions {tuple(mesh.GetDimensions())}"
+        expected = f"{count} points by the extent {tuple(mesh.GetExtent())}"
         raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
     for of, data, rows in (
         ("point", point_data(mesh), count),

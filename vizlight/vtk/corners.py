@@ -168,7 +168,7 @@ def split_faces(
     """
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
-    root = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
+    root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
     # By ranges of points: a sort of all edges at once would take more memory.
     for block in _pool.blocks(len(points), EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
