@@ -14,7 +14,7 @@ import pyvista as pv
 from vizlight import _check
 
 #: Calls of each callable in the suite; `python tests/adversary.py` makes all of them.
-EACH = 6
+EACH = 4
 #: Beginnings of the names of callables that draw or start a process.
 DRAWING = ("draw.", "accessor.Accessor.plot")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -82,6 +83,7 @@ def third_party(text):
     return found - sys.stdlib_module_names - {"vizlight"}
 
 
+@cache
 def imported(folder):
     """Return the modules that each file of a folder imports."""
     paths = (ROOT / folder).rglob("*.py")

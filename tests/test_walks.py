@@ -13,6 +13,7 @@ from hostile import seeds
 pytestmark = pytest.mark.skipif(not hasattr(sys, "getdlopenflags"), reason="forks")
 
 
+@pytest.mark.slow
 def test_forty_walks():
     # A process without threads, which forks.
     run = subprocess.run(
