@@ -49,5 +49,3 @@ def test_the_check_is_no_cost_of_the_light(monkeypatch):
         assert run.sample == 50
         assert elapsed > checked
         assert run.seconds <= told.seconds <= elapsed - checked
-
-
