@@ -302,8 +302,9 @@ def _padded(nodes: Array, sign: int, near: int) -> Array:
     nodes = np.sort(sign * nodes)
     low, high = nodes[1] - nodes[0], nodes[-1] - nodes[-2]
     more = np.arange(1, near + 1)
-    wide = np.concatenate([nodes[0] - low * more[::-1], nodes, nodes[-1] + high * more])
-    return wide - wide[0]
+    wide: Array = np.concatenate([nodes[0] - low * more[::-1], nodes, nodes[-1] + high * more])
+    wide -= wide[0]
+    return wide
 
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
