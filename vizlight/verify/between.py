@@ -49,7 +49,7 @@ def measurable(inputs: ShadingInputs) -> bool:
     """Return whether light between the points follows from what the inputs hold at the points."""
     given = inputs.shadow is None and inputs.fur_height is None
     given = given and inputs.transmittance is None and inputs.occlusion is None
-    return given and inputs.repeat == 1 and not inputs.generated
+    return given and inputs.repeat == 1
 
 
 class Between:

@@ -395,7 +395,7 @@ def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
     """Return what of the error between the points was not measured, and why."""
     if given.shadow is not None:
         return SHADOWED
-    if given.generated or given.fur_height is not None:
+    if given.repeat > 1 or given.fur_height is not None:
         return "fur, which light passes on a way of its own at each place"
     if given.transmittance is not None or given.occlusion is not None:
         return "light inside a bundle, or in the shade of the sky, whose shares the points have"
