@@ -49,6 +49,7 @@ def test_tubes_are_as_wide_as_lines():
     assert out == pytest.approx(bundle.DIAMETER / 2, rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_engine_has_the_light_of_the_script():
     rows = engine.measure(40_000, repeats=1)
     first = engine.first_calls([2_000])
@@ -73,6 +74,7 @@ def test_contours_of_smooth_normals_and_of_the_solid_are_circles():
 
 
 @pytest.mark.opengl
+@pytest.mark.slow
 def test_presets_are_better_than_the_default_where_they_are_asked():
     rows = {(row.way, row.parameter): row for row in legibility.lights(("nut", "childress"), 1, 64)}
     assert {question for _, question in rows} == set(legibility.ERRORS)
