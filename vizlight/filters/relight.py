@@ -311,7 +311,7 @@ def _runs(work: Callable[[], object]) -> list[tuple[ShadingInputs, ShadingOption
     found: list[tuple[ShadingInputs, ShadingOptions]] = []
 
     def keep(inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions) -> None:
-        found.append((inputs.stored(), options))
+        found.append((inputs, options))
 
     with engine.observed(keep):
         work()
