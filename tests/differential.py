@@ -25,9 +25,9 @@ from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import compiled
 from vizlight.shading.arrays import Output, shade_block
-from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import decide
 
 PAGE = Path(__file__).parents[1] / "gallery" / "pages" / "forms.csv"
 HEAD = (

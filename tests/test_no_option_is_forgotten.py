@@ -24,9 +24,9 @@ from vizlight import DepthCue, Light, Material, Scene, View, cli, files
 from vizlight.draw import html, program
 from vizlight.mesh import brains, foreign_files
 from vizlight.shading.arrays import Output
-from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.shading.plan import decide
 
 CUE = DepthCue(front=2, back=9, front_scale=0.9, back_scale=0.3, cue=0.1)
 FAR = Light(direction=(1, 2, 3))

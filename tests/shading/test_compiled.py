@@ -20,9 +20,9 @@ from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import formulas
 from vizlight.shading import compiled, loops
 from vizlight.shading.arrays import Output
-from vizlight.shading.decide import decide
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import decide
 
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
 SUN = Light(direction=(1, 2, 0.5))

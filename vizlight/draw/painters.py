@@ -18,9 +18,9 @@ from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene.conversion import LARGEST_POWER
 from vizlight.scene.light import NO_ATTENUATION, WHITE
-from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, displayable, on_colors
 from vizlight.shading.inputs import Layout
+from vizlight.shading.plan import decide
 from vizlight.vtk import polylines
 
 if TYPE_CHECKING:

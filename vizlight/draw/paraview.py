@@ -20,10 +20,10 @@ from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
 from vizlight.scene import Scene, View
 from vizlight.scene.light import WHITE
-from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import LightOptions, ShadingOptions, named
+from vizlight.shading.plan import decide
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

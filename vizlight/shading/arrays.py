@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.model import cylinder_kernels, frames, kernels
+from vizlight.model import frames, highlight_integral, kernels
 from vizlight.shading.algebra import Algebra
 from vizlight.shading.terms import light
 
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import DTypeLike
 
     from vizlight._types import Array, Bools, Vector
-    from vizlight.shading.algebra import Lamp, Value
+    from vizlight.model.manifolds import Value
+    from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
 
@@ -161,7 +162,7 @@ class Arrays(Algebra):
 
     def integral(self, z: Value, shininess: float) -> Value:
         """Return G(z) of a cylinder."""
-        return cylinder_kernels.half_integral(shininess, z.dtype)(z)
+        return highlight_integral.half_integral(shininess, z.dtype)(z)
 
     # Points without light.
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _compiled, _pool
-from vizlight.model import cylinder_kernels
+from vizlight.model import highlight_integral
 from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.inputs import PLACED, SHARES
@@ -57,7 +57,7 @@ def why_not(plan: Plan) -> str:
         return f"{plan.k} tangents per point, more than {MOST_TANGENTS}"
     if not (plan.diffuse or plan.specular or plan.scene.depth_cue):
         return "the ambient term alone needs none"
-    least = cylinder_kernels.TABLE_FROM
+    least = highlight_integral.TABLE_FROM
     if plan.model == "cylinder" and plan.specular and plan.scene.material.shininess < least:
         return f"a cylinder's highlight of a shininess below {least:g} is no table"
     return ""

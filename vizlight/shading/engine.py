@@ -20,16 +20,15 @@ from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading import compiled
 from vizlight.shading.arrays import Output, columns, shade_block
-from vizlight.shading.decide import decide, plan
-from vizlight.shading.inputs import ArraySource, ShadingInputs, array_source
+from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
 from vizlight.shading.options import Model, Precision, ShadingOptions, named
-from vizlight.shading.plan import Plan
+from vizlight.shading.plan import Plan, decide
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from typing import TypeAlias
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, DTypeLike
 
     from vizlight._types import Array, Bools
     from vizlight.scene import View
@@ -127,6 +126,76 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         yield
     finally:
         _OBSERVER.reset(token)
+
+
+@named
+def plan(
+    scene: Scene,
+    /,
+    *,
+    n: int = 3,
+    k: int | None = None,
+    normals: bool = False,
+    two_sided: bool = False,
+    dtype: DTypeLike | None = None,
+    base_tangents: int | None = None,
+    shadowed: bool = False,
+    fur: float = 0.0,
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    conditioned: bool | str | None = True,
+    components: bool = False,
+    precision: Precision | None = None,
+) -> Plan:
+    """Return what the light of a scene needs.
+
+    Parameters
+    ----------
+    scene : Scene
+    n : int, default: 3
+        Dimension of the space.
+    k : int, optional
+        Number of tangents per point. None: the manifold is the surface that has the normals.
+    normals : bool, default: False
+        Whether normals are given. With k they may condition and attenuate the light.
+    two_sided : bool, default: False
+        Whether the normals have no side: the surface is lit by ``|N . wi|``.
+    dtype : dtype, optional
+        float32 or float64. Default: ``precision``, else float64.
+    base_tangents : int, optional
+        Number of base tangents per point, k or more and less than n: the frame of the manifold in
+        which the tangents lie.
+    shadowed : bool, default: False
+        Whether t of a cos-theta shadow is given for each light.
+    fur : float, default: 0.0
+        Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
+    exponent, model, conditioned, components, precision
+        As for :func:`vizlight.shading.engine.shade`.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    TypeError
+        If the scene is not a :class:`vizlight.Scene`, or a keyword is unknown.
+    ValueError
+        If the vectors of the scene do not have n components, a depth cue has no view, or an
+        option does not fit.
+    """
+    n = _check.integer("n", n, low=2, high=int(_check.LARGEST))
+    normals = _check.boolean("normals", normals)
+    shadowed = _check.boolean("shadowed", shadowed)
+    fur = _check.number("fur", fur, low=0.0, high=1.0)
+    if base_tangents is not None:
+        base_tangents = _check.integer("base_tangents", base_tangents, low=1)
+    layout = Layout(
+        n, k, normals, base_tangents or 0, shadowed, fur,
+        two_sided=_check.boolean("two_sided", two_sided),
+    )  # fmt: skip
+    made = decide(scene, layout, ShadingOptions.of(locals()), dtype)
+    return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
 
 
 @named

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vizlight.model import cylinder_kernels, frames
+from vizlight.model import frames, highlight_integral
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading.elementary import prelude
 from vizlight.shading.inputs import PLACED, SHARES
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Vector
-    from vizlight.shading.algebra import Lamp, Value
+    from vizlight.model.manifolds import Value
+    from vizlight.shading.algebra import Lamp
     from vizlight.shading.plan import Plan
 
 #: Up to this many lamps of a kind are written out; more are a loop.
@@ -234,7 +235,7 @@ class Loop(Writer):
 
     def integral(self, z: Value, shininess: float) -> Value:
         """Return G(z) of a cylinder by its table."""
-        inverse, cells = cylinder_kernels.table(shininess)
+        inverse, cells = highlight_integral.table(shininess)
         self.table = cells.astype(self.plan.dtype).ravel()
         given = f"{self.number(cells.shape[1]).text}, {self.number(inverse).text}"
         return self.named(f"integral_({z.text}, table, {given})", self.type)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
 import numpy as np
 
 from vizlight import _check
+from vizlight.model import manifolds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     P = ParamSpec("P")
     R = TypeVar("R")
 
-Model = Literal["phong", "blinn", "cylinder"]
+Model: TypeAlias = manifolds.Model
 Precision = Literal["float32", "float64"]
 #: Limits of a given exponent of the diffuse term: beyond them a picture has one brightness.
 LEAST_EXPONENT, LARGEST_EXPONENT = 1e-6, 1e6
