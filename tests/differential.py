@@ -24,7 +24,7 @@ from vizlight import DepthCue, Light, Material, Scene, View, _compiled
 from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading import compiled
-from vizlight.shading.arrays import Output, shade_block
+from vizlight.shading.arrays import Shading, shade_block
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 from vizlight.shading.plan import decide
@@ -305,7 +305,7 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
     """
     scene, inputs = made.scene, made.inputs
     plan = decide(scene, inputs.layout, made.options, made.options.precision)
-    output = Output(plan, inputs.count)
+    output = Shading.of(plan, inputs.count)
     with np.errstate(all="ignore"):
         light(plan, inputs, output)
         bound = _bound(plan, inputs)

@@ -19,7 +19,7 @@ import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import formulas
 from vizlight.shading import compiled, loops
-from vizlight.shading.arrays import Output
+from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 from vizlight.shading.plan import decide
@@ -186,7 +186,7 @@ def test_a_loop_with_a_table_is_made_of_vector_instructions(fast, random):
     inputs = ShadingInputs(points=points, tangents=tangents)
     plan = decide(SCENE, inputs.layout, ShadingOptions(model="cylinder"), "float32")
     code = compiled.given(plan, inputs)
-    code.shade_block(plan, slice(0, 64), inputs, Output(plan, 64))
+    code.shade_block(plan, slice(0, 64), inputs, Shading.of(plan, 64))
     (text,) = code.kernel._dispatcher().inspect_llvm().values()
     assert text.count(" x float>") > 100
 
@@ -425,7 +425,7 @@ def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):
     view, light = View(direction=(0.1, 0, 1)), Light(direction=(0, 0.1, 1))
     scene = Scene(lights=light, view=view, material=Material(specular=1, shininess=7.5))
     made = decide(scene, inputs.layout, ShadingOptions(model="blinn"), np.float64)
-    outputs = [Output(made, 500), Output(made, 500)]
+    outputs = [Shading.of(made, 500), Shading.of(made, 500)]
     differential.by_numpy(made, inputs, outputs[0])
     differential.by_text(made, inputs, outputs[1])
     np.testing.assert_allclose(outputs[1].luminance, outputs[0].luminance, rtol=1e-13)

@@ -22,7 +22,7 @@ from vizlight.files import check_output, replace_file
 from vizlight.filters.project import ProjectOptions, project
 from vizlight.filters.tint import RGB
 from vizlight.mesh.blocks import all_blocks
-from vizlight.shading.options import named
+from vizlight.scene.keywords import named
 from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model import falloff
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 from vizlight.scene.view import View
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ class Light:
             parts.append("follows_view=True")
         return f"Light{'.headlight' if self.is_headlight else ''}({', '.join(parts)})"
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.scene import conversion
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -48,7 +48,7 @@ class Material:
     color: Color | None
     specular_color: Color | None
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -57,7 +57,7 @@ class View:
     parallel: bool
     up: Vector | None
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,
@@ -222,7 +222,7 @@ class DepthCue:
     color: Color | None
     smooth: bool
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,

@@ -17,7 +17,7 @@ import numpy as np
 
 from vizlight import _compiled, _pool
 from vizlight.model import highlight_integral
-from vizlight.shading.arrays import SMALLEST_HELD, Output, shade_block
+from vizlight.shading.arrays import SMALLEST_HELD, Shading, shade_block
 from vizlight.shading.elementary import HELPERS
 from vizlight.shading.inputs import PLACED, SHARES
 from vizlight.shading.options import ShadingOptions
@@ -69,12 +69,12 @@ class Compiled(NamedTuple):
     kernel: Callable[..., None]
     program: Program
 
-    def shade_block(self, plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
+    def shade_block(self, plan: Plan, rows: slice, inputs: ShadingInputs, output: Shading) -> None:
         """Light the points of some rows; as :func:`vizlight.shading.arrays.shade_block`."""
         for at, part in _parts(rows, inputs):
             self._shade_points(plan, at, part, output)
 
-    def _shade_points(self, plan: Plan, at: slice, part: ShadingInputs, output: Output) -> None:
+    def _shade_points(self, plan: Plan, at: slice, part: ShadingInputs, output: Shading) -> None:
         kind, count, whole = plan.dtype, part.count, at.step is None
         light: Array = output.luminance[at] if whole else np.empty(count, kind)
         terms = np.empty((2, count if plan.components else 0), kind)
@@ -248,7 +248,7 @@ def _parts(rows: slice, inputs: ShadingInputs) -> Iterator[tuple[slice, ShadingI
 
 
 def _light_again(
-    plan: Plan, at: slice, odd: NDArray[np.intp], part: ShadingInputs, output: Output
+    plan: Plan, at: slice, odd: NDArray[np.intp], part: ShadingInputs, output: Shading
 ) -> None:
     """Light some points of a block by NumPy."""
     few = dataclasses.replace(
@@ -259,8 +259,7 @@ def _light_again(
             if (source := getattr(part, name)) is not None
         },
     )
-    own = Output(plan, len(odd))
+    own = Shading.of(plan, len(odd))
     shade_block(plan, slice(0, len(odd)), few, own)
-    for name in ("luminance", "valid", "diffuse", "specular", "rgb"):
-        if (values := getattr(own, name)) is not None:
-            getattr(output, name)[at][odd] = values
+    for name, values in own.arrays().items():
+        getattr(output, name)[at][odd] = values
