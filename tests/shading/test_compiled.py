@@ -123,7 +123,7 @@ def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
         ("phong", "sine_i - sine_o", "sine_i + sine_o"),
         ("blinn", "0.5 * shininess", "0.25 * shininess"),
         ("attenuation", "linear + distance", "linear - distance"),
-        ("smooth_step", "3.0 - 2.0 * u", "2.0 - u"),
+        ("depth_scale", "3.0 - 2.0 * t", "2.0 - t"),
         ("fur_path", "height / sine", "height * sine"),
     ],
 )

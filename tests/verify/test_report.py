@@ -31,7 +31,7 @@ from vizlight import (
 )
 from vizlight.geometry import manifolds
 from vizlight.mesh import casters
-from vizlight.model import formulas
+from vizlight.model.manifolds import Frame
 from vizlight.shading import algebra
 from vizlight.verify import oracle, rays
 from vizlight.verify import report as reports
@@ -202,8 +202,8 @@ def test_the_oracle_agrees_on_what_can_be_lit(random):
 
 
 def test_a_wrong_engine_is_found_out(surface, monkeypatch):
-    right = formulas.diffuse
-    monkeypatch.setattr(formulas, "diffuse", lambda *a: 1.01 * right(*a))
+    right = Frame.diffuse
+    monkeypatch.setattr(Frame, "diffuse", lambda *a: 1.01 * right(*a))
     with vizlight.report() as told:
         illuminate(surface, SCENE, tangents="V")
     assert told.error > 1e-3
