@@ -154,7 +154,8 @@ def find_direction(sample: Sample, random: np.random.Generator, noise: float) ->
 
 def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise: float) -> Found:
     """Return the errors of an observer to whom tangents may be turned about axes."""
-    errors, bits = [np.empty(0)], [np.empty(0)]
+    errors: list[Array] = [np.empty(0)]
+    bits: list[Array] = [np.empty(0)]
     for start in range(0, len(sample), PLACES):
         rows = slice(start, start + PLACES)
         own, axis = sample.take(rows), axes[rows]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from vtkmodules.vtkCommonCore import vtkPoints
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Keywords
     from vizlight.scene.conversion import AnyView
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
@@ -112,11 +112,12 @@ class Sample:
     ) -> ShadingInputs:
         """Return inputs of the engine of other tangents and normals, ``repeat`` at each place."""
         lit = self.options.conditioned is True or tangents is None
+        shares: Keywords = {
+            name: np.repeat(share, repeat, axis=0) for name, share in self.shares.items()
+        }
+        points = np.repeat(self.points, repeat, axis=0)
         return ShadingInputs(
-            points=np.repeat(self.points, repeat, axis=0),
-            tangents=tangents,
-            normals=normals if lit else None,
-            **{name: np.repeat(share, repeat, axis=0) for name, share in self.shares.items()},
+            points=points, tangents=tangents, normals=normals if lit else None, **shares
         )
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
@@ -308,7 +309,7 @@ def _part(
 def _shares(mesh: pv.DataSet, lights: int) -> dict[str, Array]:
     """Return the shares of light that a filter found to reach the points of a mesh."""
     made = records.made(mesh, DEFAULT_NAME)
-    found = {
+    found: dict[str, Array] = {
         name: np.asarray(mesh.point_data[name])
         for name in ("transmittance", "occlusion")
         if name in made

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike, NDArray
 
-    from vizlight._types import Array, Bools, Vector
+    from vizlight._types import Array, Bools, Keywords, Vector
     from vizlight.model.manifolds import Value
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -87,7 +87,7 @@ class Shading:
     def part(self, _: int, rows: slice, /) -> Shading:
         """Return the light of some points, with a share of the time."""
         share = (rows.stop - rows.start) / max(self.luminance.size, 1)
-        own = {name: array[rows] for name, array in self.arrays().items()}
+        own: Keywords = {name: array[rows] for name, array in self.arrays().items()}
         return dataclasses.replace(self, **own, seconds=self.seconds * share)
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, DTypeLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Keywords
     from vizlight.scene import View
     from vizlight.shading.options import Exponent
 
@@ -255,10 +255,9 @@ def shade(
         "fur_height": fur_height, "shadow": shadow, "transmittance": transmittance,
         "occlusion": occlusion,
     }  # fmt: skip
-    inputs = ShadingInputs(
-        points=array_source("points", points), fur=fur, two_sided=two_sided, repeat=repeat,
-        **{name: array_source(name, x) for name, x in optional.items() if x is not None},
-    )  # fmt: skip
+    there: Keywords = {name: array_source(name, x) for name, x in optional.items() if x is not None}
+    at = array_source("points", points)
+    inputs = ShadingInputs(points=at, fur=fur, two_sided=two_sided, repeat=repeat, **there)
     return run(inputs, scene, chosen, block=block, progress=progress)
 
 
