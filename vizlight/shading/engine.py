@@ -18,7 +18,7 @@ from vizlight import _check, _compiled, _pool
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.shading import compiled
+from vizlight.shading import loops
 from vizlight.shading.arrays import Shading, columns, shade_block
 from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
 from vizlight.shading.options import Model, Precision, ShadingOptions
@@ -143,7 +143,7 @@ def plan(
         two_sided=_check.boolean("two_sided", two_sided),
     )  # fmt: skip
     made = decide(scene, layout, ShadingOptions.of(locals()), dtype)
-    return dataclasses.replace(made, code=compiled.why_not(made) or compiled.WHERE_IT_PAYS)
+    return dataclasses.replace(made, code=loops.why_not(made) or loops.WHERE_IT_PAYS)
 
 
 @named
@@ -308,8 +308,8 @@ def run(
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     # Compiled code where numba is there and the points are many enough to pay for its start-up.
-    code, reason = compiled.prepare(made, inputs)
-    made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
+    code, reason = loops.prepare(made, inputs)
+    made = dataclasses.replace(made, compiled=code is not None, code=reason or loops.IN_WORDS)
     shading = Shading.of(made, count)
     light = shade_block if code is None else code.shade_block
     block = inputs.block if block is None else block
