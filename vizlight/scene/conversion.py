@@ -123,6 +123,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
             found += _fixed(light, view)
         else:
             _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
+            assert isinstance(light, Light)
             found.append(light)
     return tuple(found)
 
