@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkCamera, vtkLight, vtkProperty
 
     from vizlight._types import Color, Keywords, Vector
-    from vizlight.scene.material import Material
 
     AnyLight: TypeAlias = Light | vtkLight
     Lights: TypeAlias = AnyLight | Iterable[AnyLight] | None
@@ -48,16 +47,16 @@ def to_property(material: Material, *, lights: Lights, view: AnyView, model: str
     import pyvista as pv
 
     given, view = _check_lights(lights, view), as_view(view)
-    coefficients = {name: getattr(material, name) for name in ("ambient", "diffuse", "specular")}
+    coefficients = {name: values[name] for name in ("ambient", "diffuse", "specular")}
     for name, value in coefficients.items():
         if value > 1:
             remedy = "make the lights brighter instead"
             raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
-    power = material.shininess
+    power = values["shininess"]
     if _check_model(model) != vtk_model(given):
         power = _converted(power, _angle(given, view), model)
     shown = min(power, LARGEST_POWER)
-    _warn_of_error(material.specular, material.shininess, given, view, model, shown)
+    _warn_of_error(values["specular"], values["shininess"], given, view, model, shown)
     made = pv.Property(
         **coefficients,
         specular_power=shown,
@@ -66,8 +65,8 @@ def to_property(material: Material, *, lights: Lights, view: AnyView, model: str
     )
     # VTK's own setters, because PyVista's round colours to 8 bits.
     for set_color in (made.SetAmbientColor, made.SetDiffuseColor):
-        set_color(*(material.color or WHITE))
-    made.SetSpecularColor(*(material.specular_color or WHITE))
+        set_color(*(values["color"] or WHITE))
+    made.SetSpecularColor(*(values["specular_color"] or WHITE))
     return made
 
 

@@ -113,7 +113,7 @@ class Material:
         the eye to be at the position of the camera **even in parallel projection**. The
         equivalent scene in vizlight then has a perspective view, or the camera is far away.
         """
-        return conversion.to_property(self, lights=lights, view=view, model=model)
+        return conversion.to_property(vars(self), lights=lights, view=view, model=model)
 
     @classmethod
     def from_property(
