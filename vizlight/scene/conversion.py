@@ -42,7 +42,7 @@ def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
     return "blinn" if len(lights) == 1 and lights[0].is_headlight else "phong"
 
 
-def to_property(material: Material, *, lights: Lights, view: AnyView, model: str) -> pv.Property:
+def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) -> pv.Property:
     """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
     import pyvista as pv
 
