@@ -312,7 +312,6 @@ def run(
     made = dataclasses.replace(made, compiled=code is not None, code=reason or loops.IN_WORDS)
     shading = Shading.of(made, count)
     light = shade_block if code is None else code.shade_block
-    block = inputs.block if block is None else block
     step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:
