@@ -122,7 +122,7 @@ class NumPy(Points):
         _, plan = self.plan(scene, options)
         output = Shading.of(plan, self.inputs.count)
         self.light(plan, self.inputs, output)
-        return [(str(v.dtype), v.tolist()) for v in vars(output).values() if v is not None]
+        return [(str(v.dtype), v.tolist()) for v in output.arrays().values()]
 
 
 class Loops(NumPy):

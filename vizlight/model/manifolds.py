@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from functools import reduce
 from operator import add
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy import absolute, maximum, minimum, sqrt
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 #: A number or a vector of an algebra: whatever NumPy's functions and operators accept, such as an
 #: array. No static type says that.
 Value: TypeAlias = Any
-Model = Literal["phong", "blinn", "cylinder"]
 #: A direction whose part across the line is at most this many eps counts as along the line: its
 #: azimuth about the line is then rounding error alone.
 ALONG = 8.0
@@ -48,7 +47,7 @@ class Highlight(NamedTuple):
         Unit half vector, where it is the same at all points and used as such.
     """
 
-    model: Model
+    model: str
     shininess: float
     half: Vector | None = None
 

@@ -22,9 +22,11 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
 
     An initialiser that takes keywords alone also says so of a value without a name.
     """
-    known = list(inspect.signature(function).parameters)
+    parameters = inspect.signature(function).parameters
+    known = list(parameters)
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    keywords_only = function.__name__ == "__init__"
+    kinds = {parameters[name].kind for name in known[1:]}
+    keywords_only = function.__name__ == "__init__" and kinds == {inspect.Parameter.KEYWORD_ONLY}
 
     @functools.wraps(function)
     def method(*arguments: P.args, **keywords: P.kwargs) -> R:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import manifolds
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Given, Keywords
 
-Model: TypeAlias = manifolds.Model
+Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
 #: Limits of a given exponent of the diffuse term: beyond them a picture has one brightness.
 LEAST_EXPONENT, LARGEST_EXPONENT = 1e-6, 1e6
