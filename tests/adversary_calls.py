@@ -24,7 +24,7 @@ from vizlight.geometry import manifolds
 from vizlight.geometry.solids.primitives import Solid
 from vizlight.pieces.sources import Slabs
 from vizlight.scene.scene import SceneKeywords
-from vizlight.shading.engine import Shading
+from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import Options
 
@@ -270,7 +270,7 @@ RETURNED = {
     "observers.legibility.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
     "draw.backends.Probe", "pieces.run.Lit", "draw.testing.Difference",
     "draw.snapshots.same_picture", "draw.component.Component", "draw.paraview.Shader",
-    "shading.engine.Shading", "shading.inputs.ArraySource", "shading.plan.Plan",
+    "shading.arrays.Shading", "shading.inputs.ArraySource", "shading.plan.Plan",
     "shading.inputs.ShadingInputs", "geometry.solids.primitives.Solid",
     "geometry.solids.primitives.Primitive", "accessor.Accessor",
 }  # fmt: skip
@@ -278,7 +278,7 @@ RETURNED = {
 #: of those of meshes that are lit together and of slabs.
 PROTOCOLS = {
     Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
-    Shading: {"part"},
+    Shading: {"arrays", "of", "part"},
     Options: {"of"},
     Slabs: {"empty", "nodes"},
 }
