@@ -235,7 +235,7 @@ CALLS = {
     "scene.view.View.from_camera": lambda: {"camera": pv.Camera()},
     "scene.view.View.isometric": lambda: {"n": 3},
     "vtk.illuminate.Illuminate": lambda: {"scene": SCENE},
-    "shading.decide.plan": lambda: {"scene": SCENE, "k": 1},
+    "shading.engine.plan": lambda: {"scene": SCENE, "k": 1},
     "shading.engine.depth_range": lambda: {"points": unit(6, 3), "scene": SCENE},
     "shading.engine.observed": lambda: {"observer": None},
     "shading.engine.run": lambda: {

@@ -7,7 +7,7 @@ import numpy as np
 from vizlight import Light, Material, Scene, View
 from vizlight.observers import readers
 from vizlight.observers.readers import lab, seen
-from vizlight.observers.samples import Sample, Shares
+from vizlight.observers.samples import Sample
 from vizlight.shading.options import ShadingOptions
 
 MATTE = Material(ambient=0.1, diffuse=0.8, specular=0)
@@ -40,7 +40,7 @@ def places(scene, tangents=None, normals=None, *, kind="surface", cls=Sample, mo
     return cls(
         kind=kind, points=np.zeros((m, 3)), right=axes[0], up=axes[1], eye=axes[2],
         tangents=None if tangents is None else tangents[:, np.newaxis], normals=normals,
-        values=None, valid=np.ones(m, dtype=bool), scene=scene, shares=Shares(None, None),
+        values=None, valid=np.ones(m, dtype=bool), scene=scene, shares={},
         options=ShadingOptions(conditioned=False, precision="float64", model=model),
     )  # fmt: skip
 

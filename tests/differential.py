@@ -23,11 +23,11 @@ import oracles
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled
 from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading import compiled
-from vizlight.shading.arrays import Output, shade_block
-from vizlight.shading.decide import decide
+from vizlight.shading import loops
+from vizlight.shading.arrays import Shading, shade_block
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import decide
 
 PAGE = Path(__file__).parents[1] / "gallery" / "pages" / "forms.csv"
 HEAD = (
@@ -274,20 +274,29 @@ def by_numpy(plan, inputs, output):
     shade_block(plan, slice(0, inputs.rows), inputs, output)
 
 
+class Interpreted(loops.Program):
+    """A program whose text runs as Python, point by point: a check of the text."""
+
+    @property
+    def kernel(self):
+        """The function of the text."""
+        return loops._functions(self.source, np.sqrt)["light"]
+
+
 def by_text(plan, inputs, output):
     """Light points by the text of a kernel, run as Python."""
-    code = compiled.given(plan, inputs, interpreted=True)
+    code = Interpreted(*loops.program_of(plan, inputs))
     code.shade_block(plan, slice(0, inputs.rows), inputs, output)
 
 
 def by_kernel(plan, inputs, output):
     """Light points by a compiled kernel."""
-    compiled.given(plan, inputs).shade_block(plan, slice(0, inputs.rows), inputs, output)
+    loops.program_of(plan, inputs).shade_block(plan, slice(0, inputs.rows), inputs, output)
 
 
 def left_to_numpy(plan):
     """Return whether compiled code leaves a plan to NumPy."""
-    return bool(compiled.why_not(plan) or compiled._beyond(plan))
+    return bool(loops.why_not(plan) or loops._beyond(plan))
 
 
 def compare(made: Case, true: Truth, light) -> tuple[float, int]:
@@ -305,7 +314,7 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
     """
     scene, inputs = made.scene, made.inputs
     plan = decide(scene, inputs.layout, made.options, made.options.precision)
-    output = Output(plan, inputs.count)
+    output = Shading.of(plan, inputs.count)
     with np.errstate(all="ignore"):
         light(plan, inputs, output)
         bound = _bound(plan, inputs)

@@ -23,10 +23,10 @@ import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, cli, files
 from vizlight.draw import html, program
 from vizlight.mesh import brains, foreign_files
-from vizlight.shading.arrays import Output
-from vizlight.shading.decide import decide
+from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.shading.plan import decide
 
 CUE = DepthCue(front=2, back=9, front_scale=0.9, back_scale=0.3, cue=0.1)
 FAR = Light(direction=(1, 2, 3))
@@ -120,9 +120,9 @@ class NumPy(Points):
 
     def __call__(self, scene, options):
         _, plan = self.plan(scene, options)
-        output = Output(plan, self.inputs.count)
+        output = Shading.of(plan, self.inputs.count)
         self.light(plan, self.inputs, output)
-        return [(str(v.dtype), v.tolist()) for v in vars(output).values() if v is not None]
+        return [(str(v.dtype), v.tolist()) for v in output.arrays().values()]
 
 
 class Loops(NumPy):

@@ -8,7 +8,7 @@ import pytest
 
 from vizlight import DepthCue, Light, Scene, View
 from vizlight.draw import dialects, program
-from vizlight.shading.decide import plan
+from vizlight.shading.engine import plan
 
 NEAR = Light(position=(1, 2, 3), attenuation=(0.5, 0.1, 0))
 CUE = DepthCue(front=1, back=2)

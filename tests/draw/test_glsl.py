@@ -14,7 +14,7 @@ from vizlight.draw import glsl, program
 from vizlight.model import formulas
 from vizlight.scene.light import WHITE
 from vizlight.shading import display, engine
-from vizlight.shading.decide import plan
+from vizlight.shading.engine import plan
 
 EYE = View(position=(0.3, -0.2, 6.0), direction=(0.1, 0.2, 1.0))
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.6)

@@ -689,6 +689,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     assert [light["eye"] for (light,) in content["lights"]] == [False, True]
     assert content["bars"][0]["title"] == "height"
     assert content["meshes"][1]["lineWidth"] == 3
+    assert [mesh["free"] for mesh in content["meshes"]] == [False, False]
 
 
 @pytest.mark.parametrize(

@@ -174,6 +174,7 @@ def test_text_holds_all_that_it_reads(case):
     assert "vec3 vizLight2 = vec3(0.0, 0.0, 1.0);" in texts["fragment"]
     assert "vizLight3" not in texts["fragment"]
     assert texts["vertex"].count("MCWCMatrix[3].xyz") == 1
+    assert texts["vertex"].count("uniform mat4 MCWCMatrix;") == 1
 
 
 def test_properties_and_script():

@@ -132,66 +132,55 @@ def test_a_tinted_mesh_is_shown_in_its_colours(tmp_path):
     assert np.ptp(pictures[0].astype(int), axis=-1).max() > 80
 
 
-def test_bad_input(tmp_path):
-    sphere = pv.Sphere()
-    with pytest.raises(
-        ValueError,
-        match=r"scalars: expected a point array or a cell array \('Normals'\), got 'luminance'",
-    ):
-        render.save_png(sphere, tmp_path / "x.png")
-    with pytest.raises(ValueError, match=r"output: expected a name that ends in \.png"):
-        render.save_png(sphere, tmp_path / "x.jpg")
-    with pytest.raises(ValueError, match="output: expected a folder that exists"):
-        render.save_png(sphere, tmp_path / "no" / "x.png")
-    with pytest.raises(ValueError, match="panels: expected one mesh or more"):
-        render.save_png([], tmp_path / "x.png")
-    with pytest.raises(ValueError, match="backend: expected 'egl' or 'osmesa', got 'glx'"):
-        render.probe("glx")
-    with pytest.raises(ValueError, match="zoom: expected"):
-        render.camera_on(sphere.bounds, zoom=0)
-    with pytest.raises(ValueError, match="direction: expected 3 components"):
-        render.camera_on(sphere.bounds, (1, 0))
-    for size, words in (
-        ((9000, 10), "at most 8192 pixels per side"),
-        ((8000, 8000), "33 million in all, got 8000x8000"),
-        (3, "size: expected .width, height."),
-    ):
-        with pytest.raises(ValueError, match=words):
-            render.pixels_of(size)
-    lit, camera = ball()
-    with pytest.raises(ValueError, match="clim: expected a lower and a higher number"):
-        render.make_plotter(lit, clim=(1, 0))
-    with pytest.raises(TypeError, match=r"camera: expected a pyvista\.Camera"):
-        render.make_plotter(lit, camera=3)
-    with pytest.raises(ValueError, match="background: expected a colour's name"):
-        render.make_plotter(lit, camera=camera, background="nothing")
-    with pytest.raises(ValueError, match="up: expected a direction across the view"):
-        render.camera_on(sphere.bounds, (1, 1, 1), up=(2, 2, 2))
-    for options, words in (
-        ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
-        ({"clim": (1, 1)}, "clim: expected a lower and a higher number"),
-        ({"cmap": "greyish"}, "cmap: expected the name of a colour map, got 'greyish'"),
-        (
-            {"anti_aliasing": "best"},
-            "anti_aliasing: expected 'auto', 'ssaa', 'msaa', 'fxaa'",
-        ),
-        ({"size": (np.nan, 5)}, "size: expected finite components"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            render.make_plotter(lit, camera=camera, **options)
-    with pytest.raises(TypeError, match="size: expected real numbers"):
-        render.make_plotter(lit, camera=camera, size=("a", "b"))
-    with pytest.raises(TypeError, match="panels: expected PyVista meshes or Panels, got None"):
-        render.make_plotter([lit, None], camera=camera)
-    with pytest.raises(TypeError, match="title: expected a string, got 3"):
-        render.make_plotter(render.Panel(lit, title=3), camera=camera)
-    with pytest.raises(ValueError, match="bounds: expected a mesh or six finite numbers"):
-        render.camera_on((0, 1))
-    empty = pv.PolyData()
-    empty["luminance"] = np.empty(0)
-    with pytest.raises(ValueError, match="panels: expected a mesh with points"):
-        render.save_png(empty, tmp_path / "x.png")
+BALL, EMPTY = pv.Sphere(), pv.PolyData()
+EMPTY["luminance"] = np.empty(0)
+BAD = [
+    (render.save_png, BALL, {}, r"scalars: .*a cell array \('Normals'\), got 'luminance'"),
+    (render.save_png, BALL, {"path": "x.jpg"}, r"output: expected a name that ends in \.png"),
+    (render.save_png, BALL, {"path": "no/x.png"}, "output: expected a folder that exists"),
+    (render.save_png, [], {}, "panels: expected one mesh or more"),
+    (render.save_png, EMPTY, {}, "panels: expected a mesh with points"),
+    (render.make_plotter, [None], {}, "panels: expected PyVista meshes or Panels, got None"),
+    (render.probe, "glx", {}, "backend: expected 'egl' or 'osmesa', got 'glx'"),
+    (render.camera_on, BALL.bounds, {"zoom": 0}, "zoom: expected"),
+    (render.camera_on, BALL.bounds, {"direction": (1, 0)}, "direction: expected 3 components"),
+    (render.camera_on, BALL.bounds, {"up": (2, 2, 2)}, "up: expected a direction across the view"),
+    (render.camera_on, (0, 1), {}, "bounds: expected a mesh or six finite numbers"),
+    (render.pixels_of, (9000, 10), {}, "at most 8192 pixels per side"),
+    (render.pixels_of, (8000, 8000), {}, "33 million in all, got 8000x8000"),
+    (render.pixels_of, 3, {}, "size: expected .width, height."),
+]
+OPTIONS = [
+    ({"clim": (1, 0)}, "clim: expected a lower and a higher number"),
+    ({"clim": (0, 1, 2)}, "clim: expected a lower and a higher number"),
+    ({"clim": (1, 1)}, "clim: expected a lower and a higher number"),
+    ({"camera": 3}, r"camera: expected a pyvista\.Camera"),
+    ({"background": "nothing"}, "background: expected a colour's name"),
+    ({"cmap": "greyish"}, "cmap: expected the name of a colour map, got 'greyish'"),
+    ({"anti_aliasing": "best"}, "anti_aliasing: expected 'auto', 'ssaa', 'msaa', 'fxaa'"),
+    ({"size": (np.nan, 5)}, "size: expected finite components"),
+    ({"size": ("a", "b")}, "size: expected real numbers"),
+]
+
+
+@pytest.mark.parametrize(("function", "given", "options", "words"), BAD)
+def test_bad_input(function, given, options, words, tmp_path):
+    if function is render.save_png:
+        given, options = [given, tmp_path / options.get("path", "x.png")], {}
+    else:
+        given = [given]
+    with pytest.raises((TypeError, ValueError), match=words):
+        function(*given, **options)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("options", "words"), OPTIONS)
+def test_bad_options(options, words):
+    lit, camera = ball()
+    with pytest.raises((TypeError, ValueError), match=words):
+        render.make_plotter(lit, **{"camera": camera, **options})
+    with pytest.raises(TypeError, match="title: expected a string, got 3"):
+        render.Panel(lit, title=3)
 
 
 def test_the_typed_keywords_are_those_of_the_function():

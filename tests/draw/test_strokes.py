@@ -98,6 +98,22 @@ def test_live_light_widens_lines_that_come_nearer():
     assert widths[1] == pytest.approx(2 * widths[0], rel=0.1)
 
 
+def test_lines_with_light_at_their_points_are_bands():
+    """There is no normal across them; the whole width has the light of the line."""
+    pictures = []
+    for tubes in (False, True):
+        plotter = pv.Plotter(off_screen=True, window_size=(120, 120))
+        plotter.background_color = "black"
+        plotter.vizlight.add_mesh(
+            pv.Line(), light="points", scene=WHITE, model="cylinder", line_diameter=DIAMETER,
+            render_lines_as_tubes=tubes,
+        )  # fmt: skip
+        pictures.append(np.asarray(plotter.screenshot(return_img=True)))
+        plotter.close()
+    assert pictures[0].std() > 10
+    np.testing.assert_array_equal(*pictures)
+
+
 @pytest.mark.parametrize("option", [{"line_diameter": 0}, {"line_diameter": "wide"}])
 def test_bad_input_names_the_option(option):
     line = vizlight.illuminate(pv.Line(), WHITE)

@@ -278,6 +278,12 @@ def test_kinds_of_meshes(mesh):
     assert np.isfinite(found["bands"]["luminance"]).all()
 
 
+def test_names_and_the_accessor():
+    found = pv.Sphere().vizlight.isoluminance(DULL, levels=4, name="glow")
+    assert {"glow", "glow_band"} <= set(found["bands"].cell_data)
+    assert vizlight.provenance(found["bands"], "glow")["options"]["name"] == "glow"
+
+
 def test_float32_far_from_the_origin():
     mesh = sphere_mesh(30)
     far = mesh.translate((5e6, 0, 0))

@@ -13,7 +13,7 @@ from vizlight import _compiled
 from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.mesh import closed_meshes, sky
-from vizlight.shading import compiled, engine
+from vizlight.shading import engine, loops
 from vizlight.shading.options import LightOptions
 
 pytest.importorskip("embreex")
@@ -307,7 +307,7 @@ def test_live_light_has_the_sky_of_the_mesh():
     assert fragments.unfit(source) == ""
     lit = vizlight.illuminate(both, SCENE, occlusion="sky")
     shading = engine.run(source.inputs, SCENE, source.options)
-    assert compiled.why_not(shading.plan) == ""
+    assert loops.why_not(shading.plan) == ""
     np.testing.assert_allclose(shading.luminance, lit["luminance"], atol=1e-6)
     (again,), scene = relight.from_record(lit)
     assert np.array_equal(again.inputs.occlusion, lit["sky"])

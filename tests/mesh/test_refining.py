@@ -538,6 +538,21 @@ def part_with_creases():
     return made.compute_normals(feature_angle=30, split_vertices=True)
 
 
+def terrain():
+    x = np.linspace(0, 1, 40)
+    x, y = np.meshgrid(x, x, indexing="ij")
+    z = sum(np.sin(7 * k * (x * np.cos(k) + y * np.sin(k)) + k) / k / 20 for k in range(1, 9))
+    return pv.StructuredGrid(x, y, z).extract_surface(algorithm=None).triangulate()
+
+
+def torus_with_tangents():
+    made = pv.ParametricTorus(u_res=24, v_res=12, w_res=12).clean().triangulate()
+    made.clear_data()
+    x, y, z = np.asarray(made.points, dtype=np.float64).T
+    made["t"] = np.column_stack([-y, x, 0.4 * z])
+    return made
+
+
 def isosurface():
     return vizlight.load_example().contour([600.0], scalars="Temp")
 
@@ -576,6 +591,8 @@ def slivers():
 STATED = {
     "sphere": (ball, {}, 8e-4, 3),
     "part": (part_with_creases, {"facing": "as given"}, 8e-4, 3),
+    "terrain": (terrain, {}, 8e-4, 3),
+    "torus": (torus_with_tangents, {"tangents": "t"}, 8e-4, 3),
     "flow": (isosurface, {"tangents": "V"}, 8e-4, 3),
     "blob": (blob, {}, 8e-4, 3),
     "a rim": (isosurface, {}, 2e-3, 0.4 / PIXEL),

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from vizlight.model import brightness
 
@@ -32,22 +31,6 @@ def test_whole_exponents_are_whole():
         assert brightness.exponent(2, k + 2) == k
     # Very nearly, but not, a whole number.
     assert brightness.exponent(6, 913_239) == pytest.approx(237369.00000006381, rel=2e-14)
-
-
-@pytest.mark.parametrize("n", [2, 3, 4, 7, 12])
-def test_mean_by_quadrature(n):
-    """sin^2(a) of a uniform direction has the density x^(c/2-1) (1-x)^(k/2-1) / B(c/2, k/2)."""
-    for k in range(1, n):
-        c, p = n - k, 1.7
-
-        def density(a, power, k=k, c=c):
-            return math.sin(a) ** (c - 1 + power) * math.cos(a) ** (k - 1)
-
-        top, whole = (
-            quad(density, 0, math.pi / 2, args=(power,), epsabs=0, epsrel=1e-12)[0]
-            for power in (p, 0)
-        )
-        assert brightness.mean_intensity(k, n, p) == pytest.approx(top / whole, rel=1e-11)
 
 
 def test_exponent_for_large_n():

@@ -20,11 +20,11 @@ RECORDS = {
 @pytest.mark.parametrize("record", RECORDS)
 def test_an_unknown_keyword_is_answered_by_the_known_ones(record):
     wrong, right = RECORDS[record]
-    with pytest.raises(TypeError, match=f"got {wrong}=; did you mean {right}=") as error:
+    with pytest.raises(TypeError, match=f"{wrong}: .* of {record.__name__}.*mean {right}="):
         record(**{wrong: 1})
-    assert all(name in str(error.value) for name in inspect.signature(record).parameters)
-    with pytest.raises(TypeError, match=r"got zzz=$"):
+    with pytest.raises(TypeError, match="zzz: expected an option of") as error:
         record(zzz=1)
+    assert all(name in str(error.value) for name in inspect.signature(record).parameters)
 
 
 def test_values_without_a_name_are_refused():

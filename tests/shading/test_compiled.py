@@ -18,11 +18,11 @@ from lamps import SHINY, shiny
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
 from vizlight.model import formulas
-from vizlight.shading import compiled, loops
-from vizlight.shading.arrays import Output
-from vizlight.shading.decide import decide
+from vizlight.shading import loops
+from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import decide
 
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7)
 SUN = Light(direction=(1, 2, 0.5))
@@ -123,7 +123,7 @@ def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
         ("phong", "sine_i - sine_o", "sine_i + sine_o"),
         ("blinn", "0.5 * shininess", "0.25 * shininess"),
         ("attenuation", "linear + distance", "linear - distance"),
-        ("smooth_step", "3.0 - 2.0 * u", "2.0 - u"),
+        ("depth_scale", "3.0 - 2.0 * t", "2.0 - t"),
         ("fur_path", "height / sine", "height * sine"),
     ],
 )
@@ -152,14 +152,14 @@ def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
     ],
 )
 def test_a_wrong_statement_of_a_loop_is_found(old, new, cases, monkeypatch):
-    right = compiled._program
+    right = loops.program_of
 
     def broken(plan, inputs):
         made = right(plan, inputs)
         head, loop = made.source.split("    for i in range", 1)
         return made._replace(source=f"{head}    for i in range{loop.replace(old, new, 1)}")
 
-    monkeypatch.setattr(compiled, "_program", broken)
+    monkeypatch.setattr(loops, "program_of", broken)
     assert worst_of(cases, differential.by_text) > 1
 
 
@@ -170,7 +170,7 @@ def worst_of(cases, light):
     """
     worst = 0.0
     for made, true in cases:
-        if not compiled.why_not(plan_of(made)):
+        if not loops.why_not(plan_of(made)):
             try:
                 worst = max(worst, differential.compare(made, true, light)[0])
             except AssertionError:
@@ -185,8 +185,8 @@ def test_a_loop_with_a_table_is_made_of_vector_instructions(fast, random):
     points, tangents, _ = cloud(random, 64)
     inputs = ShadingInputs(points=points, tangents=tangents)
     plan = decide(SCENE, inputs.layout, ShadingOptions(model="cylinder"), "float32")
-    code = compiled.given(plan, inputs)
-    code.shade_block(plan, slice(0, 64), inputs, Output(plan, 64))
+    code = loops.program_of(plan, inputs)
+    code.shade_block(plan, slice(0, 64), inputs, Shading.of(plan, 64))
     (text,) = code.kernel._dispatcher().inspect_llvm().values()
     assert text.count(" x float>") > 100
 
@@ -311,7 +311,7 @@ def test_numpy_lights_what_a_kernel_fails_with(fast, random, monkeypatch, fault)
 
 def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     """Calls that would each save 0.3 s: 0.3 s are shared, and 0.7 s are won back by each form."""
-    monkeypatch.setattr(compiled, "_MISSED", {})
+    monkeypatch.setattr(loops, "_MISSED", {})
     monkeypatch.setattr(_compiled, "active", lambda: True)
     monkeypatch.setattr(_compiled, "why_not", lambda: "")
     monkeypatch.setattr(_compiled._Account, "missed", 0.0)
@@ -319,9 +319,9 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     monkeypatch.setattr(_compiled.Kernel, "start_up", lambda self: 0.7)
     monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
     monkeypatch.setenv("VIZLIGHT_THREADS", "1")
-    monkeypatch.setattr(compiled, "SAVED", 0.1)
-    monkeypatch.setattr(compiled, "SAVED_PER_LIGHT", 0.2)
-    compiled._kernel.cache_clear()
+    monkeypatch.setattr(loops, "SAVED", 0.1)
+    monkeypatch.setattr(loops, "SAVED_PER_LIGHT", 0.2)
+    loops._kernel.cache_clear()
     points, _, normals = cloud(random, 1)
     inputs = compiled_inputs(points, normals)
     one, two = (
@@ -330,11 +330,11 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     )
     with _compiled.setting(""):
         ran = [
-            compiled.prepare(plan, inputs)[0] is not None
+            loops.prepare(plan, inputs)[0] is not None
             for plan in (one, one, two, one, one, two, two, two)
         ]
     assert ran == [False, False, False, True, True, False, True, True]
-    compiled._kernel.cache_clear()
+    loops._kernel.cache_clear()
 
 
 @pytest.mark.parametrize("block", [1, 7, 64, 100])
@@ -382,14 +382,14 @@ def test_ambient_light_alone_needs_none():
     words = engine.plan(Scene(material=dark), k=1).explain()
     assert "the ambient term alone" in words
     cue = Scene(material=dark, view=NEAR, depth_cue=DepthCue(front=1, back=2))
-    assert not compiled.why_not(engine.plan(cue, k=1))
+    assert not loops.why_not(engine.plan(cue, k=1))
 
 
 def test_a_text_has_the_terms_of_its_form_and_no_others(random):
     points, _, normals = cloud(random, 4)
     inputs = compiled_inputs(points, normals)
     plain = engine.plan(Scene(lights=SUN, view=NEAR, material=SHINY), normals=True)
-    text = compiled._program(plain, inputs).source
+    text = loops.program_of(plain, inputs).source
     body = text[text.index("def light(") :]
     assert "tangents[" not in body
     assert "shadow[" not in body
@@ -425,7 +425,7 @@ def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):
     view, light = View(direction=(0.1, 0, 1)), Light(direction=(0, 0.1, 1))
     scene = Scene(lights=light, view=view, material=Material(specular=1, shininess=7.5))
     made = decide(scene, inputs.layout, ShadingOptions(model="blinn"), np.float64)
-    outputs = [Output(made, 500), Output(made, 500)]
+    outputs = [Shading.of(made, 500), Shading.of(made, 500)]
     differential.by_numpy(made, inputs, outputs[0])
     differential.by_text(made, inputs, outputs[1])
     np.testing.assert_allclose(outputs[1].luminance, outputs[0].luminance, rtol=1e-13)

@@ -20,8 +20,9 @@ from vizlight.filters.relief_shadow import ReliefOptions
 from vizlight.filters.satin import SatinOptions
 from vizlight.filters.sky import SkyOptions
 from vizlight.filters.streamlines import StreamlineOptions
+from vizlight.scene.keywords import named
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions, ShadingOptions, named
+from vizlight.shading.options import LightOptions, ShadingOptions
 
 #: Functions, the options that they take, and those that they leave out.
 FUNCTIONS = [

@@ -76,9 +76,6 @@ def test_words_for_the_rest():
     ):
         assert part in said
     assert "|N.wi|" in plan(scene, normals=True, two_sided=True).explain()
-    assert "by multiplication" in plan(scene, k=1).explain()
-    rough = scene.replace(material=shiny(shininess=20.5))
-    assert "by a power" in plan(rough, k=1).explain()
 
 
 def test_fur_needs_normals_an_eye_and_a_density():

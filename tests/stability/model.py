@@ -15,9 +15,9 @@ from stability.checks import DOUBLE, TYPES, Check, exactly, off, some, spread, t
 from vizlight.model import (
     brightness,
     cylinder,
-    cylinder_kernels,
     falloff,
     half_vector,
+    highlight_integral,
     highlights,
     reflection,
 )
@@ -251,13 +251,13 @@ def half_integral(dtype, count, random):
         ends = np.nextafter(np.array([1, -1], dtype), dtype(0))
         z = np.concatenate([random.uniform(-1, 1, many // 2), 10 ** random.uniform(-30, 0, many)])
         z = np.concatenate([z.astype(dtype)[:many], ends, np.array([0, 1, -1], dtype)])
-        value, seconds = timed(partial(cylinder_kernels.half_integral(s, dtype), z))
+        value, seconds = timed(partial(highlight_integral.half_integral(s, dtype), z))
         whole = oracles.cosine_integral(mp.pi / 2, s + 1)
         errors = [
             (oracles.exact(v) - oracles.cosine_integral(mp.asin(oracles.exact(x)), s + 1)) / whole
             for v, x in zip(value, z, strict=True)
         ]
-        how = "by the beta function" if s < cylinder_kernels.TABLE_FROM else "by a table"
+        how = "by the beta function" if s < highlight_integral.TABLE_FROM else "by a table"
         yield off(how, errors, 16.0 if dtype == np.float64 else 2.0, seconds)
 
 
@@ -509,7 +509,7 @@ CHECKS = {
     "reflection.specular, Blinn": (partial(specular, "blinn"), TYPES),
     "cylinder.diffuse": (partial(line_light, "diffuse"), TYPES),
     "cylinder.specular": (partial(line_light, "specular"), TYPES),
-    "cylinder_kernels.half_integral": (half_integral, TYPES),
+    "highlight_integral.half_integral": (half_integral, TYPES),
     "brightness.mean_intensity": (mean_intensity, DOUBLE),
     "brightness.exponent": (exponent, DOUBLE),
     "falloff.distance": (distance, TYPES),

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from stability import engine, geometry, model, shapes
+from stability import geometry, model, shapes
 from stability.checks import rows_of
 from studies import Curve, Result, Row, Study
 
@@ -25,7 +25,7 @@ INPUTS, QUICK = 10_600, 600
 TIGHT, ENOUGH = 8.0, 1000
 
 #: Checks of each kernel, and the types that it is checked in.
-KERNELS = {**model.CHECKS, **shapes.CHECKS, **geometry.CHECKS, **engine.CHECKS}
+KERNELS = {**model.CHECKS, **shapes.CHECKS, **geometry.CHECKS}
 
 
 def measure(kernel, dtype, count):
@@ -113,11 +113,8 @@ def read(path):
 def curve(row):
     """Return the curve of a row: a colour for each part of the library, a mark for a type."""
     module = row.way.partition(".")[0]
-    parts = {"model": model.CHECKS, "engine": engine.CHECKS}
-    part = next(
-        (name for name, checks in parts.items() if any(k.startswith(f"{module}.") for k in checks)),
-        "geometry",
-    )
+    in_model = any(kernel.startswith(f"{module}.") for kernel in model.CHECKS)
+    part = "model" if in_model else "geometry"
     return Curve(part, str(row.more["type"]))
 
 

@@ -294,7 +294,7 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     """Print the plan by which a mesh was lit."""
     from vizlight.mesh.batches import inputs_of
     from vizlight.mesh.blocks import all_blocks
-    from vizlight.shading.decide import decide
+    from vizlight.shading.plan import decide
 
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])

@@ -564,7 +564,7 @@ def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords
     if stroke.round and stroke.diameter is None:
         # Light at points has no normal across a line: VTK's own tubes are drawn instead.
         drawing["render_lines_as_tubes"] = True
-    return Live(source, scene, stroke, reason=reason)
+    return Live(source, scene, Stroke(stroke.diameter), reason=reason)
 
 
 def _stroke(source: Source, drawing: Keywords) -> Stroke:

@@ -16,8 +16,8 @@ from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene.conversion import LARGEST_POWER
 from vizlight.scene.light import NO_ATTENUATION, WHITE
-from vizlight.shading.decide import decide
 from vizlight.shading.inputs import Layout
+from vizlight.shading.plan import decide
 from vizlight.vtk import polylines
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from pyvista.plotting.colors import get_cycler
 from vizlight import _check
 from vizlight.filters import relight
 from vizlight.mesh import blocks, records
-from vizlight.shading.options import FeatureAngle, LightOptions, unknown_option
+from vizlight.scene.keywords import unknown_option
+from vizlight.shading.options import FeatureAngle, LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

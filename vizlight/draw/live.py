@@ -18,8 +18,8 @@ from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene, View
 from vizlight.scene.conversion import is_light_kit, lights_of
 from vizlight.scene.light import default_lights
-from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
+from vizlight.shading.plan import decide
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells
 

@@ -21,8 +21,8 @@ from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
-from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA_NAME, numerals
+from vizlight.shading.plan import decide
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

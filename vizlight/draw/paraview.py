@@ -19,11 +19,12 @@ from vizlight.draw.sources import sources_of
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
 from vizlight.scene import Scene, View
+from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
-from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import LightOptions, ShadingOptions, named
+from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.shading.plan import decide
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -17,16 +17,10 @@ from vizlight.mesh.normals import NORMALS, onlooker, split_where_computed, with_
 from vizlight.mesh.sky import in_medium
 from vizlight.model import kernels
 from vizlight.scene import Material, Scene
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import (
-    Bundle,
-    Options,
-    ShadingOptions,
-    check_sides,
-    checked_bundle,
-    named,
-)
+from vizlight.shading.options import Bundle, Options, ShadingOptions, check_sides, checked_bundle
 from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:

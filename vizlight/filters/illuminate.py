@@ -11,8 +11,9 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import batches, blocks, bundles, normals, refining
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import Bundle, LightOptions, named
+from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.parts import occluded, uses_normals
 

@@ -19,9 +19,10 @@ from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, normals, records, splitting
 from vizlight.mesh.batches import inputs_of
 from vizlight.model import kernels
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
-from vizlight.shading.options import LightOptions, Options, check_sides, named
+from vizlight.shading.options import LightOptions, Options, check_sides
 from vizlight.shading.results import of_light, part_name, unlit
 from vizlight.verify import report
 from vizlight.vtk.arrays import array_of

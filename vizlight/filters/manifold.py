@@ -12,7 +12,7 @@ from vizlight.filters.project import ProjectOptions, project
 from vizlight.geometry.nspace.parametric import Manifold
 from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
-from vizlight.shading.options import named
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,8 +15,9 @@ from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import LightOptions, named
+from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -15,7 +15,8 @@ from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
 from vizlight.scene import Scene
-from vizlight.shading.options import LightOptions, named
+from vizlight.scene.keywords import named
+from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, records
-from vizlight.shading.options import LightOptions, named
+from vizlight.scene.keywords import named
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
 from vizlight.scene import Light, Material, Scene
-from vizlight.shading.options import named
+from vizlight.scene.keywords import named
 from vizlight.shading.results import VALID, plain
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
 from vizlight.scene import Light, Scene
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
-from vizlight.shading.options import named
 from vizlight.shading.results import DEFAULT_NAME, PARTS, VALID, of_filter, of_light
 from vizlight.verify.report import note_ratio
 from vizlight.vtk.cells import check_whole, triangles

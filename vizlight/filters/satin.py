@@ -12,7 +12,8 @@ from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.mesh import records
-from vizlight.shading.options import LightOptions, named
+from vizlight.scene.keywords import named
+from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import is_of_cells, tangents_of, vectors_of
 
 if TYPE_CHECKING:

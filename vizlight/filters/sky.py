@@ -16,7 +16,8 @@ from vizlight.geometry.relief.sky import LARGEST, LEAST
 from vizlight.mesh import blocks, normals, records, splitting
 from vizlight.mesh.sky import VOXELS, skies
 from vizlight.model import kernels
-from vizlight.shading.options import Options, check_sides, named
+from vizlight.scene.keywords import named
+from vizlight.shading.options import Options, check_sides
 from vizlight.shading.results import VALID, digest, plain
 from vizlight.verify.report import noted_sky
 from vizlight.vtk.cells import places, point_data

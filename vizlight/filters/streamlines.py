@@ -17,8 +17,9 @@ from vizlight.mesh.normals import NORMALS, closest, onlooker, with_normals
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
-from vizlight.shading.options import LightOptions, named
+from vizlight.shading.options import LightOptions
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of, vectors_of
 from vizlight.vtk.cells import check_whole, has_faces

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import cylinder_kernels, frames, kernels
+from vizlight.model import frames, highlight_integral, kernels
+from vizlight.model.manifolds import Cylinder, Highlight
+from vizlight.model.reflection import Met
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array
 
 __all__ = ["Gradient", "diffuse", "diffuse_gradient", "specular", "specular_gradient"]
 
@@ -68,8 +70,8 @@ def diffuse(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Array:
     light, line and eye are in one plane with light and eye on the same side of the line, and
     nowhere else. The absolute error is at most ``4 eps / |wo_N|``.
     """
-    shape, valid, met, _ = _normal_parts(wi, wo, tangent)
-    return _finish(cylinder_kernels.diffuse(met), valid, shape)
+    met = _Line(wi, wo, tangent)
+    return frames.result(met.finish(met.line.diffuse(met.lit, met.eye)))
 
 
 def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: float) -> Array:
@@ -104,8 +106,8 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     -----
     ``|h_N|^s / 2`` times the integral of ``max(0, cos(x - beta))^s cos(x)`` over
     ``[alpha - pi/2, pi/2]``, beta the angle from wo_N to h_N. The integral is a finite expression
-    in the incomplete beta function; :func:`vizlight.model.cylinder_kernels.half_integral` says how
-    it is evaluated. For a headlight Blinn's ``|h_N|^s`` is exact up to a factor, as Banks' diffuse
+    in the incomplete beta function; :mod:`vizlight.model.highlight_integral` says how it is
+    evaluated. For a headlight Blinn's ``|h_N|^s`` is exact up to a factor, as Banks' diffuse
     term is.
 
     The absolute error is at most ``10 eps / d`` for every s, where d is the smallest of ``|wi_N|``,
@@ -113,8 +115,8 @@ def specular(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /, *, shininess: 
     light along the line the value depends on the azimuth of the light about the line.
     """
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    shape, valid, met, tangential = _normal_parts(wi, wo, tangent)
-    return _finish(cylinder_kernels.specular(met, tangential, shininess), valid, shape)
+    met, highlight = _Line(wi, wo, tangent), Highlight("cylinder", shininess)
+    return frames.result(met.finish(met.line.specular(met.lit, met.eye, highlight)))
 
 
 def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gradient:
@@ -184,7 +186,7 @@ def specular_gradient(
     to_eye, to_light = x.b * root, x.a * root
     cos_b, cos_c = (np.clip(u, -1, 1) for u in ((x.bb + x.dot) / to_eye, (x.aa + x.dot) / to_light))
     sin_b, sin_c = np.minimum(x.cross / to_eye, 1), np.minimum(x.cross / to_light, 1)
-    integral = cylinder_kernels.half_integral(s, x.dtype)
+    integral = highlight_integral.half_integral(s, x.a.dtype)
     both = integral(cos_b) + integral(cos_c)
     power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
@@ -211,7 +213,20 @@ def specular_gradient(
     )
 
 
-class _Invariants:
+class _Line(Met):
+    """Directions to light and eye at lines."""
+
+    def __init__(self, wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike) -> None:
+        rows = _check.vectors("tangent", tangent, n=3)[..., np.newaxis, :]
+        super().__init__("tangent", rows, wi=wi, wo=wo)
+        unit, size = kernels.unit(self.rows[0])
+        self.sizes.append(size)
+        self.valid &= size > 0
+        self.line = Cylinder(self.algebra, [unit])
+        self.lit, self.eye = (self.line.split(way) for way in self.directions)
+
+
+class _Invariants(_Line):
     """Dot products of unit wi, wo and tangent, and the chain rule from them to the vectors.
 
     ``aa`` and ``bb`` are |wi_N|^2 and |wo_N|^2, ``ww`` is |(wi + wo)_N|^2. Where a derivative is
@@ -219,31 +234,21 @@ class _Invariants:
     """
 
     def __init__(self, wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike) -> None:
-        self.shape, rows, directions = _validated(wi, wo, tangent)
-        self.vectors, self.sizes = [], []
-        for v in (*directions, rows[0]):
-            row, size = kernels.unit(v)
-            self.vectors.append(row)
-            self.sizes.append(size)
-        light, eye, line = self.vectors
-        p, rest_i, a = cylinder_kernels.across(light, line)
-        q, rest_o, b = cylinder_kernels.across(eye, line)
-        w = kernels.length(rest_i + rest_o)
-        met = cylinder_kernels.meet(rest_i, a, rest_o, b, line)
-        self.dtype, self.p, self.q, self.m = a.dtype, p, q, kernels.dot(light, eye)
-        least = cylinder_kernels.ALONG * np.finfo(a.dtype).eps
-        self.good = (a > least) & (b > least) & (w > least)
-        for size in self.sizes:
-            self.good &= size > 0
-        self.a, self.b, w = (np.where(self.good, u, 1).astype(a.dtype) for u in (a, b, w))
+        super().__init__(wi, wo, tangent)
+        lit, eye, least = self.lit, self.eye, self.algebra.least
+        w = kernels.length(lit.rest + eye.rest)
+        self.valid &= (lit.size > least) & (eye.size > least) & (w > least)
+        sizes = (np.where(self.valid, u, 1).astype(w.dtype) for u in (lit.size, eye.size, w))
+        self.a, self.b, w = sizes
         self.aa, self.bb, self.ww = self.a**2, self.b**2, w**2
-        self.m = np.where(self.good, self.m, 0)
-        self.dot, self.cross = met.dot, met.cross
-        self.rest = np.arctan2(met.cross, -met.dot)
+        self.p, self.q = lit.along[0], eye.along[0]
+        self.m = np.where(self.valid, kernels.dot(*self.directions), 0)
+        self.dot, self.cross = kernels.dot(lit.rest, eye.rest), self.line.cross(lit, eye)
+        self.rest = np.arctan2(self.cross, -self.dot)
 
     def chain(self, by_aa: Array, by_bb: Array, by_dot: Array, by_m: Array) -> Gradient:
         """Return the gradient from the partial derivatives by aa, bb, dot and m."""
-        light, eye, line = self.vectors
+        (light, eye), line = self.directions, self.line.rows[0]
         by_p = -2 * self.p * by_aa - self.q * by_dot
         by_q = -2 * self.q * by_bb - self.p * by_dot
         by_m = by_m + by_dot
@@ -252,39 +257,11 @@ class _Invariants:
             by_q * line + by_m * light,
             by_p * light + by_q * eye,
         )
-        found, largest = [], np.finfo(self.dtype).max
-        for part, own, size in zip(parts, self.vectors, self.sizes, strict=True):
+        found, largest = [], np.finfo(light.dtype).max
+        for part, own, size in zip(parts, (light, eye, line), self.sizes, strict=True):
             across = part - kernels.dot(part, own) * own
             with np.errstate(over="ignore"):
-                across = np.where(self.good, across / np.where(self.good, size, 1), 0)
+                across = np.where(self.valid, across / np.where(self.valid, size, 1), 0)
             across = np.clip(across, -largest, largest)
-            found.append(across.T.reshape(*self.shape, 3).astype(self.dtype, copy=False))
+            found.append(across.T.reshape(*self.shape, 3).astype(light.dtype, copy=False))
         return Gradient(*found)
-
-
-def _validated(
-    wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], Array, list[Array]]:
-    """Return the shape of the batch, the tangents as frames, and wi and wo, all validated."""
-    light, eye = _check.vectors("wi", wi, n=3), _check.vectors("wo", wo, n=3)
-    line = _check.vectors("tangent", tangent, n=3)
-    return frames.batch("tangent", line[..., np.newaxis, :], wi=light, wo=eye)
-
-
-def _normal_parts(
-    wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike
-) -> tuple[tuple[int, ...], Bools, cylinder_kernels.NormalParts, Array]:
-    """Return the batch's shape, a mask of valid elements, the normal parts, and |(wi + wo)_T|^2."""
-    shape, rows, (light, eye) = _validated(wi, wo, tangent)
-    line, line_size = kernels.unit(rows[0])
-    light, light_size = kernels.unit(light)
-    eye, eye_size = kernels.unit(eye)
-    p, rest_i, a = cylinder_kernels.across(light, line)
-    q, rest_o, b = cylinder_kernels.across(eye, line)
-    met = cylinder_kernels.meet(rest_i, a, rest_o, b, line)
-    valid = (light_size > 0) & (eye_size > 0) & (line_size > 0)
-    return shape, valid, met, np.square(p + q)
-
-
-def _finish(value: Array, valid: Bools, shape: tuple[int, ...]) -> Array:
-    return frames.result(np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape))

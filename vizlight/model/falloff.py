@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["depth_cue", "distance", "fur"]
 
+#: Depths beyond this are divided by 4, so that their differences are finite.
+LARGEST_DEPTH = 1e300
+
 
 def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Array:
     """Return the attenuation of a light at distance d.
@@ -137,28 +140,19 @@ def depth_cue(
         if not np.all(np.isfinite(value)):
             raise ValueError(_check.message(name, "finite light", _check.describe(value)))
     depth, light, fade = _check.together(z=depth, intensity=light, cue=fade)
-    scale = depth_scale(
-        depth,
-        front=front,
-        back=back,
-        front_scale=_check.number("front_scale", front_scale, low=0.0, high=1.0),
-        back_scale=_check.number("back_scale", back_scale, low=0.0, high=1.0),
-        smooth=_check.boolean("smooth", smooth),
+    scales = (
+        _check.number(name, value, low=0.0, high=1.0)
+        for name, value in (("front_scale", front_scale), ("back_scale", back_scale))
     )
-    return scale * light + (1 - scale) * fade
-
-
-def depth_scale(
-    z: Array, *, front: float, back: float, front_scale: float, back_scale: float, smooth: bool
-) -> Array:
-    """Return the scale S of :func:`depth_cue` for arguments that are already validated."""
-    wide = z.astype(np.float64, copy=False)
-    if max(abs(front), abs(back)) > 1e300:  # differences would overflow
+    wide = depth.astype(np.float64, copy=False)
+    if max(abs(front), abs(back)) > LARGEST_DEPTH:
         wide, front, back = wide / 4, front / 4, back / 4
-    scale = formulas.smooth_depth_scale if smooth else formulas.depth_scale
+    smooth = _check.boolean("smooth", smooth)
     with np.errstate(over="ignore"):
-        value = scale(wide, front, back, front_scale, back_scale)
-    return np.asarray(value).astype(z.dtype, copy=False)
+        scale = formulas.depth_scale(wide, front, back, *scales, smooth=smooth)
+    return np.asarray(
+        formulas.depth_cue(light, np.asarray(scale).astype(depth.dtype, copy=False), fade)
+    )
 
 
 def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy import absolute, arctan2, exp, maximum, minimum
+from numpy import exp, maximum, minimum
 
 from vizlight.model import kernels
 
@@ -61,32 +61,6 @@ def clamp(x: Number, low: Number, high: Number) -> Number:
     return minimum(maximum(x, low), high)
 
 
-def smooth_step(t: Number) -> Number:
-    """Return t^2 (3 - 2 t), where t is clamped to [0, 1]."""
-    u = clamp(t, 0.0, 1.0)
-    return u * u * (3.0 - 2.0 * u)
-
-
-def one_side(cosine: Number) -> Number:
-    """Return the cosine N . wi of a surface that is lit on its outer side."""
-    return maximum(cosine, 0.0)
-
-
-def both_sides(cosine: Number) -> Number:
-    """Return the cosine N . wi of a surface that is lit on both sides."""
-    return absolute(cosine)
-
-
-def surface_diffuse(side: Number, exponent: float) -> Number:
-    """Return the diffuse factor of a surface from the cosine of its lit side."""
-    return power(side, 1.0 - side, exponent)
-
-
-def diffuse(sine: Number, along: Number, exponent: float) -> Number:
-    """Return |wi_N|^p from |wi_N| and |wi_T|^2 (Banks 1, 5)."""
-    return power(sine * sine, along, 0.5 * exponent)
-
-
 def phong(along: Number, sine_i: Number, sine_o: Number, shininess: float) -> Number:
     """Return max(0, V.R)^s from |wi_T + wo_T|^2, |wi_N| and |wo_N| (Banks 2, 3).
 
@@ -108,11 +82,6 @@ def blinn(along: Number, across: Number, shininess: float) -> Number:
 def blinn_of_unit(along: Number, shininess: float) -> Number:
     """Return |h_N|^s for s of 2 or more from |h_T|^2 of a unit half vector."""
     return power(maximum(1.0 - along, 0.0), along, 0.5 * shininess)
-
-
-def lit_highlight(value: Number, cosine: Number) -> Number:
-    """Return the highlight of a surface where the light reaches its outer side, else 0."""
-    return only(cosine > 0.0, value)
 
 
 def shadowed_highlight(value: Number, passed: Number, side: Number) -> Number:
@@ -137,72 +106,23 @@ def fur_passes(path: Number, rate: Number) -> Number:
 
 
 def depth_scale(
-    depth: Number, front: Number, back: Number, front_scale: Number, back_scale: Number
+    depth: Number,
+    front: Number,
+    back: Number,
+    front_scale: Number,
+    back_scale: Number,
+    *,
+    smooth: bool,
 ) -> Number:
-    """Return the scale S of the linear depth cue (Lecture)."""
+    """Return the scale S of the depth cue (Lecture), linear or as a smooth step."""
     t = clamp((depth - back) / (front - back), 0.0, 1.0)
-    return back_scale + (front_scale - back_scale) * t
-
-
-def smooth_depth_scale(
-    depth: Number, front: Number, back: Number, front_scale: Number, back_scale: Number
-) -> Number:
-    """Return the scale S of the depth cue as a smooth step."""
-    t = smooth_step((depth - back) / (front - back))
+    t = t * t * (3.0 - 2.0 * t) if smooth else t
     return back_scale + (front_scale - back_scale) * t
 
 
 def depth_cue(value: Number, scale: Number, cue: Number) -> Number:
     """Return S I + (1 - S) Icue (Lecture)."""
     return scale * value + (1.0 - scale) * cue
-
-
-def cylinder_diffuse(a: Number, b: Number, dot: Number, cross: Number, least: Number) -> Number:
-    """Return Lambert's mean over the visible half of a thin cylinder.
-
-    ``a`` and ``b`` are |wi_N| and |wo_N|, ``dot`` and ``cross`` are wi_N . wo_N and
-    |wi_N x wo_N|. A cylinder with ``b`` up to ``least``, 8 times the machine epsilon, is seen end
-    on.
-    """
-    mean = (arctan2(cross, -dot) * dot + cross) / (4.0 * where(b > least, b, 1.0))
-    return where(b > least, mean, a * 0.3183098861837907)
-
-
-def cylinder_cosine(product: Number, size: Number) -> Number:
-    """Return a cosine from a dot product and the product of two lengths."""
-    return clamp(product / where(size > 0.0, size, 1.0), -1.0, 1.0)
-
-
-def cylinder_sine(cross: Number, size: Number) -> Number:
-    """Return a sine from the length of a cross product and the product of two lengths."""
-    return minimum(cross / where(size > 0.0, size, 1.0), 1.0)
-
-
-def cylinder_ends(sin_b: Number, sin_c: Number, shininess: float) -> Number:
-    """Return sin(b) (sin(b)^(s+1) - sin(c)^(s+1))."""
-    e = shininess + 1.0
-    return sin_b * (power(sin_b, 1.0 - sin_b, e) - power(sin_c, 1.0 - sin_c, e))
-
-
-def cylinder_specular(
-    value: Number,
-    cos_b: Number,
-    integrals: Number,
-    ends: Number,
-    a: Number,
-    b: Number,
-    normal: Number,
-    least: Number,
-    end_on: Number,
-) -> Number:
-    """Return Blinn's mean over the visible half of a thin cylinder.
-
-    ``value`` is :func:`blinn` of the line, ``integrals`` is G(cos b) + G(cos c), ``ends`` is
-    :func:`cylinder_ends` over s + 1, ``normal`` is |wi_N + wo_N|, and ``end_on`` the mean of a
-    cylinder that is seen end on. The mean is 0 where the light comes along the line.
-    """
-    mean = only(normal > 0.0, clamp(0.5 * (cos_b * integrals + ends), 0.0, 1.0))
-    return only(a > least, value * where(b > least, mean, end_on))
 
 
 def color_factor(light: Number, least: Number) -> Number:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import formulas, frames, kernels
+from vizlight.model import frames, kernels
+from vizlight.model.manifolds import Arrays, Frame, Highlight
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Bools
 
 __all__ = ["diffuse", "specular"]
 
@@ -53,13 +54,10 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Arr
     infinite, ``(8 eps)^p``. The deviation of the rows from orthonormality adds to it.
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
-    rows = frames.as_frame(frame)
-    light = _check.vectors("wi", wi, n=rows.shape[-1])
-    shape, rows, (light,) = frames.batch("frame", rows, wi=light)
-    light, size = kernels.unit(light)
-    along, sine = kernels.split(light, rows)
-    value = np.where(size > 0, formulas.diffuse(sine, kernels.dot(along, along), exponent), 0)
-    return value.astype(sine.dtype, copy=False).reshape(shape)
+    met = Met("frame", frames.as_frame(frame), wi=wi)
+    manifold = Frame(met.algebra, list(met.rows), exponent)
+    (light,) = met.directions
+    return met.finish(manifold.diffuse(manifold.split(light), None))
 
 
 def specular(
@@ -115,21 +113,25 @@ def specular(
     """
     _check.choice("model", model, get_args(SpecularModel))
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
-    rows = frames.as_frame(frame)
-    n = rows.shape[-1]
-    light, eye = _check.vectors("wi", wi, n=n), _check.vectors("wo", wo, n=n)
-    shape, rows, (light, eye) = frames.batch("frame", rows, wi=light, wo=eye)
-    light, light_size = kernels.unit(light)
-    eye, eye_size = kernels.unit(eye)
-    if model == "phong":
-        along_i, sine_i = kernels.split(light, rows)
-        along_o, sine_o = kernels.split(eye, rows)
-        along_i += along_o
-        tangential = kernels.dot(along_i, along_i)
-        value = np.asarray(formulas.phong(tangential, sine_i, sine_o, shininess))
-    else:
-        along, normal = kernels.split(light + eye, rows)
-        tangential = kernels.dot(along, along)
-        value = np.asarray(formulas.blinn(tangential, normal * normal, shininess))
-    valid = (light_size > 0) & (eye_size > 0)
-    return np.where(valid, value, 0).astype(value.dtype, copy=False).reshape(shape)
+    met = Met("frame", frames.as_frame(frame), wi=wi, wo=wo)
+    manifold = Frame(met.algebra, list(met.rows))
+    lit, eye = (manifold.split(way) for way in met.directions)
+    return met.finish(manifold.specular(lit, eye, Highlight(model, shininess)))
+
+
+class Met:
+    """Unit directions at frames, component-first, and what is needed to return their light."""
+
+    def __init__(self, name: str, rows: Array, **directions: ArrayLike) -> None:
+        n = rows.shape[-1]
+        given = {key: _check.vectors(key, value, n=n) for key, value in directions.items()}
+        self.shape, self.rows, columns = frames.batch(name, rows, **given)
+        units = [kernels.unit(column) for column in columns]
+        self.directions, self.sizes = [unit for unit, _ in units], [size for _, size in units]
+        self.valid: Bools = np.all(np.greater(self.sizes, 0), axis=0)
+        self.algebra = Arrays(self.rows.dtype)
+
+    def finish(self, value: Array) -> Array:
+        """Return numbers in the shape of the batch, 0 where a direction has no length."""
+        kept = np.where(self.valid, value, 0).astype(self.rows.dtype, copy=False)
+        return kept.reshape(self.shape)

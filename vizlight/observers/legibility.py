@@ -19,7 +19,7 @@ from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     import pyvista as pv
     from numpy.typing import ArrayLike
@@ -32,8 +32,26 @@ if TYPE_CHECKING:
 
 #: Standard deviation of the noise of each channel.
 NOISE = 2 / 255
-#: A row of the table: question, figure, value and what guessing gives.
-Row = tuple[str, str, str, str]
+HEAD = ("question", "figure", "found", "chance")
+#: Rows of the table: question, figure, its words, its form and what guessing gives.
+ROWS = (
+    ("direction", "within_10", "within 10 degrees", "{:.1%}", "11.1%"),
+    ("direction", "median", "median error", "{:.2f} degrees", "45"),
+    ("direction", "bits", "information", "{:.2f} bits", "0"),
+    ("direction", "legend_median", "median error by the key", "{:.2f} degrees", "45"),
+    ("slope", "spearman", "rank correlation", "{:+.2f}", "0"),
+    ("slope", "bits", "information", "{:.2f} bits", "0"),
+    ("slope", "within_10", "in space, within 10 degrees", "{:.1%}", ""),
+    ("slope", "median", "in space, median error", "{:.2f} degrees", ""),
+    ("shape", "median", "median error of the normal", "{:.2f} degrees", "45 degrees"),
+    ("shape", "bits", "information", "{:.2f} bits", "0"),
+    ("value", "p95", "95 % of the errors, nearest colour", "{:.1%} of the range", ""),
+    ("value", "median", "median error", "{:.1%}", ""),
+    ("value", "largest", "largest error", "{:.1%}", ""),
+    ("value", "p95_chromaticity", "95 % by chromaticity", "{:.1%} of the range", ""),
+    ("value", "median_chromaticity", "median by chromaticity", "{:.1%}", ""),
+    ("value", "largest_chromaticity", "largest by chromaticity", "{:.1%}", ""),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +78,6 @@ class Direction:
     bits: float
     legend_median: float | None
     samples: int
-
-    def rows(self) -> Iterator[Row]:
-        """Yield rows of the table."""
-        yield "direction", "within 10 degrees", f"{self.within_10:.1%}", "11.1%"
-        yield "", "median error", f"{self.median:.2f} degrees", "45"
-        yield "", "information", f"{self.bits:.2f} bits", "0"
-        if self.legend_median is not None:
-            yield "", "median error by the key", f"{self.legend_median:.2f} degrees", "45"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,15 +106,6 @@ class Slope:
     median: float | None
     samples: int
 
-    def rows(self) -> Iterator[Row]:
-        """Yield rows of the table."""
-        yield "slope", "rank correlation", f"{self.spearman:+.2f}", "0"
-        yield "", "information", f"{self.bits:.2f} bits", "0"
-        if self.within_10 is not None:
-            yield "", "in space, within 10 degrees", f"{self.within_10:.1%}", ""
-        if self.median is not None:
-            yield "", "in space, median error", f"{self.median:.2f} degrees", ""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Shape:
@@ -125,11 +126,6 @@ class Shape:
     median: float
     bits: float
     samples: int
-
-    def rows(self) -> Iterator[Row]:
-        """Yield rows of the table."""
-        yield "shape", "median error of the normal", f"{self.median:.2f} degrees", "45 degrees"
-        yield "", "information", f"{self.bits:.2f} bits", "0"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,14 +150,6 @@ class Value:
     p95_chromaticity: float
     largest_chromaticity: float
     samples: int
-
-    def rows(self) -> Iterator[Row]:
-        """Yield rows of the table."""
-        yield "value", "95 % of the errors, nearest colour", f"{self.p95:.1%} of the range", ""
-        yield "", "median, largest", f"{self.median:.1%}, {self.largest:.1%}", ""
-        yield "", "95 % by chromaticity", f"{self.p95_chromaticity:.1%} of the range", ""
-        both = f"{self.median_chromaticity:.1%}, {self.largest_chromaticity:.1%}"
-        yield "", "median, largest", both, ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,9 +192,14 @@ class Legibility:
     seed: int
     notes: tuple[str, ...] = ()
 
-    def _rows(self) -> list[Row]:
-        asked = (self.direction, self.slope, self.shape, self.value)
-        return [row for one in asked if one is not None for row in one.rows()]
+    def _rows(self) -> list[tuple[str, ...]]:
+        found: dict[str, list[tuple[str, ...]]] = {}
+        for question, name, words, form, chance in ROWS:
+            value = getattr(getattr(self, question), name, None)
+            if value is not None:
+                own = found.setdefault(question, [])
+                own.append(("" if own else question, words, form.format(value), chance))
+        return [row for own in found.values() for row in own]
 
     def _lines(self) -> list[str]:
         where = "visible pixels" if self.drawn else "points that face the eye; no picture was drawn"
@@ -218,16 +211,13 @@ class Legibility:
         ]
 
     def __str__(self) -> str:
-        rows = [("question", "figure", "found", "chance"), *self._rows()]
-        wide = [max(len(row[i]) for row in rows) for i in range(3)]
-        lines = [
-            f"{row[0]:<{wide[0]}}  {row[1]:<{wide[1]}}  {row[2]:<{wide[2]}}  {row[3]}".rstrip()
-            for row in rows
-        ]
-        return "\n".join([*lines, *self._lines()])
+        rows = [HEAD, *self._rows()]
+        wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        padded = [map(str.ljust, row, wide) for row in rows]
+        return "\n".join([*("  ".join(row).rstrip() for row in padded), *self._lines()])
 
     def _repr_html_(self) -> str:
-        head = "".join(f"<th>{name}</th>" for name in ("question", "figure", "found", "chance"))
+        head = "".join(f"<th>{name}</th>" for name in HEAD)
         body = "".join(
             "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>"
             for row in self._rows()
@@ -244,7 +234,7 @@ def of_direction(
     samples: list[Sample], seed: int, noise: float, notes: list[str]
 ) -> Direction | None:
     """Return the figures of direction; what has none, or was left out, is added to the notes."""
-    asked = readers.directed(samples)
+    asked = [one for one in samples if one.kind != "line" and one.has_one_tangent]
     own = _with_data(asked, "direction", "tangents or normals", notes)
     if not own:
         return None
@@ -254,12 +244,16 @@ def of_direction(
     by_key = np.concatenate([readers.by_key(one, middle, random, noise) for one in own])
     error = np.concatenate([each.error for each in found])
     return Direction(
-        within_10=float((error <= 10).mean()),
-        median=float(np.median(error)),
+        **_errors(error),
         bits=float(np.concatenate([each.bits for each in found]).mean()),
         legend_median=float(np.median(by_key)) if len(by_key) else None,
         samples=len(error),
     )
+
+
+def _errors(degrees: Array) -> dict[str, float]:
+    """Return the share of errors of 10 degrees at most, and their median."""
+    return {"within_10": float((degrees <= 10).mean()), "median": float(np.median(degrees))}
 
 
 def _with_data(samples: list[Sample], question: str, what: str, notes: list[str]) -> list[Sample]:
@@ -273,27 +267,20 @@ def _with_data(samples: list[Sample], question: str, what: str, notes: list[str]
 
 def of_slope(samples: list[Sample], seed: int, noise: float, notes: list[str]) -> Slope | None:
     """Return the figures of slope; what has none, or was left out, is added to the notes."""
-    asked = [
-        one
-        for one in samples
-        if one.kind == "line" and one.tangents is not None and one.tangents.shape[1] == 1
-    ]
+    asked = [one for one in samples if one.kind == "line" and one.has_one_tangent]
     own = _with_data(asked, "slope", "tangents", notes)
     if not own:
         return None
     random = np.random.default_rng(seed)
-    steep: list[Array] = []
-    light: list[Array] = []
-    for one in own:
-        steep.append(readers.steepness(one))
-        light.append(readers.lab(readers.seen(one.own_light(), random, noise))[:, 0])
+    seen = [readers.seen(one.own_light(), random, noise) for one in own]
+    lightness = np.concatenate([readers.lab(colors)[:, 0] for colors in seen])
+    steepness = np.concatenate([readers.steepness(one) for one in own])
     error = np.concatenate([readers.find_slope(one, random, noise) for one in own])
-    steepness, lightness = np.concatenate(steep), np.concatenate(light)
+    in_space = _errors(error) if len(error) else {"within_10": None, "median": None}
     return Slope(
         spearman=readers.rank_correlation(lightness, steepness),
         bits=readers.mutual_information(steepness, lightness),
-        within_10=float((error <= 10).mean()) if len(error) else None,
-        median=float(np.median(error)) if len(error) else None,
+        **in_space,
         samples=len(steepness),
     )
 
@@ -305,10 +292,9 @@ def of_shape(samples: list[Sample], seed: int, noise: float, notes: list[str]) -
     if not own:
         return None
     random = np.random.default_rng(seed)
-    found = []
-    for one in own:
-        few = random.permutation(len(one))[: readers.most(one)]
-        found.append(readers.find_normal(one.take(np.sort(few)), random, noise))
+    few = [np.sort(random.permutation(len(one))[: readers.most(one)]) for one in own]
+    some = [one.take(rows) for one, rows in zip(own, few, strict=True)]
+    found = [readers.find_normal(one, random, noise) for one in some]
     error = np.concatenate([each.error for each in found])
     return Shape(
         median=float(np.median(error)),
@@ -329,33 +315,29 @@ def of_value(
     if not np.ptp(bar, axis=0).any():
         notes.append("value: the colour map has one colour")
         return None
-    read = []
-    left = 0
+    read, left = [], 0
     for one, part in taken:
-        assert one.values is not None
+        values = np.asarray(one.values)
         # Points without light have the colour of what is not data.
-        known = np.isfinite(one.values) & one.valid
+        known = np.isfinite(values) & one.valid
         left += int(np.count_nonzero(~known))
-        own = one.take(known)
-        if len(own):
-            assert own.values is not None
-            positions = np.clip((own.values - low) / (high - low), 0.0, 1.0)
-            read.append(readers.decode(readers.lit_colors(part, own, table), positions, bar))
+        positions = np.clip((values[known] - low) / (high - low), 0.0, 1.0)
+        colors = readers.lit_colors(part, one.take(known), table)
+        read.append(readers.decode(colors, positions, bar))
+    total = sum(len(one) for one, _ in taken)
     if left:
-        total = sum(len(one) for one, _ in taken)
         notes.append(f"value: {left} of {total} places have no value, left out")
-    if not read:
+    if left == total:
         return None
     nearest, chromatic = np.concatenate(read, axis=1)
-    return Value(
-        median=float(np.median(nearest)),
-        p95=float(np.quantile(nearest, 0.95)),
-        largest=float(nearest.max()),
-        median_chromaticity=float(np.median(chromatic)),
-        p95_chromaticity=float(np.quantile(chromatic, 0.95)),
-        largest_chromaticity=float(chromatic.max()),
-        samples=len(nearest),
-    )
+    figures = {
+        f"{name}{by}": float(function(errors))
+        for by, errors in (("", nearest), ("_chromaticity", chromatic))
+        for name, function in (
+            ("median", np.median), ("p95", lambda x: np.quantile(x, 0.95)), ("largest", np.max),
+        )
+    }  # fmt: skip
+    return Value(**figures, samples=len(nearest))
 
 
 def legibility(
@@ -453,8 +435,8 @@ def legibility(
     of the bar, and colours of other values at random, 0.29 of the range.
 
     A million points take about 6 s of processor time, including 2 s for the picture and 2 s for the
-    normals of the surface. Beside what these two need, and the tangents, memory does not depend on
-    the number of points; it is up to 200 MB.
+    normals of the surface. Beside what these two need, and points and tangents, memory does not
+    depend on the number of points; it is up to 200 MB.
 
     Examples
     --------

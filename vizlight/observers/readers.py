@@ -6,6 +6,7 @@ chromaticity.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,8 +19,6 @@ from vizlight.model.kernels import unit_rows
 from vizlight.shading import display
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pyvista as pv
 
     from vizlight._types import Array
@@ -144,31 +143,45 @@ def find_direction(sample: Sample, random: np.random.Generator, noise: float) ->
         Angle in degrees, from 0 to 90, between the tangent and the likeliest candidate, and the
         bits that the colour tells of the 180 candidates.
     """
-    errors, bits = [], []
+    own, axis = sample, sample.eye
+    if sample.normals is not None:
+        # Interpolation leaves a tangent a little off the surface.
+        tangent, axis = _single(sample), sample.normals
+        flat = unit_rows(tangent - _dots(tangent, axis) * axis)
+        own = dataclasses.replace(sample, tangents=flat[:, np.newaxis])
+    return _find_turned(own, axis, random, noise)
+
+
+def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise: float) -> Found:
+    """Return the errors of an observer to whom tangents may be turned about axes."""
+    errors: list[Array] = [np.empty(0)]
+    bits: list[Array] = [np.empty(0)]
     for start in range(0, len(sample), PLACES):
-        own = sample.take(slice(start, start + PLACES))
-        assert own.tangents is not None
-        m = len(own)
-        tangent = own.tangents[:, 0]
-        axis = own.eye if own.normals is None else own.normals
-        along = np.einsum("ij,ij->i", tangent, axis)[:, np.newaxis] * axis
+        rows = slice(start, start + PLACES)
+        own, axis = sample.take(rows), axes[rows]
+        tangent = _single(own)
+        along = _dots(tangent, axis) * axis
         flat = tangent - along
-        if own.normals is not None:
-            # Interpolation leaves a tangent a little off the surface.
-            along, flat = 0 * along, unit_rows(flat)
-            tangent = flat
         # Candidates start anywhere: ties must not favour the true one.
-        offset = random.uniform(0.0, 180.0, m)
-        turn = (np.arange(ANGLES) + offset[:, np.newaxis])[..., np.newaxis]
+        offset = random.uniform(0.0, 180.0, len(own))
+        turn = np.radians(np.arange(ANGLES) + offset[:, np.newaxis])[..., np.newaxis]
         across = np.cross(axis, flat)[:, np.newaxis]
-        every = np.cos(np.radians(turn)) * flat[:, np.newaxis] + np.sin(np.radians(turn)) * across
-        every = every + along[:, np.newaxis]
-        observed = seen(own.light(tangent[:, np.newaxis], own.normals), random, noise)
-        likely = posterior(observed, _lit(own, every), noise)
+        every = np.cos(turn) * flat[:, np.newaxis] + np.sin(turn) * across + along[:, np.newaxis]
+        likely = posterior(seen(own.own_light(), random, noise), _lit(own, every), noise)
         off = (likely.argmax(axis=1) + offset) % 180
         errors.append(np.minimum(off, 180 - off))
         bits.append(information(likely))
     return Found(np.concatenate(errors), np.concatenate(bits))
+
+
+def _single(sample: Sample) -> Array:
+    assert sample.tangents is not None
+    return sample.tangents[:, 0]
+
+
+def _dots(a: Array, b: Array) -> Array:
+    """Return dot products of rows, as a column."""
+    return np.asarray(np.einsum("ij,ij->i", a, b))[:, np.newaxis]
 
 
 def _lit(sample: Sample, tangents: Array) -> Array:
@@ -199,18 +212,17 @@ def by_key(sample: Sample, middle: Array, random: np.random.Generator, noise: fl
         Angle in degrees, from 0 to 90, between the directions in the picture, of the tangents
         that have a length there.
     """
-    assert sample.tangents is not None
-    tangent = sample.tangents[:, 0]
-    x, y = (np.einsum("ij,ij->i", tangent, axis) for axis in (sample.right, sample.up))
-    own = sample.take(np.hypot(x, y) > SHORTEST)
+    tangent = _single(sample)
+    x, y = (_dots(tangent, axis)[:, 0] for axis in (sample.right, sample.up))
+    long = np.hypot(x, y) > SHORTEST
+    own = sample.take(long)
     if not len(own):
         return np.empty(0)
     start = random.uniform(0.0, 180.0)
     disc = key(own, middle, np.radians(start + np.arange(ANGLES)))
     hues = _hue(shown(disc), random)
     found = _hue(seen(own.own_light(), random, noise), random) @ hues.T
-    course = np.degrees(np.arctan2(y, x))[np.hypot(x, y) > SHORTEST]
-    off = start + found.argmax(axis=1) - course
+    off = start + found.argmax(axis=1) - np.degrees(np.arctan2(y, x))[long]
     return np.asarray(np.abs((off + 90) % 180 - 90))
 
 
@@ -228,33 +240,18 @@ def _hue(rgb: Array, random: np.random.Generator) -> Array:
     return unit_rows(plane + random.normal(0.0, 1e-6, plane.shape))
 
 
-def directed(samples: Sequence[Sample]) -> list[Sample]:
-    """Return the places whose direction is asked for: single tangents of surfaces and of points."""
-    return [
-        one.take(one.valid)
-        for one in samples
-        if one.kind != "line" and one.tangents is not None and one.tangents.shape[1] == 1
-    ]
-
-
 def steepness(sample: Sample) -> Array:
     """Return the cosine, 0 or more, of the angle between tangents and the line of sight."""
-    assert sample.tangents is not None
-    return np.asarray(np.abs(np.einsum("ij,ij->i", sample.tangents[:, 0], sample.eye)))
+    return np.abs(_dots(_single(sample), sample.eye)[:, 0])
 
 
 def rank_correlation(a: Array, b: Array) -> float:
     """Return Spearman's rank correlation; 0 where one of the two is constant."""
     if np.ptp(a) == 0 or np.ptp(b) == 0:
         return 0.0
-    return float(np.corrcoef(_ranks(a), _ranks(b))[0, 1])
+    from scipy.stats import rankdata
 
-
-def _ranks(values: Array) -> Array:
-    """Return ranks; equal values have their mean."""
-    _, which, count = np.unique(values, return_inverse=True, return_counts=True)
-    mean = np.cumsum(count) - (count - 1) / 2
-    return np.asarray(mean[which.ravel()])
+    return float(np.corrcoef(rankdata(a), rankdata(b))[0, 1])
 
 
 def mutual_information(steep: Array, light: Array) -> float:
@@ -294,27 +291,11 @@ def find_slope(sample: Sample, random: np.random.Generator, noise: float) -> Arr
         Angle in degrees, from 0 to 90, between the tangent and the likeliest of 180 directions
         with the same course; of tangents that are not along the line of sight.
     """
-    errors = [np.empty(0)]
-    for start in range(0, len(sample), PLACES):
-        own = sample.take(slice(start, start + PLACES))
-        assert own.tangents is not None
-        tangent = own.tangents[:, 0]
-        toward = np.einsum("ij,ij->i", tangent, own.eye)
-        own = own.take(np.abs(toward) < 1 - 1e-9)
-        m = len(own)
-        assert own.tangents is not None
-        tangent = own.tangents[:, 0]
-        along = np.einsum("ij,ij->i", tangent, own.eye)[:, np.newaxis] * own.eye
-        course = unit_rows(tangent - along)
-        offset = random.uniform(0.0, 1.0, m)
-        turn = np.radians(np.arange(ANGLES) - 90 + offset[:, np.newaxis])[..., np.newaxis]
-        every = np.cos(turn) * course[:, np.newaxis] + np.sin(turn) * own.eye[:, np.newaxis]
-        observed = seen(own.own_light(), random, noise)
-        likely = posterior(observed, _lit(own, every), noise)
-        best = every[np.arange(m), likely.argmax(axis=1)]
-        cosine = np.abs(np.einsum("ij,ij->i", best, tangent))
-        errors.append(np.degrees(np.arccos(np.minimum(cosine, 1.0))))
-    return np.concatenate(errors)
+    tangent = _single(sample)
+    apart = np.abs(_dots(tangent, sample.eye)[:, 0]) < 1 - 1e-9
+    own = sample.take(apart)
+    # A turn about what stands across the line of sight leaves the course as it is.
+    return _find_turned(own, unit_rows(np.cross(tangent[apart], own.eye)), random, noise).error
 
 
 def most(sample: Sample) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
@@ -27,13 +27,12 @@ from vizlight.shading.results import DEFAULT_NAME
 from vizlight.verify.between import Places, interpolated, mean_spaces
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike, NDArray
     from vtkmodules.vtkCommonCore import vtkPoints
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Keywords
     from vizlight.scene.conversion import AnyView
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
@@ -65,8 +64,8 @@ class Sample:
         Scene with a view, and with both ends of its depth cue.
     options : ShadingOptions
         How light is computed.
-    shares : Shares
-        Shares of the light that reach the places.
+    shares : dict of ndarray
+        Shares of the light that reach the places, by the names of :class:`ShadingInputs`.
     """
 
     kind: Kind
@@ -80,7 +79,7 @@ class Sample:
     valid: Bools
     scene: Scene
     options: ShadingOptions
-    shares: Shares
+    shares: dict[str, Array]
 
     def __len__(self) -> int:
         return len(self.points)
@@ -92,7 +91,7 @@ class Sample:
             for field in dataclasses.fields(self)
             if isinstance(getattr(self, field.name), np.ndarray)
         }
-        shares = self.shares.each(lambda array: array[rows])
+        shares = {name: share[rows] for name, share in self.shares.items()}
         return dataclasses.replace(self, **own, shares=shares)
 
     @property
@@ -101,20 +100,24 @@ class Sample:
         scene = self.scene
         assert scene.view is not None
         near = not scene.view.parallel or any(x.position is not None for x in scene.lights)
-        return near or scene.depth_cue is not None or any(x is not None for x in self.shares)
+        return near or scene.depth_cue is not None or bool(self.shares)
+
+    @property
+    def has_one_tangent(self) -> bool:
+        """Whether there is a single tangent at each place."""
+        return self.tangents is not None and self.tangents.shape[1] == 1
 
     def given(
         self, tangents: Array | None, normals: Array | None, repeat: int = 1
     ) -> ShadingInputs:
         """Return inputs of the engine of other tangents and normals, ``repeat`` at each place."""
         lit = self.options.conditioned is True or tangents is None
-        shares = self.shares.each(lambda rows: np.repeat(rows, repeat, axis=0))
+        shares: Keywords = {
+            name: np.repeat(share, repeat, axis=0) for name, share in self.shares.items()
+        }
+        points = np.repeat(self.points, repeat, axis=0)
         return ShadingInputs(
-            points=np.repeat(self.points, repeat, axis=0),
-            tangents=tangents,
-            normals=normals if lit else None,
-            transmittance=shares.transmittance,
-            occlusion=shares.occlusion,
+            points=points, tangents=tangents, normals=normals if lit else None, **shares
         )
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
@@ -161,9 +164,10 @@ def sample(part: Part, cells: Indices, at: Array, camera: pv.Camera, scene: Scen
     for vectors in (normals, *(() if tangents is None else np.moveaxis(tangents, 1, 0))):
         if vectors is not None:
             valid &= np.einsum("ij,ij->i", vectors, vectors) > 0.5
-    shares = part.shares.each(
-        lambda rows: np.clip(interpolated(rows[ids].astype(np.float64), places), 0.0, 1.0)
-    )
+    shares = {
+        name: np.clip(interpolated(rows[ids].astype(np.float64), places), 0.0, 1.0)
+        for name, rows in part.shares.items()
+    }
     values = None
     if part.values is not None:
         values = interpolated(part.values[ids].astype(np.float64), places)
@@ -219,29 +223,6 @@ def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array |
     return own.turned(unit_rows(normals), facts, points)
 
 
-#: Rows that are read at once of what has no rows by number.
-BLOCK = 1 << 17
-
-
-class Shares(NamedTuple):
-    """Shares of light that reach points, None where all of it does.
-
-    Attributes
-    ----------
-    transmittance : ndarray, shape (N, L), or None
-        Share of each light of intensity above 0.
-    occlusion : ndarray, shape (N,), or None
-        Share of the ambient light.
-    """
-
-    transmittance: Array | None
-    occlusion: Array | None
-
-    def each(self, function: Callable[[Array], Array]) -> Shares:
-        """Return what a function gives for each array."""
-        return Shares(*(None if rows is None else function(rows) for rows in self))
-
-
 @dataclass(frozen=True)
 class Part:
     """One mesh of the picture.
@@ -257,8 +238,8 @@ class Part:
         on them: they are what a reader sees as its shape.
     options : LightOptions
         How the mesh is lit.
-    shares : Shares
-        Shares of the light that reach the points.
+    shares : dict of ndarray
+        Shares of the light that reach the points, by the names of :class:`ShadingInputs`.
     values : ndarray, shape (N,), or None
         Values of the points that colours show.
     """
@@ -268,7 +249,7 @@ class Part:
     cells: Indices
     inputs: ShadingInputs
     options: LightOptions
-    shares: Shares
+    shares: dict[str, Array]
     values: NDArray[np.generic] | None
 
     @property
@@ -325,36 +306,31 @@ def _part(
     )
 
 
-def _shares(mesh: pv.DataSet, lights: int) -> Shares:
+def _shares(mesh: pv.DataSet, lights: int) -> dict[str, Array]:
     """Return the shares of light that a filter found to reach the points of a mesh."""
     made = records.made(mesh, DEFAULT_NAME)
-    found = Shares(
-        *(np.asarray(mesh.point_data[name]) if name in made else None for name in Shares._fields)
-    )
+    found: dict[str, Array] = {
+        name: np.asarray(mesh.point_data[name])
+        for name in ("transmittance", "occlusion")
+        if name in made
+    }
     name = (records.read(mesh, DEFAULT_NAME) or {}).get("options", {}).get("occlusion")
     if isinstance(name, str) and name in mesh.point_data:
-        found = found._replace(occlusion=np.asarray(mesh.point_data[name]))
-    if found.transmittance is None:
-        return found
-    columns = found.transmittance.reshape(mesh.n_points, -1)
-    if columns.shape[1] != lights:
-        expected = f"one column for each of the {lights} lights of the scene"
-        remedy = "light the mesh by this scene first, or delete the array"
-        got = f"{columns.shape[1]} in 'transmittance'"
-        raise ValueError(_check.message("mesh", expected, got, remedy))
-    return found._replace(transmittance=columns)
+        found["occlusion"] = np.asarray(mesh.point_data[name])
+    if "transmittance" in found:
+        columns = found["transmittance"].reshape(mesh.n_points, -1)
+        if columns.shape[1] != lights:
+            expected = f"one column for each of the {lights} lights of the scene"
+            remedy = "light the mesh by this scene first, or delete the array"
+            got = f"{columns.shape[1]} in 'transmittance'"
+            raise ValueError(_check.message("mesh", expected, got, remedy))
+        found["transmittance"] = columns
+    return found
 
 
 def rows_of(source: ArraySource, ids: Indices) -> NDArray[np.generic]:
     """Return rows of points or of an array by their numbers."""
-    if isinstance(source, np.ndarray):
-        return np.asarray(source[ids])
-    found = np.empty((len(ids), *source.shape[1:]), source.dtype)
-    for start in range(0, source.shape[0], BLOCK):
-        own = (ids >= start) & (ids < start + BLOCK)
-        if own.any():
-            found[own] = source[start : start + BLOCK][ids[own] - start]
-    return found
+    return np.asarray(source[:])[ids]
 
 
 def seen_from(

@@ -26,7 +26,8 @@ from vizlight.pieces import task
 from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
 from vizlight.pieces.workers import RETRIES, Work
 from vizlight.scene import Scene
-from vizlight.shading.options import LightOptions, unknown_option
+from vizlight.scene.keywords import unknown_option
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import unlit
 from vizlight.verify import report
 from vizlight.vtk import sides

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.scene.light import WHITE, Light, as_lights, default_lights
+from vizlight.scene.light import WHITE, Light, default_lights
 from vizlight.scene.view import View, as_view, is_camera
 
 if TYPE_CHECKING:
@@ -16,10 +16,9 @@ if TYPE_CHECKING:
     from typing import TypeAlias, TypeGuard
 
     import pyvista as pv
-    from vtkmodules.vtkCommonMath import vtkMatrix4x4
     from vtkmodules.vtkRenderingCore import vtkCamera, vtkLight, vtkProperty
 
-    from vizlight._types import Color, Vector
+    from vizlight._types import Color, Keywords, Vector
 
     AnyLight: TypeAlias = Light | vtkLight
     Lights: TypeAlias = AnyLight | Iterable[AnyLight] | None
@@ -35,17 +34,6 @@ LEAST_COSINE = 2.5e-4
 VISIBLE_ERROR = 2.0
 
 
-class MaterialValues(TypedDict):
-    """The fields of a material."""
-
-    ambient: float
-    diffuse: float
-    specular: float
-    shininess: float
-    color: Color | None
-    specular_color: Color | None
-
-
 def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
     """Return the reflection model of VTK: Blinn for a single headlight, Phong otherwise.
 
@@ -54,16 +42,12 @@ def vtk_model(lights: Sequence[Light]) -> ReflectionModel:
     return "blinn" if len(lights) == 1 and lights[0].is_headlight else "phong"
 
 
-def to_property(
-    values: MaterialValues, *, lights: Lights, view: AnyView, model: str
-) -> pv.Property:
+def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) -> pv.Property:
     """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
     import pyvista as pv
 
     given, view = _check_lights(lights, view), as_view(view)
-    coefficients = {
-        "ambient": values["ambient"], "diffuse": values["diffuse"], "specular": values["specular"],
-    }  # fmt: skip
+    coefficients = {name: values[name] for name in ("ambient", "diffuse", "specular")}
     for name, value in coefficients.items():
         if value > 1:
             remedy = "make the lights brighter instead"
@@ -86,9 +70,7 @@ def to_property(
     return made
 
 
-def property_values(
-    source: vtkProperty, *, lights: Lights, view: AnyView, model: str
-) -> MaterialValues:
+def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model: str) -> Keywords:
     """Return the fields of a property's material; see :meth:`vizlight.Material.from_property`."""
     if not hasattr(source, "GetSpecularPower"):
         raise TypeError(
@@ -130,14 +112,18 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     """
     if lights is None:
         return default_lights(as_view(view))
-    if _is_vtk(lights):
-        return _fixed(lights, view)
-    flat = getattr(lights, "ndim", 1) == 0
-    if flat or isinstance(lights, Light | str) or not isinstance(lights, Iterable):
-        return as_lights(lights)
+    several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
+    if isinstance(lights, str) or not (several or isinstance(lights, Light) or _is_vtk(lights)):
+        expected = "a vizlight.Light, a pyvista.Light or a sequence of them"
+        raise TypeError(_check.message("lights", expected, _check.describe(lights)))
     found: list[Light] = []
-    for light in lights:
-        found += _fixed(light, view) if _is_vtk(light) else as_lights([light])
+    for light in lights if isinstance(lights, Iterable) else [lights]:
+        if _is_vtk(light):
+            found += _fixed(light, view)
+        else:
+            _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
+            assert isinstance(light, Light)
+            found.append(light)
     return tuple(found)
 
 
@@ -309,19 +295,14 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
 
 def _position_and_target(light: vtkLight, camera: vtkCamera | None) -> tuple[Vector, Vector]:
     """Return the position and the focal point of a light in the coordinates of the scene."""
+    from vtkmodules.vtkRenderingCore import vtkLight
+
     if camera is not None and light.LightTypeIsHeadlight():
         return tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
     if camera is not None and light.LightTypeIsCameraLight():
-        matrix = camera.GetCameraLightTransformMatrix()
-        return (
-            _transform(matrix, light.GetPosition()),
-            _transform(matrix, light.GetFocalPoint()),
-        )
+        # VTK turns a light with the camera when it draws; a copy does not have to wait for it.
+        placed = vtkLight()
+        placed.DeepCopy(light)
+        placed.SetTransformMatrix(camera.GetCameraLightTransformMatrix())
+        light = placed
     return tuple(light.GetTransformedPosition()), tuple(light.GetTransformedFocalPoint())
-
-
-def _transform(matrix: vtkMatrix4x4, point: Vector) -> Vector:
-    """Return a point transformed by a homogeneous matrix."""
-    x = (*point, 1.0)
-    rows = [sum(matrix.GetElement(i, j) * x[j] for j in range(4)) for i in range(4)]
-    return tuple(row / rows[3] for row in rows[:3])

@@ -1,4 +1,4 @@
-"""The keywords of a record, and an error for any other that names the nearest of them."""
+"""An error for a keyword that a function or a record does not have, which names the nearest."""
 
 from __future__ import annotations
 
@@ -11,38 +11,39 @@ from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import ParamSpec
+    from typing import ParamSpec, TypeVar
 
     P = ParamSpec("P")
+    R = TypeVar("R")
 
 
-def keywords_only(method: Callable[P, None]) -> Callable[P, None]:
-    """Let an initialiser that takes keywords alone say which it has.
+def named(function: Callable[P, R]) -> Callable[P, R]:
+    """Let the error for a keyword that a function does not have name the nearest that it has.
 
-    Parameters
-    ----------
-    method : callable
-        ``__init__`` of a class whose parameters are keyword-only.
-
-    Returns
-    -------
-    callable
-        The initialiser, which raises TypeError for a positional argument or an unknown keyword.
+    An initialiser that takes keywords alone also says so of a value without a name.
     """
-    kind = method.__qualname__.removesuffix(".__init__")
-    known = list(inspect.signature(method).parameters)[1:]
-    expected = f"keywords of {kind} ({', '.join(known)})"
+    parameters = inspect.signature(function).parameters
+    known = list(parameters)
+    owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+    kinds = {parameters[name].kind for name in known[1:]}
+    keywords_only = function.__name__ == "__init__" and kinds == {inspect.Parameter.KEYWORD_ONLY}
 
-    @functools.wraps(method)
-    def checked(*arguments: P.args, **given: P.kwargs) -> None:
-        if len(arguments) > 1:
-            got, remedy = _check.describe(arguments[1]), f"name it, as in {kind}({known[0]}=...)"
-            raise TypeError(_check.message(kind, expected, got, remedy))
-        for name in given:
+    @functools.wraps(function)
+    def method(*arguments: P.args, **keywords: P.kwargs) -> R:
+        if keywords_only and len(arguments) > 1:
+            expected = f"keywords of {owner} ({', '.join(known[1:])})"
+            got, remedy = _check.describe(arguments[1]), f"name it, as in {owner}({known[1]}=...)"
+            raise TypeError(_check.message(owner, expected, got, remedy))
+        for name in keywords:
             if name not in known:
-                near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-                remedy = f"did you mean {near[0]}=?" if near else ""
-                raise TypeError(_check.message(kind, expected, f"{name}=", remedy))
-        method(*arguments, **given)
+                raise TypeError(unknown_option(owner, name, known))
+        return function(*arguments, **keywords)
 
-    return checked
+    return method
+
+
+def unknown_option(function: str, name: str, known: list[str]) -> str:
+    """Return the message for a keyword that a function does not have."""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    remedy = f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[1:])}"
+    return _check.message(name, f"an option of {function}", "a name that it does not have", remedy)

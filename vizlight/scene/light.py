@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model import falloff
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 from vizlight.scene.view import View
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ class Light:
             parts.append("follows_view=True")
         return f"Light{'.headlight' if self.is_headlight else ''}({', '.join(parts)})"
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,
@@ -101,23 +100,15 @@ class Light:
         if self.follows_view:
             self._check_following()
         elif (self.direction is None) == (self.position is None):
-            raise ValueError(
-                _check.message(
-                    "Light",
-                    "either direction= (toward the light) or position=",
-                    "neither" if self.direction is None else "both",
-                    "Light.headlight() makes a light that follows the view",
-                )
-            )
+            expected, got = "either direction= (toward the light) or position=", "both"
+            remedy = "Light.headlight() makes a light that follows the view"
+            if self.direction is None:
+                got = "neither"
+            raise ValueError(_check.message("Light", expected, got, remedy))
         if self.direction is not None and self.attenuation != NO_ATTENUATION:
-            raise ValueError(
-                _check.message(
-                    "attenuation",
-                    "(1, 0, 0) for a light at infinity, which has no distance",
-                    self.attenuation,
-                    "give the light a position=",
-                )
-            )
+            expected = "(1, 0, 0) for a light at infinity, which has no distance"
+            remedy = "give the light a position="
+            raise ValueError(_check.message("attenuation", expected, self.attenuation, remedy))
 
     def _check_following(self) -> None:
         """Check a light that follows the view; a direction toward the eye makes a headlight."""
@@ -220,26 +211,3 @@ def default_lights(view: View | None) -> tuple[Light, ...]:
         Light(direction=toward, follows_view=True, intensity=KEY / white),
         Light.headlight(intensity=FILL / white),
     )
-
-
-def as_lights(lights: object) -> tuple[Light, ...]:
-    """Return one light or several lights as a tuple.
-
-    Raises
-    ------
-    TypeError
-        If the argument is neither a light nor a sequence of lights.
-    """
-    several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
-    if isinstance(lights, str) or not (several or isinstance(lights, Light)):
-        raise TypeError(
-            _check.message(
-                "lights",
-                "a vizlight.Light, a pyvista.Light or a sequence of them",
-                _check.describe(lights),
-            )
-        )
-    found: tuple[Light, ...] = (lights,) if isinstance(lights, Light) else tuple(lights)  # type: ignore[arg-type]
-    for light in found:
-        _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
-    return found

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vizlight import _check
 from vizlight.scene import conversion
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -48,7 +48,7 @@ class Material:
     color: Color | None
     specular_color: Color | None
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,
@@ -113,15 +113,7 @@ class Material:
         the eye to be at the position of the camera **even in parallel projection**. The
         equivalent scene in vizlight then has a perspective view, or the camera is far away.
         """
-        values = conversion.MaterialValues(
-            ambient=self.ambient,
-            diffuse=self.diffuse,
-            specular=self.specular,
-            shininess=self.shininess,
-            color=self.color,
-            specular_color=self.specular_color,
-        )
-        return conversion.to_property(values, lights=lights, view=view, model=model)
+        return conversion.to_property(vars(self), lights=lights, view=view, model=model)
 
     @classmethod
     def from_property(

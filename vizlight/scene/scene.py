@@ -11,7 +11,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.scene import conversion
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 from vizlight.scene.light import Light
 from vizlight.scene.material import Material
 from vizlight.scene.view import DepthCue, View, as_view
@@ -73,7 +73,7 @@ class Scene:
     ambient_color: Color | None
     depth_cue: DepthCue | None
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,

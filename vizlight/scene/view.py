@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.scene.keywords import keywords_only
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -57,7 +57,7 @@ class View:
     parallel: bool
     up: Vector | None
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,
@@ -73,28 +73,19 @@ class View:
             parallel = position is None
         parallel = _check.boolean("parallel", parallel)
         if position is None and direction is None:
-            raise ValueError(
-                _check.message(
-                    "View", "position= (perspective) or direction= (parallel)", "neither"
-                )
-            )
+            expected = "position= (perspective) or direction= (parallel)"
+            raise ValueError(_check.message("View", expected, "neither"))
         if parallel and direction is None:
-            raise ValueError(
-                _check.message("direction", "the direction toward the eye of a parallel view", None)
-            )
+            expected = "the direction toward the eye of a parallel view"
+            raise ValueError(_check.message("direction", expected, None))
         if not parallel and position is None:
-            raise ValueError(
-                _check.message("position", "the eye's position of a perspective view", None)
-            )
-        if position is not None and direction is not None and len(position) != len(direction):
-            raise ValueError(
-                _check.message(
-                    "direction", f"{len(position)} components like position", len(direction)
-                )
-            )
+            expected = "the eye's position of a perspective view"
+            raise ValueError(_check.message("position", expected, None))
         n = len(position or direction or ())
-        if up is not None and len(up) != n:
-            raise ValueError(_check.message("up", f"{n} components", len(up)))
+        for name, other in (("direction", direction), ("up", up)):
+            if other is not None and len(other) != n:
+                expected = f"{n} components like {'position' if position else 'direction'}"
+                raise ValueError(_check.message(name, expected, len(other)))
         if up is not None and direction is not None and _parallel(up, direction):
             expected = "a direction that is not parallel to direction="
             raise ValueError(_check.message("up", expected, up))
@@ -222,7 +213,7 @@ class DepthCue:
     color: Color | None
     smooth: bool
 
-    @keywords_only
+    @named
     def __init__(
         self,
         *,

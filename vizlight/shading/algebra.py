@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.model import cylinder_kernels, falloff
+from vizlight.model import falloff
+from vizlight.model.manifolds import ALONG, Value, Vectors
 from vizlight.scene.light import WHITE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from vizlight._types import Color, Vector
+    from vizlight.model.manifolds import Highlight
     from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.plan import Highlight, Plan
-
-#: Depths beyond this are divided by 4, so that their differences are finite.
-LARGEST_DEPTH = 1e300
-#: A number or a vector of an algebra: whatever NumPy's functions and operators accept, such as an
-#: array. No static type says that.
-Value: TypeAlias = Any
+    from vizlight.shading.plan import Plan
 
 
 class Lamp:
@@ -36,7 +32,7 @@ class Lamp:
         )  # fmt: skip
 
 
-class Algebra:
+class Algebra(Vectors):
     """Numbers, inputs and vector operations of the terms.
 
     The numbers of an algebra are used with operators, NumPy's functions, and the formulas of
@@ -53,7 +49,7 @@ class Algebra:
         self.plan, self.inputs, self.n = plan, inputs, plan.n
         self.colored = plan.colored
         #: |x_N| up to which a direction is along a line.
-        self.least = cylinder_kernels.ALONG * float(np.finfo(plan.dtype).eps)
+        self.least = ALONG * float(np.finfo(plan.dtype).eps)
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an input at the point: a vector, or a number, perhaps of one lamp."""
@@ -61,10 +57,6 @@ class Algebra:
 
     def vectors(self, name: str, k: int) -> Sequence[Value]:
         """Return the k vectors of an input at the point."""
-        raise NotImplementedError
-
-    def number(self, value: float) -> Value:
-        """Return a number of the plan, in the precision of the work."""
         raise NotImplementedError
 
     def wide(self, value: float) -> Value:
@@ -83,10 +75,6 @@ class Algebra:
         """Return a number or a vector in the precision of the work."""
         raise NotImplementedError
 
-    def dot(self, a: Value, b: Value) -> Value:
-        """Return the dot product of two vectors."""
-        raise NotImplementedError
-
     def unit(self, v: Value) -> tuple[Value, Value]:
         """Return a unit vector and the length that the vector had."""
         raise NotImplementedError
@@ -96,7 +84,7 @@ class Algebra:
         raise NotImplementedError
 
     def integral(self, z: Value, shininess: float) -> Value:
-        """Return G(z) of a cylinder, see :mod:`vizlight.model.cylinder_kernels`."""
+        """Return G(z) of a cylinder."""
         raise NotImplementedError
 
     def need(self, test: Value) -> None:
@@ -170,7 +158,7 @@ class Algebra:
             depth = self.dot(self.way(view.direction, wide=True), away)
         self.known(depth)
         ends = cue.front, cue.back
-        if max(map(abs, ends)) > LARGEST_DEPTH:
+        if max(map(abs, ends)) > falloff.LARGEST_DEPTH:
             depth, ends = depth * self.wide(0.25), (cue.front / 4, cue.back / 4)
         return depth, [self.wide(x) for x in (*ends, cue.front_scale, cue.back_scale)]
 
@@ -210,15 +198,6 @@ class Algebra:
                     self.need(size > self.apart(v))
             rows.append(v)
         return [self.work(v) for v in rows]
-
-    def triple(self, a: Value, b: Value, c: Value) -> Value:
-        """Return a x b . c in 3-space."""
-        first, second, third = (
-            # Component by component, since symbols of a program have no cross product.
-            (a[i] * b[j] - a[j] * b[i]) * c[k]
-            for i, j, k in ((1, 2, 0), (2, 0, 1), (0, 1, 2))
-        )
-        return first + second + third
 
     def color(self, term: str, coefficient: float) -> Value:
         """Return a coefficient times the colour of the material for a term."""

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.model import cylinder_kernels, frames, kernels
+from vizlight.model import frames, highlight_integral, kernels
 from vizlight.shading.algebra import Algebra
 from vizlight.shading.terms import light
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import DTypeLike
+    from numpy.typing import DTypeLike, NDArray
 
-    from vizlight._types import Array, Bools, Vector
-    from vizlight.shading.algebra import Lamp, Value
+    from vizlight._types import Array, Bools, Keywords, Vector
+    from vizlight.model.manifolds import Value
+    from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
 
@@ -25,19 +28,70 @@ if TYPE_CHECKING:
 SMALLEST_HELD = 1e-30
 
 
-class Output:
-    """The arrays that a plan fills."""
+@dataclass(frozen=True, kw_only=True)
+class Shading:
+    """The light of N points, as :func:`vizlight.shading.engine.shade` returns it.
 
-    def __init__(self, plan: Plan, count: int) -> None:
-        self.luminance: Array = np.empty(count, plan.dtype)
-        self.valid = np.empty(count, np.bool_)
-        parts = plan.components
-        self.diffuse: Array | None = np.empty(count, plan.dtype) if parts else None
-        self.specular: Array | None = np.empty(count, plan.dtype) if parts else None
-        self.rgb: Array | None = np.empty((count, 3), plan.dtype) if plan.colored else None
+    Attributes
+    ----------
+    luminance : ndarray, shape (N,)
+        Luminance of the points.
+    valid : ndarray of bool, shape (N,)
+        False where tangents or a normal have no direction, or where a point is not finite and
+        lights or view depend on its place; such a point has the ambient light.
+    diffuse, specular : ndarray, shape (N,), or None
+        Terms before the depth cue, kd and ks included; with ``components``.
+    rgb : ndarray, shape (N, 3), or None
+        Colour where the scene has one; linear, not clipped at 1.
+    plan : Plan
+        What was computed.
+    seconds : float
+        Wall time of the run.
+    """
+
+    luminance: Array
+    valid: Bools
+    diffuse: Array | None
+    specular: Array | None
+    rgb: Array | None
+    plan: Plan
+    seconds: float = 0.0
+
+    @property
+    def ambient(self) -> float:
+        """Ambient term of points that nothing occludes, one number for all."""
+        return self.plan.ambient
+
+    @property
+    def invalid(self) -> int:
+        """Number of points that could not be lit."""
+        return self.valid.size - int(np.count_nonzero(self.valid))
+
+    @classmethod
+    def of(cls, plan: Plan, count: int) -> Shading:
+        """Return arrays for a number of points, to be filled."""
+        kind, parts = plan.dtype, plan.components
+        return cls(
+            luminance=np.empty(count, kind),
+            valid=np.empty(count, np.bool_),
+            diffuse=np.empty(count, kind) if parts else None,
+            specular=np.empty(count, kind) if parts else None,
+            rgb=np.empty((count, 3), kind) if plan.colored else None,
+            plan=plan,
+        )
+
+    def arrays(self) -> dict[str, NDArray[np.generic]]:
+        """Return the arrays that there are."""
+        return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
+
+    def part(self, _: int, rows: slice, /) -> Shading:
+        """Return the light of some points, with a share of the time."""
+        share = (rows.stop - rows.start) / max(self.luminance.size, 1)
+        own: Keywords = {name: array[rows] for name, array in self.arrays().items()}
+        return dataclasses.replace(self, **own, seconds=self.seconds * share)
 
 
-def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) -> None:
+def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Shading) -> None:
     """Light the points of some rows of normals or tangents.
 
     Overflow and underflow are handled; the caller silences NumPy's warnings about them.
@@ -47,7 +101,7 @@ def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Output) 
     valid = np.True_ if w.valid is None else w.valid
     at = slice(rows.start * m, rows.stop * m)
     for name, value in (*w.made.items(), ("valid", valid)):
-        own: Array = getattr(output, name)[at]
+        own = getattr(output, name)[at]
         # Points of one row stand one after the other.
         # Arrays of the algebra have the component first, those of a mesh the point: one transposed
         # write.
@@ -161,7 +215,7 @@ class Arrays(Algebra):
 
     def integral(self, z: Value, shininess: float) -> Value:
         """Return G(z) of a cylinder."""
-        return cylinder_kernels.half_integral(shininess, z.dtype)(z)
+        return highlight_integral.half_integral(shininess, z.dtype)(z)
 
     # Points without light.
 

@@ -10,7 +10,6 @@ import contextlib
 import contextvars
 import dataclasses
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,20 +17,20 @@ import numpy as np
 from vizlight import _check, _compiled, _pool
 from vizlight.model import kernels
 from vizlight.scene import Scene
-from vizlight.shading import compiled
-from vizlight.shading.arrays import Output, columns, shade_block
-from vizlight.shading.decide import decide, plan
-from vizlight.shading.inputs import ArraySource, ShadingInputs, array_source
-from vizlight.shading.options import Model, Precision, ShadingOptions, named
-from vizlight.shading.plan import Plan
+from vizlight.scene.keywords import named
+from vizlight.shading import loops
+from vizlight.shading.arrays import Shading, columns, shade_block
+from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
+from vizlight.shading.options import Model, Precision, ShadingOptions
+from vizlight.shading.plan import Plan, decide
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from typing import TypeAlias
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, DTypeLike
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Keywords
     from vizlight.scene import View
     from vizlight.shading.options import Exponent
 
@@ -52,58 +51,6 @@ __all__ = [
     "run",
     "shade",
 ]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Shading:
-    """The light of N points, as :func:`shade` returns it.
-
-    Attributes
-    ----------
-    luminance : ndarray, shape (N,)
-        Luminance of the points.
-    valid : ndarray of bool, shape (N,)
-        False where tangents or a normal have no direction, or where a point is not finite and
-        lights or view depend on its place; such a point has the ambient light.
-    diffuse, specular : ndarray, shape (N,), or None
-        Terms before the depth cue, kd and ks included; with ``components``.
-    rgb : ndarray, shape (N, 3), or None
-        Colour where the scene has one; linear, not clipped at 1.
-    plan : Plan
-        What was computed.
-    seconds : float
-        Wall time of the run.
-    """
-
-    luminance: Array
-    valid: Bools
-    diffuse: Array | None
-    specular: Array | None
-    rgb: Array | None
-    plan: Plan
-    seconds: float
-
-    @property
-    def ambient(self) -> float:
-        """Ambient term of points that nothing occludes, one number for all."""
-        return self.plan.ambient
-
-    @property
-    def invalid(self) -> int:
-        """Number of points that could not be lit."""
-        return self.valid.size - int(np.count_nonzero(self.valid))
-
-    def part(self, _: int, rows: slice, /) -> Shading:
-        """Return the light of some points, with a share of the time."""
-        return Shading(
-            luminance=self.luminance[rows],
-            valid=self.valid[rows],
-            diffuse=None if self.diffuse is None else self.diffuse[rows],
-            specular=None if self.specular is None else self.specular[rows],
-            rgb=None if self.rgb is None else self.rgb[rows],
-            plan=self.plan,
-            seconds=self.seconds * (rows.stop - rows.start) / max(self.luminance.size, 1),
-        )
 
 
 _OBSERVER: contextvars.ContextVar[Observer | None] = contextvars.ContextVar(
@@ -127,6 +74,76 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         yield
     finally:
         _OBSERVER.reset(token)
+
+
+@named
+def plan(
+    scene: Scene,
+    /,
+    *,
+    n: int = 3,
+    k: int | None = None,
+    normals: bool = False,
+    two_sided: bool = False,
+    dtype: DTypeLike | None = None,
+    base_tangents: int | None = None,
+    shadowed: bool = False,
+    fur: float = 0.0,
+    exponent: Exponent = "compensated",
+    model: Model = "phong",
+    conditioned: bool | str | None = True,
+    components: bool = False,
+    precision: Precision | None = None,
+) -> Plan:
+    """Return what the light of a scene needs.
+
+    Parameters
+    ----------
+    scene : Scene
+    n : int, default: 3
+        Dimension of the space.
+    k : int, optional
+        Number of tangents per point. None: the manifold is the surface that has the normals.
+    normals : bool, default: False
+        Whether normals are given. With k they may condition and attenuate the light.
+    two_sided : bool, default: False
+        Whether the normals have no side: the surface is lit by ``|N . wi|``.
+    dtype : dtype, optional
+        float32 or float64. Default: ``precision``, else float64.
+    base_tangents : int, optional
+        Number of base tangents per point, k or more and less than n: the frame of the manifold in
+        which the tangents lie.
+    shadowed : bool, default: False
+        Whether t of a cos-theta shadow is given for each light.
+    fur : float, default: 0.0
+        Density in [0, 1] of fur that attenuates the light (Banks 7, 8); needs normals.
+    exponent, model, conditioned, components, precision
+        As for :func:`vizlight.shading.engine.shade`.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    TypeError
+        If the scene is not a :class:`vizlight.Scene`, or a keyword is unknown.
+    ValueError
+        If the vectors of the scene do not have n components, a depth cue has no view, or an
+        option does not fit.
+    """
+    n = _check.integer("n", n, low=2, high=int(_check.LARGEST))
+    normals = _check.boolean("normals", normals)
+    shadowed = _check.boolean("shadowed", shadowed)
+    fur = _check.number("fur", fur, low=0.0, high=1.0)
+    if base_tangents is not None:
+        base_tangents = _check.integer("base_tangents", base_tangents, low=1)
+    layout = Layout(
+        n, k, normals, base_tangents or 0, shadowed, fur,
+        two_sided=_check.boolean("two_sided", two_sided),
+    )  # fmt: skip
+    made = decide(scene, layout, ShadingOptions.of(locals()), dtype)
+    return dataclasses.replace(made, code=loops.why_not(made) or loops.WHERE_IT_PAYS)
 
 
 @named
@@ -232,24 +249,15 @@ def shade(
     start-up, within the same bounds; it rounds otherwise than NumPy.
     Memory beyond the output: about 15 MB for each thread, whatever N; 1 MB by compiled code.
     """
-    inputs = ShadingInputs(
-        points=array_source("points", points),
-        tangents=None if tangents is None else array_source("tangents", tangents),
-        normals=None if normals is None else array_source("normals", normals),
-        base_tangents=(
-            None if base_tangents is None else array_source("base_tangents", base_tangents)
-        ),
-        fur_height=None if fur_height is None else array_source("fur_height", fur_height),
-        fur=fur,
-        shadow=None if shadow is None else array_source("shadow", shadow),
-        transmittance=(
-            None if transmittance is None else array_source("transmittance", transmittance)
-        ),
-        occlusion=None if occlusion is None else array_source("occlusion", occlusion),
-        two_sided=two_sided,
-        repeat=repeat,
-    )
     chosen = ShadingOptions.of(locals())
+    optional = {
+        "tangents": tangents, "normals": normals, "base_tangents": base_tangents,
+        "fur_height": fur_height, "shadow": shadow, "transmittance": transmittance,
+        "occlusion": occlusion,
+    }  # fmt: skip
+    there: Keywords = {name: array_source(name, x) for name, x in optional.items() if x is not None}
+    at = array_source("points", points)
+    inputs = ShadingInputs(points=at, fur=fur, two_sided=two_sided, repeat=repeat, **there)
     return run(inputs, scene, chosen, block=block, progress=progress)
 
 
@@ -299,17 +307,17 @@ def run(
     made = decide(scene, inputs.layout, options, narrow=inputs.narrow)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
-    output = Output(made, count)
     # Compiled code where numba is there and the points are many enough to pay for its start-up.
-    code, reason = compiled.prepare(made, inputs)
-    made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
+    code, reason = loops.prepare(made, inputs)
+    made = dataclasses.replace(made, compiled=code is not None, code=reason or loops.IN_WORDS)
+    shading = Shading.of(made, count)
     light = shade_block if code is None else code.shade_block
     step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:
         # Overflow and NaN of single points are wanted: the terms mark them instead of warning.
         with np.errstate(all="ignore"):
-            light(made, rows, inputs, output)
+            light(made, rows, inputs, shading)
         return int(rows.stop) * repeat
 
     for done in _pool.run(work, _pool.blocks(inputs.rows, step)):
@@ -318,15 +326,7 @@ def run(
     # The compiler may have failed at the first block, which NumPy then has lit.
     if code is not None and (reason := _compiled.why_not()):
         made = dataclasses.replace(made, compiled=False, code=reason)
-    shading = Shading(
-        luminance=output.luminance,
-        valid=output.valid,
-        diffuse=output.diffuse,
-        specular=output.specular,
-        rgb=output.rgb,
-        plan=made,
-        seconds=time.perf_counter() - start,
-    )
+    shading = dataclasses.replace(shading, plan=made, seconds=time.perf_counter() - start)
     if (observer := _OBSERVER.get()) is not None:
         # An open report looks at each run, whichever filter began it.
         observer(inputs, scene, shading, options)

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import functools
-import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
@@ -15,16 +12,10 @@ import numpy as np
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import ParamSpec, TypeVar
-
     from numpy.typing import ArrayLike
     from typing_extensions import Self
 
     from vizlight._types import Given, Keywords
-
-    P = ParamSpec("P")
-    R = TypeVar("R")
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]
@@ -233,25 +224,3 @@ def _exponent(value: object) -> Exponent:
 
 def _is_auto(value: object) -> bool:
     return isinstance(value, str) and value == "auto"
-
-
-def named(function: Callable[P, R]) -> Callable[P, R]:
-    """Let the error for a keyword that a function does not have name the nearest that it has."""
-    known = list(inspect.signature(function).parameters)
-
-    @functools.wraps(function)
-    def method(*arguments: P.args, **keywords: P.kwargs) -> R:
-        for name in keywords:
-            if name not in known:
-                owner = function.__qualname__.removesuffix(".__init__")
-                raise TypeError(unknown_option(owner.rpartition(".")[2], name, known))
-        return function(*arguments, **keywords)
-
-    return method
-
-
-def unknown_option(function: str, name: str, known: list[str]) -> str:
-    """Return the message for a keyword that a function does not have."""
-    near = difflib.get_close_matches(name, known, n=1)
-    remedy = f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[1:])}"
-    return _check.message(name, f"an option of {function}", "a name that it does not have", remedy)

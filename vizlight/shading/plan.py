@@ -3,39 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from vizlight.model.kernels import DEFICIT_FROM
+import numpy as np
+
+from vizlight import _check
+from vizlight.model import brightness, kernels
+from vizlight.model.manifolds import Highlight
+from vizlight.scene import Scene, View
 from vizlight.scene.light import NO_ATTENUATION
+from vizlight.shading.inputs import Layout
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Iterator
+
+    from numpy.typing import DTypeLike
 
     from vizlight._types import Vector
-    from vizlight.scene import Scene
+    from vizlight.shading.inputs import Layout
     from vizlight.shading.options import Model, ShadingOptions
 
 #: Bytes of a block's tangents. About ten times as much memory is in use at once: little enough for
 #: the last cache, enough that threads seldom wait for the interpreter.
 BLOCK_BYTES = 3 << 19
-
-
-class Highlight(NamedTuple):
-    """The highlight of one light.
-
-    Attributes
-    ----------
-    model : {"phong", "blinn", "cylinder"}
-        Reflection model that is computed.
-    shininess : float
-        Power of the model.
-    half : vector or None
-        Unit half vector, where it is the same at all points and used as such.
-    """
-
-    model: Model
-    shininess: float
-    half: Vector | None = None
+#: Least power at which |h_N|^q may be computed from the tangential part alone: a lower one is too
+#: steep at 0.
+LEAST_POWER = 2.0
+#: A line of words, and whether it is of what is computed or of what is skipped.
+Line = tuple[str, str]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,157 +159,274 @@ class Plan:
 
     def explain(self) -> str:
         """Return what is computed, what is skipped and why, one line each."""
-        words = _Words()
-        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results, _code)
-        for part in parts:
-            part(self, words)
-        return "\n".join(
-            [f"compute  {line}" for line in words.computed]
-            + [f"skip     {line}" for line in words.skipped]
-        )
+        parts = (_manifold, _diffuse, _specular, _lights, _factors, _results)
+        lines = [line for part in parts for line in part(self)]
+        # "compute" comes before "skip"; lines of one kind keep their order.
+        lines.sort(key=lambda line: line[0])
+        return "\n".join(f"{verb:<9}{words}" for verb, words in lines)
+
+    @property
+    def cosine(self) -> str:
+        """Cosine of the lit side or sides, in the notation of the sources."""
+        return "|N.wi|" if self.two_sided else "max(0, N.wi)"
 
 
-_ISOMETRIC = "eye: the scene has no view, so it is toward (1, ..., 1), at infinity"
-
-
-class _Words:
-    """Lines about what is computed and what is skipped."""
-
-    def __init__(self) -> None:
-        self.computed: list[str] = []
-        self.skipped: list[str] = []
-
-    def add(self, computed: str | None, skipped: str | None = None) -> None:
-        if computed is not None:
-            self.computed.append(computed)
-        if skipped is not None:
-            self.skipped.append(skipped)
-
-
-def _why_not(plan: Plan, term: str) -> str:
-    """Return why the diffuse or the specular term is skipped."""
-    if getattr(plan.scene.material, term) == 0:
-        return f"material.{term} is 0"
-    if plan.unseen and plan.scene.lights:
-        return "the scene has no view; pass view= to the Scene"
-    return "no light has an intensity above 0"
-
-
-def _manifold(plan: Plan, words: _Words) -> None:
+def _manifold(plan: Plan) -> Iterator[Line]:
     share = ", times the share of each point" if plan.occluded else ""
-    words.add(f"ambient: the constant {plan.ambient:g}{share}")
-    if plan.surface:
-        sides = "both sides alike" if plan.two_sided else "the outer side only"
-        words.add(
-            f"surface: one unit normal per point, lit on {sides}",
-            "frame: a surface is lit by its normals, no tangents are needed",
-        )
-        if plan.line_exponent is not None:
-            words.add(
-                "lines beside the faces: by their own tangents, diffuse |wi_N| to the power "
-                f"{plan.line_exponent:.6g}; points of neither face the eye"
-            )
-    else:
-        words.add(
+    yield "compute", f"ambient: the constant {plan.ambient:g}{share}"
+    if not plan.surface:
+        yield (
+            "compute",
             f"frame: {plan.k} orthonormal tangent(s) per point in {plan.n}-space, "
-            f"codimension {plan.n - plan.k}"
+            f"codimension {plan.n - plan.k}",
+        )
+        return
+    sides = "both sides alike" if plan.two_sided else "the outer side only"
+    yield "compute", f"surface: one unit normal per point, lit on {sides}"
+    yield "skip", "frame: a surface is lit by its normals, no tangents are needed"
+    if plan.line_exponent is not None:
+        yield (
+            "compute",
+            "lines beside the faces: by their own tangents, diffuse |wi_N| to the power "
+            f"{plan.line_exponent:.6g}; points of neither face the eye",
         )
 
 
-def _cosine(plan: Plan) -> str:
-    return "|N.wi|" if plan.two_sided else "max(0, N.wi)"
+def _why_not(plan: Plan, term: str) -> Line:
+    """Return why the diffuse or the specular term is skipped."""
+    why = "no light has an intensity above 0"
+    if getattr(plan.scene.material, term) == 0:
+        why = f"material.{term} is 0"
+    elif plan.unseen and plan.scene.lights:
+        why = "the scene has no view; pass view= to the Scene"
+    return "skip", f"{term}: {why}"
 
 
-def _diffuse(plan: Plan, words: _Words) -> None:
+def _diffuse(plan: Plan) -> Iterator[Line]:
     if not plan.diffuse:
-        words.add(None, f"diffuse: {_why_not(plan, 'diffuse')}")
+        yield _why_not(plan, "diffuse")
     elif plan.shadowed and plan.surface:
-        words.add("diffuse: t = d/r of the cos-theta shadow in place of the cosine")
+        yield "compute", "diffuse: t = d/r of the cos-theta shadow in place of the cosine"
     elif plan.model == "cylinder":
-        words.add(
-            "diffuse: Lambert's law averaged over the visible half of a thin cylinder",
-            "compensation: the mean over the cylinder includes it",
-        )
+        yield "compute", "diffuse: Lambert's law averaged over the visible half of a thin cylinder"
+        yield "skip", "compensation: the mean over the cylinder includes it"
     else:
-        base = _cosine(plan) if plan.surface else "|wi_N|"
-        words.add(f"diffuse: {base} to the power {plan.exponent:.6g}")
+        base = plan.cosine if plan.surface else "|wi_N|"
+        yield "compute", f"diffuse: {base} to the power {plan.exponent:.6g}"
 
 
-def _specular(plan: Plan, words: _Words) -> None:
+def _specular(plan: Plan) -> Iterator[Line]:
     view = plan.scene.view
     if not plan.specular or view is None:
-        unneeded = None if plan.needs_eye else "eye: no term of the light depends on the view"
-        words.add(_ISOMETRIC if plan.unseen and plan.needs_eye else None)
-        words.add(None, f"specular: {_why_not(plan, 'specular')}")
-        words.add(None, unneeded)
+        if plan.unseen and plan.needs_eye:
+            yield "compute", "eye: the scene has no view, so it is toward (1, ..., 1), at infinity"
+        yield _why_not(plan, "specular")
+        if not plan.needs_eye:
+            yield "skip", "eye: no term of the light depends on the view"
         return
-    _highlights(plan, words)
-    if view.parallel:
-        words.add(None, "eye: the parallel view has one direction for all points")
-    else:
-        words.add("eye: its direction and split once per point, shared by all lights")
-
-
-def _highlights(plan: Plan, words: _Words) -> None:
-    """Add how highlights are computed."""
     shininess = plan.scene.material.shininess
-    if plan.model == "cylinder":
-        how = "averaged over the visible half of a thin cylinder"
-    else:
-        power = shininess / 2 if plan.model == "blinn" else shininess
-        multiplies = power == int(power) and power <= DEFICIT_FROM
-        how = "by multiplication" if multiplies else "by a power"
-    words.add(f"specular: {plan.model}, shininess {shininess:g} {how}")
+    yield "compute", f"specular: {plan.model}, shininess {shininess:g}"
     fixed = sum(h.half is not None for h in plan.highlights)
     if fixed:
-        words.add(f"half vector: one for all points for {fixed} light(s)")
+        yield "compute", f"half vector: one for all points for {fixed} light(s)"
     if not plan.splits_eye:
-        words.add(None, "eye: no split per point, all half vectors are fixed")
+        yield "skip", "eye: no split per point, all half vectors are fixed"
+    if view.parallel:
+        yield "skip", "eye: the parallel view has one direction for all points"
+    else:
+        yield "compute", "eye: its direction and split once per point, shared by all lights"
 
 
-def _lights(plan: Plan, words: _Words) -> None:
+def _lights(plan: Plan) -> Iterator[Line]:
     for i, light in enumerate(plan.scene.lights):
         near = light.position is not None
         kind = "one direction per point" if near else "one direction for all points"
-        words.add(f"light {i}: {kind}, intensity {light.intensity:g}")
+        yield "compute", f"light {i}: {kind}, intensity {light.intensity:g}"
         if light.attenuation != NO_ATTENUATION:
-            words.add(f"light {i}: attenuation {light.attenuation} of the distance")
+            yield "compute", f"light {i}: attenuation {light.attenuation} of the distance"
         elif near:
-            words.add(None, f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}")
+            yield "skip", f"light {i}: attenuation, its coefficients are {NO_ATTENUATION}"
 
 
-def _factors(plan: Plan, words: _Words) -> None:
-    """Add what multiplies the light of each light."""
+def _factors(plan: Plan) -> Iterator[Line]:
+    """Yield what multiplies the light of each light."""
     if plan.conditioned:
-        side = "t = d/r in place" if plan.shadowed else _cosine(plan)
-        words.add(f"self-shadow: {side} of the surface's normals, a factor for each light")
+        side = "t = d/r in place" if plan.shadowed else plan.cosine
+        yield "compute", f"self-shadow: {side} of the surface's normals, a factor for each light"
     elif plan.base:
-        words.add(
+        yield (
+            "compute",
             f"base tangents: brightness |wi_N| to the power {plan.base_exponent:.6g} of the "
-            f"{plan.base}-manifold in which the tangents lie, a factor for each light"
+            f"{plan.base}-manifold in which the tangents lie, a factor for each light",
         )
     elif not plan.surface:
-        words.add(None, "self-shadow: no surface conditions the tangents")
+        yield "skip", "self-shadow: no surface conditions the tangents"
     if plan.dimmed:
-        words.add("transmittance: a share of each light for each point, as inside a bundle")
+        yield "compute", "transmittance: a share of each light for each point, as inside a bundle"
     if plan.fur:
-        words.add(f"fur: density {plan.fur:g}, on the way in for each light and out once")
+        yield "compute", f"fur: density {plan.fur:g}, on the way in for each light and out once"
 
 
-def _results(plan: Plan, words: _Words) -> None:
+def _results(plan: Plan) -> Iterator[Line]:
     cue = plan.scene.depth_cue
-    if cue is not None:
-        words.add(f"depth cue: {'smooth' if cue.smooth else 'linear'}")
+    if cue is None:
+        yield "skip", "depth cue: the scene has none"
     else:
-        words.add(None, "depth cue: the scene has none")
+        yield "compute", f"depth cue: {'smooth' if cue.smooth else 'linear'}"
     if plan.colored:
-        words.add("rgb: three channels")
+        yield "compute", "rgb: three channels"
     else:
-        words.add(None, "rgb: nothing in the scene has a colour")
-
-
-def _code(plan: Plan, words: _Words) -> None:
+        yield "skip", "rgb: nothing in the scene has a colour"
     if plan.compiled:
-        words.add(f"code: {plan.code}")
+        yield "compute", f"code: {plan.code}"
     elif plan.code:
-        words.add(None, f"compiled code: {plan.code}")
+        yield "skip", f"compiled code: {plan.code}"
+
+
+def decide(
+    scene: Scene,
+    layout: Layout,
+    options: ShadingOptions,
+    dtype: DTypeLike | None = None,
+    *,
+    narrow: bool = False,
+) -> Plan:
+    """Return the plan for inputs of a layout; see :func:`plan`.
+
+    Inputs that are ``narrow`` have no more digits than float32.
+    """
+    _check.instance("scene", scene, Scene)
+    dtype = options.precision if dtype is None else dtype
+    kind = _precision((np.float32 if narrow else np.float64) if dtype is None else dtype)
+    _check_layout(layout, options)
+    _check_scene(scene, layout.n)
+    n, surface = layout.n, layout.k is None
+    k = n - 1 if layout.k is None else layout.k
+    unseen = scene.view is None
+    scene, diffuse, specular = _needed(scene, layout)
+    return Plan(
+        n=n,
+        k=k,
+        dtype=kind,
+        scene=scene,
+        options=options,
+        exponent=1.0 if options.model == "cylinder" else _exponent(options, k, n),
+        model=options.model,
+        highlights=_highlights(scene, options.model),
+        surface=surface,
+        two_sided=layout.two_sided,
+        conditioned=bool(options.conditioned and layout.normals and not surface),
+        base=layout.base,
+        base_exponent=(
+            brightness.exponent(layout.base, n)
+            if layout.base and options.exponent == "compensated"
+            else 1.0
+        ),
+        line_exponent=_exponent(options, 1, n) if layout.mixed else None,
+        shadowed=layout.shadowed,
+        dimmed=layout.dimmed and (diffuse or specular),
+        occluded=layout.occluded,
+        fur=layout.fur if diffuse or specular else 0.0,
+        diffuse=diffuse,
+        specular=specular,
+        unseen=unseen,
+    )
+
+
+def _highlights(scene: Scene, model: Model) -> tuple[Highlight, ...]:
+    """Return how the highlight of each light is computed.
+
+    Where light and eye are at infinity all points share the half vector. Blinn's model then needs
+    no split of the eye.
+    """
+    shininess = scene.material.shininess
+    fixed = model == "blinn" and shininess >= LEAST_POWER
+    return tuple(
+        Highlight(model, shininess, _half(scene, i) if fixed else None)
+        for i in range(len(scene.lights))
+    )
+
+
+def _half(scene: Scene, index: int) -> Vector | None:
+    """Return the half vector that all points share, or None."""
+    light, view = scene.lights[index], scene.view
+    if view is None or not view.parallel or light.direction is None or view.direction is None:
+        return None
+    unit, _ = kernels.unit(np.array([light.direction, view.direction], dtype=np.float64).T)
+    both = unit[:, 0] + unit[:, 1]
+    size = float(np.linalg.norm(both))
+    # Of nearly opposite directions the half vector is mere rounding.
+    return None if size < 1e-6 else tuple((both / size).tolist())
+
+
+def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
+    """Return the scene with a view and the lights that have an effect, and the terms they need."""
+    lights = tuple(light for light in scene.lights if light.intensity > 0)
+    specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
+    diffuse = bool(scene.material.diffuse > 0 and lights)
+    view = View.isometric(layout.n) if scene.view is None else scene.view
+    fixed = tuple(light.seen_from(view) for light in lights) if diffuse or specular else ()
+    return scene.replace(lights=fixed, view=view), diffuse, specular
+
+
+def _exponent(options: ShadingOptions, k: int, n: int) -> float:
+    """Return the exponent of the diffuse term of a k-manifold in n-space."""
+    if isinstance(options.exponent, str):
+        return brightness.exponent(k, n)
+    return options.exponent
+
+
+def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
+    for kind in (np.dtype(np.float32), np.dtype(np.float64)):
+        # Comparison refuses what is no type.
+        if isinstance(dtype, str | type | np.dtype) and kind == dtype:
+            return kind
+    raise ValueError(_check.message("dtype", "float32 or float64", _check.describe(dtype)))
+
+
+def _check_layout(layout: Layout, options: ShadingOptions) -> None:
+    """Check that tangents, normals and options go together."""
+    n, k, normals, base, _, fur, *_ = layout
+    if k is None and not normals:
+        raise ValueError(
+            _check.message("tangents", "tangents (k=) or normals (normals=True)", "neither")
+        )
+    if k is not None and not 0 < _check.integer("k", k, low=1) < n:
+        raise ValueError(_check.message("k", f"fewer than n = {n} tangents per point", k))
+    if options.model == "cylinder" and (k, n) != (1, 3):
+        got = f"a surface of {n}-space" if k is None else f"{k} tangent(s) per point in {n}-space"
+        raise ValueError(not_a_line(got))
+    if base and (k is None or normals):
+        expected = "tangents (k=) and no normals beside it"
+        got = "normals" if normals else "neither"
+        raise ValueError(_check.message("base_tangents", expected, got))
+    if base and not (n - 1 if k is None else k) <= base < n:
+        expected = f"from k = {k} to less than n = {n} tangents per point"
+        raise ValueError(_check.message("base_tangents", expected, base))
+    if _check.number("fur", fur, low=0.0, high=1.0) and not normals:
+        raise ValueError(_check.message("normals", "normals, across which fur stands", None))
+
+
+def not_a_line(got: str) -> str:
+    """Return the message for a cylinder's light on what is not a line in 3-space."""
+    remedy = "use model='blinn' for other manifolds"
+    return _check.message("model", "lines in 3-space for 'cylinder'", got, remedy)
+
+
+def _check_scene(scene: Scene, n: int) -> None:
+    """Check that the scene fits points of n components."""
+    if scene.n not in (None, n):
+        raise ValueError(
+            _check.message(
+                "scene",
+                f"vectors of {n} components, as the points have",
+                f"{scene.n} components",
+                f"for light in {scene.n}-space name the arrays by positions= and tangents=",
+            )
+        )
+    if scene.view is None and scene.depth_cue is not None:
+        expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
+        raise ValueError(_check.message("view", expected, None, remedy))
+    cue = scene.depth_cue
+    if cue is not None and (cue.front is None or cue.back is None):
+        raise ValueError(_check.message("depth_cue", "front= and back=", cue))

@@ -14,10 +14,11 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
 from vizlight.scene import Scene
+from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions, named
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
 from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.shading.decide import not_a_line
 from vizlight.shading.inputs import ShadingInputs, Sides
+from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
 from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
