@@ -201,8 +201,8 @@ def hits(
 ) -> tuple[Indices, Indices, Array, bool]:
     """Return ray, triangle and distance of every hit, and whether shared edges may be hit twice.
 
-    Parallel rays are projected along their direction, which takes about 2 microseconds each. Of
-    other rays VTK takes about 10 microseconds for each hit, Embree about 0.3.
+    Parallel rays are projected along their direction, which takes about 2 microseconds each. Other
+    rays take about 1 microsecond by Embree and 11 by VTK, with a hit each.
     """
     if len(way) and np.all(way == way[0]):
         found = parallel_rays.hits(body.vertices, body.triangles, start, way[0])
