@@ -416,7 +416,7 @@ def test_components_of_vectors_are_joined(folder, run):
         ("project torus.vtp --light 1,2,3,4,5", "--light: expected three numbers x,y,z or 4"),
         ("project torus.vtp --view 1,2,3,4,5", "--view: expected three numbers x,y,z or 4"),
         ("project torus.vtp --distance 0.1", "expected"),
-        ("light flow.vti --light 10,95", "altitude: expected a number from -90 to 90"),
+        ("light flow.vti --light 10,95", "altitude: expected degrees from -90 to 90"),
         ("light flow.vti --light nan,1,2", "--light: expected three numbers"),
         ("light flow.vti --slice 1,2", "--slice: expected NORMAL:OFFSET"),
         ("light flow.vti --slice x:1 --contour r", "--slice: expected no --contour beside it"),

@@ -11,7 +11,6 @@ from vizlight.cli import scenes
 from vizlight.cli.arguments import GROUPS, Color, Common, Flag, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.options import keywords, takes
-from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
@@ -120,9 +119,8 @@ def relief(
             made.scalars = "rgb" if look.colored else "luminance"
         elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
             made.clim = (0.0, round(white, 3))
-            made.explain = lambda _: say(
-                f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
-            )
+            text = f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
+            made.tell.append(lambda _: text)
         return made
 
     return carry_out(files, job, common.out, "relief", shape)
@@ -269,7 +267,7 @@ def project(files: list[Path], /, *, how: object, common: Common) -> int:
         rows = found.point_data.get(asked.positions or "")
         n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
         lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
-        return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
+        return Job(lit, asked.name, look, look.camera(lit), kind=None, suffix=".vtk")
 
     return carry_out(files, job, common.out, "projected", Part())
 
