@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Light
 
 
-@takes("streamlines", "Streamlines")
+@takes("streamlines", "Streamlines", example="flow.vtu --vectors V --model cylinder --diffuse 0.8")
 def streamlines(
     files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
 ) -> int:
@@ -64,7 +64,12 @@ def streamlines(
 
 
 # Heights are exaggerated, and lit, as they are shown.
-@takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
+@takes(
+    "relief_shadow",
+    "Relief",
+    example="terrain.dem --depth 60 --light 315,20",
+    without=("exaggeration", "lit"),
+)
 def relief(
     files: list[Path],
     /,
@@ -119,14 +124,16 @@ def relief(
             made.scalars = "rgb" if look.colored else "luminance"
         elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
             made.clim = (0.0, round(white, 3))
-            text = f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
+            text = (
+                f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
+            )
             made.tell.append(lambda _: text)
         return made
 
     return carry_out(files, job, common.out, "relief", shape)
 
 
-@takes("sky", "Sky", up="sky_up")
+@takes("sky", "Sky", example="terrain.dem --error 0.01 -o sky.png", up="sky_up")
 def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the share of a uniform sky that each point sees.
 
@@ -189,7 +196,7 @@ def _level_light(lights: Sequence[Light]) -> float:
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-@takes("fur", "Fur")
+@takes("fur", "Fur", example="bunny.ply --absorption 0.7 --fibres 200000")
 def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
@@ -216,7 +223,9 @@ def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
 
 
 # The tolerance is for solids, which no file holds.
-@takes("isoluminance", "Contours", without=("tolerance",))
+@takes(
+    "isoluminance", "Contours", example="part.stl --levels 8 --specular 0", without=("tolerance",)
+)
 def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
@@ -243,7 +252,7 @@ def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common)
     return carry_out(files, job, common.out, "contours", shape)
 
 
-@takes("project", "Projection", light="when")
+@takes("project", "Projection", example="torus.vtp --rotation xw:0.5 --distance 3", light="when")
 def project(files: list[Path], /, *, how: object, common: Common) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 

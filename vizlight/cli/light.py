@@ -44,7 +44,12 @@ CONDITIONED = ("shape", "value")
 
 
 # Places in n-space need lights and an eye in n-space, which scripts have; --sky is an occlusion.
-@takes("illuminate", "Shading", without=("positions", "occlusion"))
+@takes(
+    "illuminate",
+    "Shading",
+    example="flow.vtu --contour Temp --tangents V --conditioned",
+    without=("positions", "occlusion"),
+)
 def light(
     files: list[Path],
     /,
@@ -88,7 +93,12 @@ def light(
     return carry_out(files, build, common.out, "lit", target)
 
 
-@takes("illuminate", "Shading", without=("positions",))
+@takes(
+    "illuminate",
+    "Shading",
+    example="flow.vtu --contour Temp --tangents V --conditioned",
+    without=("positions",),
+)
 def view(
     file: Path,
     /,

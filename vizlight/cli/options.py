@@ -14,23 +14,33 @@ from dataclasses import field, fields, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Union, get_type_hints
 
-from cyclopts import Group, Parameter
+from cyclopts import App, Group, Parameter
 
 from vizlight import _words
+from vizlight._version import __version__
 from vizlight._words import message
 from vizlight.cli.arguments import fraction, numbers, plane
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from typing import ParamSpec
 
     from vizlight._types import Foreign, Keywords
-
-    P = ParamSpec("P")
 
     #: What a name of a module stands for: a function, a value, or a module and a name there.
     Meaning = ast.AST | tuple[str, str]
 
+#: Words that ask for help.
+HELP = frozenset({"--help", "-h"})
+app = App(
+    name="vizlight",
+    help="Light that makes scientific data legible.",
+    # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
+    help_format="plaintext",
+    help_flags=sorted(HELP),
+    version=__version__,
+    result_action="return_value",
+    suppress_keyboard_interrupt=False,
+)
 ROOT = Path(__file__).parents[1]
 #: Types that text can be read as, by their names in annotations, beside those that are choices. A
 #: filter's option that has none of them is left to scripts.
@@ -141,8 +151,8 @@ def words(*parts: Foreign) -> list[str]:
 
 
 def takes(
-    filter_: str, group: str, *, without: tuple[str, ...] = (), **renamed: str
-) -> Callable[[Callable[P, int]], Callable[P, int]]:
+    filter_: str, group: str, *, example: str, without: tuple[str, ...] = (), **renamed: str
+) -> Callable[[Callable[..., int]], Callable[..., int]]:
     """Let a command take the options of a filter as ``how``, and groups of others by their class.
 
     Parameters
@@ -151,13 +161,15 @@ def takes(
         Name of a public filter, whose signature and documentation list its options.
     group : str
         Heading of the filter's options in the help.
+    example : str
+        Words of a call that the help ends with.
     without : tuple of str
         Options that are left to scripts.
     **renamed : str
         Other names of options on the command line.
     """
 
-    def decorate(command: Callable[P, int]) -> Callable[P, int]:
+    def decorate(command: Callable[..., int]) -> Callable[..., int]:
         own = arguments_of(filter_, without=without, renamed=renamed)
         Parameter(name="*", group=Group(group, sort_key=1))(own)
         command.__annotations__["how"] = own
@@ -167,7 +179,12 @@ def takes(
             for name, one in signature.parameters.items()
             if one.kind is one.KEYWORD_ONLY
         }
-        return command
+        name = command.__name__
+        return app.command(
+            command,
+            usage=f"Usage: vizlight {name} FILES [OPTIONS]",
+            help_epilogue=f"Example: vizlight {name} {example}",
+        )
 
     return decorate
 
@@ -207,8 +224,12 @@ def _names(module: str) -> dict[str, Meaning]:
     found: dict[str, Meaning] = {}
     if not (module.startswith("vizlight.") and path.is_file()):
         return found
-    # What is inside others comes later, and does not hide a name of the module.
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    # What stands below ``if`` is for types alone.
+    for node in (
+        *body,
+        *(one for outer in body if isinstance(outer, ast.If) for one in outer.body),
+    ):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(node.name, node)
         elif isinstance(node, ast.Assign):

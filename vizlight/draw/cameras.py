@@ -98,18 +98,18 @@ def camera_on(
 
 
 def outermost(
-    points: ArrayLike,
+    mesh: Mesh,
     direction: Sequence[float] = (1.0, 1.0, 1.0),
     *,
     up: Sequence[float] | None = None,
     aspect: float = 1.0,
 ) -> Array:
-    """Return the few points of many on which the camera of :func:`camera_on` depends.
+    """Return the few points of a mesh on which the camera of :func:`camera_on` depends.
 
     Parameters
     ----------
-    points : array_like, shape (n, 3)
-        Points; any that are not finite are ignored.
+    mesh : mesh
+        Mesh; points that are not finite are ignored.
     direction, up, aspect
         As for :func:`camera_on`, which gives the same camera for a mesh of all points and for one
         of the points that are returned, also if these come from several parts.
@@ -124,7 +124,7 @@ def outermost(
     TypeError, ValueError
         If a value does not fit.
     """
-    found = np.asarray(points).reshape(-1, 3)
+    found = np.concatenate([np.empty((0, 3)), *_coordinates(mesh)])
     found = found[np.all(np.isfinite(found), axis=1)]
     if not len(found):
         return found
