@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import inspect
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -46,8 +47,6 @@ class Job:
     ----------
     lit
         Step that lights.
-    name
-        Name of the array that it makes.
     look, camera
         How the picture is seen.
     shown
@@ -75,7 +74,6 @@ class Job:
     """
 
     lit: Step
-    name: str
     look: Look
     camera: Step
     shown: Step | None = None
@@ -95,6 +93,13 @@ class Job:
         if color.scalars is not None:
             self.shown, self.title = tinted(self.lit, self.name, data, color)
             self.scalars, self.color = TINT, color
+
+    @property
+    def name(self) -> str:
+        """Name of the array that the filter makes."""
+        filter_ = getattr(vizlight, self.lit.path.removeprefix("vizlight."))
+        default = inspect.signature(filter_).parameters["name"].default
+        return str(self.lit.keywords.get("name", default))
 
     @property
     def light(self) -> str:

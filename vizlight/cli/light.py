@@ -176,7 +176,7 @@ def _builder(
         # The lit mesh shares the arrays of the file; a refined one is new.
         source = mesh if refine else Step("", ".copy", mesh, deep=False)
         lit = look.step("lit", lights, source, scene, **given, **place)
-        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
+        made = Job(lit, look, camera, suffix=".vtp" if taken or refine else "")
         made.kind = made.kind if refine else mesh
         made.source = [str(path), *recipe]
         made.tint(data, color)
