@@ -161,6 +161,8 @@ def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, run):
     )
     assert (code, err, shell) == (0, "", [])
     assert "page     kept.html" in out
+    code, script, _ = run("view ball.vtp --script")
+    assert (code, shell, 'live_html(lit, None, "ball.html"' in script) == (0, [], True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
 
 

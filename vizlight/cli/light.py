@@ -124,7 +124,9 @@ def view(
     if wrong := [path for path in pages if path.suffix.lower() != HTML]:
         raise FileError(message("output", f"a name that ends in {HTML}", f"'{wrong[0]}'"))
     folder = None
-    if not pages:
+    if not pages and common.out.script:
+        pages = [Path(f"{file.stem}{HTML}")]
+    elif not pages:
         # Only this user may look into the folder.
         folder = Path(tempfile.mkdtemp(prefix="vizlight-"))
         pages = [folder / f"{file.stem}{HTML}"]
@@ -137,7 +139,8 @@ def view(
     finally:
         if folder is not None and not pages[0].exists():
             folder.rmdir()
-    if code == OK and browser and not webbrowser.open(pages[0].resolve().as_uri()):
+    opens = browser and code == OK and not common.out.script
+    if opens and not webbrowser.open(pages[0].resolve().as_uri()):
         complain(f"no browser was found; open '{pages[0]}' in one")
     return code
 
