@@ -40,9 +40,9 @@ def test_good_values(validate, value, expected):
         (lambda n, v: _check.number(n, v, low=0, high=1), 2, ValueError, "from 0 to 1, got 2"),
         (_check.number, np.inf, ValueError, "a finite number, got inf"),
         # Numbers beyond the largest, and beyond what Python writes.
-        (_check.number, 10**5000, ValueError, "a finite number, got an integer of more"),
+        (lambda n, v: _check.number(n, 10**v), 5000, ValueError, "got an integer of more digits"),
         (_check.number, 10**400, ValueError, "a finite number, got 1000000"),
-        (_check.number, Fraction(10**5000, 7), ValueError, "a finite number, got a number of more"),
+        (lambda n, v: _check.number(n, Fraction(10**v, 7)), 5000, ValueError, "a number of more"),
         (_check.number, np.ma.masked, TypeError, "a number, got an array"),
         (_check.number, True, TypeError, "a number, got True"),
         (_check.number, [1.0], TypeError, "a number"),
