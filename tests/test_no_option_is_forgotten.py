@@ -137,7 +137,7 @@ class Glsl(Points):
     def __call__(self, scene, options):
         _, plan = self.plan(scene, options)
         lights = [light.seen_from(scene.view) for light in scene.lights]
-        held = program.numbers(scene, lights, shown=program.Shown(), fur=0.0, tallest=1.0)
+        held = program.numbers(scene, lights, fur=0.0, tallest=1.0)
         # The renderer holds the colours of the material.
         colors = scene.material.color, scene.material.specular_color
         return program.write(plan, turned=False), held, colors

@@ -44,13 +44,6 @@ def test_a_mesh_is_centred_as_it_is_seen(direction):
         render.camera_on(pv.PolyData())
 
 
-def test_zoom_halves_the_distance():
-    bounds = (0, 1, 0, 1, 0, 1)
-    one, two = (render.camera_on(bounds, zoom=zoom) for zoom in (1, 2))
-    assert two.distance == pytest.approx(one.distance / 2)
-    assert two.parallel_scale == pytest.approx(one.parallel_scale / 2)
-
-
 def test_light_over_the_shoulder_is_above_left_of_the_eye():
     camera = render.camera_on((0, 1, 0, 1, 0, 1), (0, -1, 0))
     x, y, z = render.over_shoulder(camera)
@@ -133,8 +126,3 @@ def test_a_camera_copies_no_mesh():
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert peak < 2.5 * 65_536 * 10 * 8
-
-
-def test_the_default_direction_is_a_diagonal():
-    default, diagonal = (render.camera_on(pv.Cube(), *way) for way in ((), ((2, 2, 2),)))
-    np.testing.assert_allclose(default.position, diagonal.position)

@@ -26,7 +26,7 @@ def made(shape, dialect, *, turned=False):
     """Return the replacements of a dialect by stage, and what the program is given."""
     own = plan(SCENE, **SHAPES[shape])
     written = program.write(own, turned=turned)
-    given = program.numbers(SCENE, SCENE.lights, shown=program.Shown(), fur=own.fur, tallest=0.0)
+    given = program.numbers(SCENE, SCENE.lights, fur=own.fur, tallest=0.0)
     texts = {}
     for stage, mark, text in dialect.replacements(written, given):
         texts.setdefault(stage, {})[mark] = text

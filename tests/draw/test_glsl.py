@@ -111,9 +111,7 @@ def run(body, given):
 
 def uniforms(scene, own, data):
     lights = [light.seen_from(scene.view) for light in scene.lights]
-    found = program.numbers(
-        scene, lights, shown=program.Shown(), fur=own.fur, tallest=1.0, data=data
-    )
+    found = program.numbers(scene, lights, fur=own.fur, tallest=1.0, data=data)
     values = {}
     for name, kind, value, space in found:
         numbers = np.asarray(value, dtype=np.float64)

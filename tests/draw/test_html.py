@@ -5,16 +5,15 @@ from __future__ import annotations
 import base64
 import functools
 import http.server
-import importlib.util
 import io
 import json
 import os
 import re
-import shutil
 import threading
 import zlib
 from pathlib import Path
 
+import browsers
 import firefox
 import numpy as np
 import pytest
@@ -22,6 +21,7 @@ import pyvista as pv
 from fields import half_known, several_kinds, swatches
 from lamps import HEADLIT, SHINY, shiny
 from PIL import Image
+from shapes import torus, winding
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
@@ -31,12 +31,7 @@ from vizlight.filters import key
 
 pytestmark = pytest.mark.opengl
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
-SOFTWARE += ["--enable-unsafe-swiftshader"]
-MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is None]
-MISSING += [] if CHROMIUM else ["chromium"]
-needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+needs_browser = browsers.needed()
 #: The checker of the npm package axe-core, of the viewer's recipe or of a variable.
 AXE = Path(vizlight.__file__).parent / "draw/web/node_modules/axe-core/axe.min.js"
 AXE = Path(os.environ.get("VIZLIGHT_AXE", AXE))
@@ -46,30 +41,6 @@ WIDE = {"viewport": {"width": 1200, "height": 1000}}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
-
-
-def torus(centre=(0.0, 0.0, 0.0)):
-    """Return a surface in float64 with a field of tangents."""
-    angles = np.linspace(0, 2 * np.pi, 151)
-    u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
-    ring = 1 + 0.4 * np.cos(v)
-    rows = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
-    grid = pv.StructuredGrid()
-    grid.points, grid.dimensions = rows, (151, 151, 1)
-    mesh = grid.extract_surface(algorithm=None)
-    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
-    mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)
-    mesh["height"] = np.asarray(mesh.points)[:, 2] - centre[2]
-    return mesh
-
-
-def winding():
-    """Return lines on the same torus, with its normals."""
-    u = np.linspace(0, 2 * np.pi * 40, 12001)
-    ring, v = 1 + 0.4 * np.cos(u / 40), u / 40
-    mesh = pv.MultipleLines(np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1))
-    mesh["n"] = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
-    return mesh
 
 
 AWAY = (5e6, -5e6, 2e6)
@@ -92,27 +63,12 @@ CASES = {
         lambda: several_kinds(120)[0], Scene(lights=[FAR, NEAR], material=SHINY), {}
     ),
     "far from the origin": (
-        lambda: torus(AWAY),
+        lambda: torus(centre=AWAY),
         Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)], material=SHINY),
         {"normals": "n"},
     ),
 }  # fmt: skip
 COLORED = {"compensated with colours": {"scalars": "height", "cmap": "plasma"}}
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        yield play.chromium
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    made = chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
-    yield made
-    made.close()
 
 
 @pytest.fixture(scope="module")
@@ -129,13 +85,7 @@ BARE += " #panel, h1, #legend, #triad, #frames, #notice { display: none !importa
 
 def opened(browser, path, *, bare=True, **options):
     """Return a page, without its panel, and what it has asked for and complained of."""
-    page = browser.new_page(**({"viewport": SIZE} | options))
-    seen = []
-    page.on("request", lambda request: seen.append(request.url))
-    page.on("console", lambda message: seen.append(message.text))
-    page.on("pageerror", lambda error: seen.append(str(error)))
-    page.goto(path.as_uri())
-    page.wait_for_selector("body[data-ready]")
+    page, seen = browsers.opened(browser, path, **({"viewport": SIZE} | options))
     if bare:
         page.evaluate(
             """(text) => {
@@ -385,7 +335,7 @@ def test_axe_finds_nothing(scheme, browser, tmp_path):
     mesh["sky"] = np.ones(mesh.n_points)
     scene = presets.shape()
     for width, title, frames in ((1200, "", False), (400, "A ring", True)):
-        meshes = {0.5: mesh, 1.5: torus((1, 0, 0))} if frames else mesh
+        meshes = {0.5: mesh, 1.5: torus(centre=(1, 0, 0))} if frames else mesh
         options = {} if frames else {"scalars": "height", "occlusion": "sky"}
         path = vizlight.live_html(meshes, scene, tmp_path / "a.html", title=title, **options)
         look = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
@@ -631,7 +581,9 @@ def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path)
 @needs_browser
 def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
     path = plain_page(tmp_path)
-    bare = chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"])
+    bare = chromium.launch(
+        executable_path=browsers.CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"]
+    )
     page = bare.new_page(viewport=SIZE)
     page.goto(path.as_uri())
     assert "needs WebGL 2" in page.get_by_role("alert").inner_text()

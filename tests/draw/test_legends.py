@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import HEADLIT
 
 import vizlight
-from vizlight import Scene, View, presets
-from vizlight.draw import legends, render
+from vizlight import View, presets
+from vizlight.draw import render
 
 pytestmark = pytest.mark.opengl
 SIZE = (400, 300)
@@ -62,6 +61,17 @@ def test_title_numbers_and_bar_stand_apart(size):
     assert groups(ink[first : first + 6].any(axis=0)) >= 3
 
 
+def test_bars_stand_above_one_another():
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    for name in (NAME, f"another {NAME}"):
+        ball = pv.Sphere()
+        ball[name] = ball.points[:, 2]
+        plotter.vizlight.add_mesh(ball, scalars=name)
+    low, high = (bar.GetPosition()[1] for bar in plotter.scalar_bars.values())
+    assert high >= low + plotter.scalar_bars[NAME].GetHeight()
+    plotter.close()
+
+
 def test_a_bar_fits_its_subplot():
     ink, _ = inked((800, 300), holed, columns=2)
     assert not ink[:, 399:].any()
@@ -77,16 +87,6 @@ def test_what_is_asked_for_stays():
     _, bar = inked((400, 300), far, **asked)
     assert (bar.GetPosition()[0], bar.GetWidth(), bar.GetNumberOfLabels()) == (0.1, 0.3, 2)
     assert (bar.GetLabelFormat(), bar.GetTitle()) == ("%.1f", NAME)
-
-
-def test_no_data_is_named():
-    _, bar = inked((900, 600), holed)
-    assert legends.NO_DATA_NAME in bar.GetNanAnnotation()
-
-
-def test_words_of_a_truth_value_stand_alone():
-    _, bar = inked((400, 300), lambda heights: heights > 0, "up")
-    assert not bar.GetDrawTickLabels()
 
 
 def picture(**options):
@@ -170,9 +170,3 @@ def test_pictures_have_keys():
     # All of it in one corner.
     assert np.ptp(rows) < 100
     assert np.ptp(columns) < 140
-
-
-def test_a_bar_has_a_word_at_each_end():
-    bar = presets.key(presets.value(), clim=(2, 70))
-    assert list(bar.field_data["words"]) == ["2", "70"]
-    assert list(presets.key(Scene(**HEADLIT)).field_data["words"]) == ["a ball in this light"]

@@ -7,6 +7,7 @@ import pytest
 import pyvista as pv
 from fields import several_kinds
 from lamps import shiny
+from shapes import helix
 
 import vizlight
 from vizlight import Light, Scene, View, render
@@ -18,11 +19,6 @@ pytestmark = pytest.mark.opengl
 def one_sample_per_pixel(monkeypatch):
     """Draw pixels that are covered or not, whose colours can be compared."""
     monkeypatch.setattr(pv.global_theme, "multi_samples", 1)
-
-
-def helix(count):
-    t = np.linspace(0, 6 * np.pi, count)
-    return pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.06 - 0.6], 1))
 
 
 def picture(mesh, **options):
@@ -68,17 +64,6 @@ def test_faces_lines_and_vertices_have_the_light_of_their_points(sky):
     # What is drawn of the lines and the vertices is a share that matters.
     faces = picture(vizlight.illuminate(several_kinds(120)[1][0], lit_by(camera)), **look)
     assert np.mean((expected > 0) & (faces == 0)) > 0.004
-
-
-def test_light_is_that_of_the_record_whatever_the_camera():
-    mesh = pv.Sphere(theta_resolution=150, phi_resolution=150)
-    aside = render.camera_on((-1, 1, -1, 1, -1, 1), (-0.2, 1, 0.3))
-    for scene in (SCENE, SCENE.replace(material=shiny(color="tan"))):
-        lit = vizlight.illuminate(mesh, scene)
-        name = "rgb" if scene.colored else "luminance"
-        options = {"camera": aside, "scalars": name}
-        error = np.abs(picture(lit, **options) - picture(lit, light="points", **options))
-        assert 0 < error.max() <= 4
 
 
 def test_tinted_pictures_are_right_between_the_points():

@@ -109,15 +109,6 @@ def test_rotation_comes_before_the_turn(torus, tmp_path):
 
 
 @pytest.mark.opengl
-def test_progress_and_names(torus, tmp_path, capsys):
-    movie.turn(
-        torus, tmp_path / "t.png", scene=SCENE, frames=2, picture=SMALL, name="glow",
-        progress_bar=True,
-    )  # fmt: skip
-    assert "turn" in capsys.readouterr().err
-
-
-@pytest.mark.opengl
 def test_without_a_scene_the_active_scalars_are_drawn(torus, tmp_path):
     torus["temp"] = 300 + 50 * np.asarray(torus["position"])[:, 0]
     torus.cell_data["number"] = np.full(torus.n_cells, 7)
@@ -163,23 +154,6 @@ def test_points_behind_the_eye_are_told_of_once(torus, tmp_path):
     with pytest.raises(ValueError, match="points before the eye's hyperplane"):
         movie.turn(torus, tmp_path / "u.png", scene=SCENE, frames=2, distance=0.7)
     assert not list(tmp_path.glob("u*"))
-
-
-@pytest.mark.opengl
-def test_a_failure_leaves_whole_files_only(torus, tmp_path, monkeypatch):
-    real, calls = movie.project, []
-
-    def project_twice(*arguments, **options):
-        calls.append(1)
-        if len(calls) > 2:
-            raise ValueError("the disk is on fire")
-        return real(*arguments, **options)
-
-    monkeypatch.setattr(movie, "project", project_twice)
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
-    with pytest.raises(ValueError, match="on fire"):
-        movie.turn(torus, tmp_path / "t.png", scene=SCENE, frames=4, camera=camera, picture=SMALL)
-    assert [p.name for p in sorted(tmp_path.iterdir())] == ["t_0000.png", "t_0001.png"]
 
 
 class Writer:
@@ -284,7 +258,7 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
         ("t.png", {"picture": {"camera": 1}}, ValueError, "picture: expected no camera"),
         ("t.png", {"picture": "abc"}, TypeError, "picture: expected a mapping, got 'abc'"),
         ("t.png", {"picture": {"foo": 1}}, ValueError, "picture: expected options of a picture"),
-        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of turn, got"),
+        ("t.png", {"rotate": 1}, TypeError, "rotate: expected an option of project, got"),
         ("t.png", {"scene": None}, ValueError, "scene: expected a scene, or a mesh with active"),
         ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
     ],
@@ -293,20 +267,6 @@ def test_bad_arguments(torus, tmp_path, writers, name, options, error, words):
     with pytest.raises(error, match=words):
         movie.turn(torus, tmp_path / name, **{"scene": SCENE, **options})
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("path", [3, None])
-def test_not_a_path(torus, path):
-    with pytest.raises(TypeError, match="path: expected the path of a file"):
-        movie.turn(torus, path, scene=SCENE)
-
-
-def test_nothing_to_draw(tmp_path):
-    mesh = pv.PolyData()
-    mesh.points = np.empty((0, 3))
-    mesh.GetPointData().AddArray(pv.convert_array(np.empty((0, 4)), "position"))
-    with pytest.raises(ValueError, match="mesh: expected a mesh with points"):
-        movie.turn(mesh, tmp_path / "t.png", frame=None)
 
 
 def test_frames_of_pathlines_become_pictures(tmp_path):

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import io
 import json
-import shutil
 import subprocess
 import sys
 
+import browsers
 import numpy as np
 import pytest
 import pyvista as pv
@@ -21,12 +20,7 @@ from vizlight.draw import component, notebook
 
 pytestmark = pytest.mark.opengl
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-MISSING = [
-    name
-    for name in ("trame_pyvista", "nest_asyncio2", "playwright")
-    if importlib.util.find_spec(name) is None
-] + ([] if CHROMIUM else ["chromium"])
+MISSING = browsers.missing("trame_pyvista", "nest_asyncio2", "playwright")
 SCENE = Scene(lights=Light(direction=(1, 0.6, 0.5)), material=SHINY)
 
 #: A notebook's kernel in small: an event loop, in which PyVista shows a plotter in its default way.
@@ -103,7 +97,7 @@ def test_highlight_follows_a_drag_in_the_browser(tmp_path):
     try:
         url = answer(process, "URL")
         with sync_playwright() as play:
-            browser = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+            browser = play.chromium.launch(executable_path=browsers.CHROMIUM, args=["--no-sandbox"])
             page = browser.new_page(viewport={"width": 500, "height": 450})
             page.goto(url)
             for turn in range(2):
@@ -186,33 +180,26 @@ def test_the_page_is_a_frame_of_the_notebook(registered, monkeypatch):
     assert frame.text.count("<script>") == 1
 
 
-@pytest.mark.skipif("playwright" in MISSING or not CHROMIUM, reason="needs a browser")
-def test_an_exported_notebook_stays_interactive(tmp_path):
-    from playwright.sync_api import sync_playwright
-
+@browsers.needed()
+def test_an_exported_notebook_stays_interactive(browser, tmp_path):
     plotter = live_plotter()
     shown = notebook.Guarded("html", lambda plotter, **options: options)(plotter)
     plotter.close()
     path = tmp_path / "notebook.html"
     path.write_text(f"<html><body>{shown._repr_html_()}{shown._repr_html_()}</body></html>")
-    args = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
-    with sync_playwright() as play:
-        browser = play.chromium.launch(
-            executable_path=CHROMIUM, args=[*args, "--enable-unsafe-swiftshader"]
-        )
-        page = browser.new_page(viewport={"width": 800, "height": 900})
-        page.goto(path.as_uri())
-        for frame in page.frames[1:]:
-            frame.wait_for_selector("body[data-ready]")
-        seen = [np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)]
-        page.mouse.move(300, 200)
-        page.mouse.down()
-        page.mouse.move(450, 260, steps=5)
-        page.mouse.up()
-        page.wait_for_timeout(400)
-        seen.append(np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int))
-        assert np.abs(seen[1] - seen[0])[:420].max() > 30
-        browser.close()
+    page = browser.new_page(viewport={"width": 800, "height": 900})
+    page.goto(path.as_uri())
+    for frame in page.frames[1:]:
+        frame.wait_for_selector("body[data-ready]")
+    seen = [np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)]
+    page.mouse.move(300, 200)
+    page.mouse.down()
+    page.mouse.move(450, 260, steps=5)
+    page.mouse.up()
+    page.wait_for_timeout(400)
+    seen.append(np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int))
+    assert np.abs(seen[1] - seen[0])[:420].max() > 30
+    page.close()
 
 
 EXPORTS = ["export_html", "export_vtksz", "export_gltf", "export_obj", "export_vrml"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 import base64
-import importlib.util
 import io
 import json
 import shutil
 import subprocess
 import sys
 
+import browsers
 import numpy as np
 import pytest
 import pyvista as pv
@@ -21,13 +21,8 @@ from vizlight import Light, Material, Scene, View
 
 pytestmark = pytest.mark.opengl
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 BASH = shutil.which("bash")
-SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
-SOFTWARE += ["--enable-unsafe-swiftshader"]
-MISSING = [name for name in ("playwright",) if importlib.util.find_spec(name) is None]
-MISSING += [name for name, path in (("chromium", CHROMIUM), ("bash", BASH)) if path is None]
-needs_browser = pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+needs_browser = browsers.needed(bash=BASH)
 #: Texts that would run as HTML, as script, as Python or in a shell where one is not escaped.
 PAYLOADS = (
     "</script><script>window.hit=1</script>",
@@ -63,26 +58,8 @@ PAYLOADS = (
 )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        made = play.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
-        yield made
-        made.close()
-
-
 def opened(browser, path):
-    page = browser.new_page(viewport={"width": 900, "height": 600})
-    seen = []
-    page.on("request", lambda request: seen.append(request.url))
-    page.on("console", lambda message: seen.append(message.text))
-    page.on("pageerror", lambda error: seen.append(str(error)))
-    page.on("dialog", lambda dialog: seen.append(dialog.message))
-    page.goto(path.as_uri())
-    page.wait_for_selector("body[data-ready]")
-    return page, seen
+    return browsers.opened(browser, path, viewport={"width": 900, "height": 600})
 
 
 def hostile(text, path):

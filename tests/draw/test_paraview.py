@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import real_paraview
+import shapes
 from PIL import Image
 
 import vizlight
@@ -43,27 +44,10 @@ for name, script, cameras in todo:
 
 def torus(centre=(0.0, 0.0, 0.0)):
     """Return a surface with normals in float32 and a field of tangents in float64."""
-    angles = np.linspace(0, 2 * np.pi, 121)
-    u, v = (np.ravel(x) for x in np.meshgrid(angles, angles, indexing="ij"))
-    ring = 1 + 0.4 * np.cos(v)
-    grid = pv.StructuredGrid()
-    grid.points = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1) + centre
-    grid.dimensions = (121, 121, 1)
-    mesh = grid.extract_surface(algorithm=None)
-    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], 1)
-    mesh["Normals"] = normals.astype(np.float32)
-    mesh["wide"] = normals
-    mesh["around"] = np.stack([-np.sin(u), np.cos(u), 0 * u], 1)
-    return mesh
-
-
-def winding():
-    """Return lines on the same torus."""
-    u = np.linspace(0, 2 * np.pi * 40, 12001)
-    ring, v = 1 + 0.4 * np.cos(u / 40), u / 40
-    mesh = pv.MultipleLines(np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], 1))
-    tangents = np.gradient(np.asarray(mesh.points, dtype=np.float64), axis=0)
-    mesh["T"] = tangents
+    mesh = shapes.torus(121, centre)
+    mesh["Normals"] = np.asarray(mesh["n"], dtype=np.float32)
+    mesh.rename_array("n", "wide")
+    del mesh.point_data["height"]
     return mesh
 
 
@@ -75,7 +59,7 @@ def near(centre=(0, 0, 0)):
 COPPER = Material(color=(1, 0.7, 0.4))
 CASES = {
     "surface": (torus, Scene(lights=FAR), {"normals": "Normals"}),
-    "lines": (winding, Scene(lights=FAR), {"tangents": "T"}),
+    "lines": (shapes.winding, Scene(lights=FAR), {"tangents": "T"}),
     "conditioned field": (
         torus, Scene(lights=FAR, material=COPPER),
         {"tangents": "around", "conditioned": True, "normals": "Normals"},

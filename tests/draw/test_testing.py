@@ -62,10 +62,6 @@ def test_thin_lines_a_third_of_a_pixel_away_pass():
     testing.assert_same_picture(lines(scale=8, shift=0.33), lines(scale=8))
 
 
-def test_an_edge_a_quarter_of_a_pixel_away_passes():
-    testing.assert_same_picture(disc(radius=70.25), disc())
-
-
 @pytest.mark.parametrize("options", [{"moved": 8}, {"bright": 185}, {"radius": 78}])
 def test_a_moved_or_dimmer_highlight_or_another_outline_fails(options):
     with pytest.raises(AssertionError, match="at most"):
@@ -80,13 +76,6 @@ def test_one_grey_level_below_0_does_not_wrap_around():
     assert found.block == pytest.approx(1)
     assert found.pixels == 0
     assert found.brightness < 0.02
-
-
-def test_swapped_channels_fail():
-    red = disc()
-    red[..., 1:] //= 2
-    with pytest.raises(AssertionError, match="block"):
-        testing.assert_same_picture(red[..., ::-1], red)
 
 
 def test_nothing_drawn_fails_and_nothing_expected_passes():
@@ -114,13 +103,6 @@ def test_a_missing_picture_fails_unless_it_may_be_added(tmp_path):
         testing.assert_same_picture(lines(), path)
     testing.assert_same_picture(lines(), path, add_missing=True)
     testing.assert_same_picture(lines(), str(path))
-
-
-def test_sizes_that_differ(tmp_path):
-    with pytest.raises(AssertionError, match="299 x 200 pixels, expected 300 x 200"):
-        testing.assert_same_picture(lines()[:, :-1], lines())
-    with pytest.raises(ValueError, match="got: expected 300 x 200 pixels"):
-        testing.difference(lines()[:, :-1], lines())
 
 
 @pytest.mark.parametrize("bad", [np.zeros((3, 3)), np.zeros((3, 3, 3)), 7, None])

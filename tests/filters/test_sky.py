@@ -10,7 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
-from vizlight.draw import painters
+from vizlight.draw import fragments
 from vizlight.filters import relight
 from vizlight.mesh import closed_meshes, sky
 from vizlight.shading import compiled, engine
@@ -304,7 +304,7 @@ def test_live_light_has_the_sky_of_the_mesh():
     (source,) = relight.from_options(both, SCENE, LightOptions(occlusion="sky"))
     assert source.mesh is both
     assert "sky" not in both.point_data
-    assert painters.unfit(source.inputs, source.options, both) == ""
+    assert fragments.unfit(source) == ""
     lit = vizlight.illuminate(both, SCENE, occlusion="sky")
     shading = engine.run(source.inputs, SCENE, source.options)
     assert compiled.why_not(shading.plan) == ""

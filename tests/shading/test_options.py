@@ -10,7 +10,7 @@ import pytest
 
 import vizlight
 from vizlight import _words
-from vizlight.draw import movie, paraview
+from vizlight.draw import paraview
 from vizlight.filters.fur import FurOptions
 from vizlight.filters.isoluminance import ContourOptions
 from vizlight.filters.pathlines import PathlineOptions
@@ -33,7 +33,6 @@ FUNCTIONS = [
     (vizlight.satin, SatinOptions, set()),
     (vizlight.project, ProjectOptions, set()),
     (vizlight.manifold, ProjectOptions, set()),
-    (movie.turn, ProjectOptions, set()),
     (vizlight.fur, FurOptions, set()),
     (vizlight.isoluminance, ContourOptions, set()),
     (vizlight.relief_shadow, ReliefOptions, set()),

@@ -83,7 +83,9 @@ def camera_on(
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
     if isinstance(bounds, Mesh):
-        shift, distance, height = _fit(bounds, centre, toward, upward, aspect)
+        view = _axes(toward, upward), aspect
+        points = np.concatenate([_outermost(some, *view) for some in _coordinates(bounds)])
+        shift, distance, height = _fit(points - centre, *view)
         centre = centre + shift
     camera = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = VIEW_ANGLE
@@ -117,25 +119,36 @@ def outermost(
     Returns
     -------
     ndarray, shape (m, 3)
-        At most 16 points.
+        At most 18 points of each 65,536.
 
     Raises
     ------
     TypeError, ValueError
         If a value does not fit.
     """
-    found = np.concatenate([np.empty((0, 3)), *_coordinates(mesh)])
-    found = found[np.all(np.isfinite(found), axis=1)]
+    view = _axes(*_directions(direction, up)), _check.number("aspect", aspect, low=1e-3)
+    found = [_outermost(some, *view) for some in _coordinates(mesh)]
+    return np.concatenate([np.empty((0, 3)), *found])
+
+
+def _outermost(points: Array, axes: Array, aspect: float) -> Array:
+    """Return the points that bound the box, and those at the margins of a view."""
+    found = points[np.all(np.isfinite(points), axis=1)]
     if not len(found):
         return found
-    x, y, z = _axes(*_directions(direction, up))
-    aspect = _check.number("aspect", aspect, low=1e-3)
-    slope = MARGIN / math.tan(math.radians(VIEW_ANGLE / 2))
-    sides = np.stack([x * slope / aspect, y * slope])
-    along = np.concatenate([np.eye(3), [x, y, z]])
-    # The box, the extent in the picture, and the distance at which each side is in it.
+    along, (z, sides) = np.concatenate([np.eye(3), axes]), (axes[2], _sides(axes, aspect))
     rows = np.concatenate([along, -along, z + sides, z - sides])
     return found[[int(np.argmax(found @ row)) for row in rows]]
+
+
+def _sides(axes: Array, aspect: float) -> Array:
+    """Return the axes of the picture, as long as the margins are nearer for each step of depth.
+
+    A point is in the picture from the distance z + slope |x|, so the largest z + slope x and
+    z - slope x of all points are enough, and the same of y.
+    """
+    slope = MARGIN / math.tan(math.radians(VIEW_ANGLE / 2))
+    return np.stack([axes[0] * slope / aspect, axes[1] * slope])
 
 
 def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, Array]:
@@ -165,26 +178,11 @@ def _box(bounds: Mesh | ArrayLike) -> Array:
     return box.reshape(3, 2)
 
 
-def _fit(
-    mesh: Mesh, centre: Array, toward: Array, up: Array, aspect: float
-) -> tuple[Array, float, float]:
-    """Return the shift of the centre, the distance and the height at which a mesh fills a view."""
-    axes = _axes(toward, up)
-    slope = MARGIN / math.tan(math.radians(VIEW_ANGLE / 2))
-    # A point is in the picture from the distance z + slope |x|, so the largest z + slope x and
-    # z - slope x of all points are enough, and the same of y.
-    sides = np.stack([axes[0] * slope / aspect, axes[1] * slope])
+def _fit(points: Array, axes: Array, aspect: float) -> tuple[Array, float, float]:
+    """Return the shift of the centre, the distance and the height at which points fill a view."""
+    sides = _sides(axes, aspect)
     rows = np.concatenate([axes, axes[2] + sides, axes[2] - sides])
-    low, high = np.full(7, np.inf), np.full(7, -np.inf)
-    for points in _coordinates(mesh):
-        with np.errstate(invalid="ignore"):
-            found = rows @ (points - centre).T
-        if not np.all(np.isfinite(found)):
-            found = found[:, np.all(np.isfinite(found), axis=0)]
-        low = np.minimum(low, found.min(axis=1, initial=np.inf))
-        high = np.maximum(high, found.max(axis=1, initial=-np.inf))
-    if not np.all(low <= high):
-        raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+    low, high = (end(points @ rows.T, axis=0) for end in (np.min, np.max))
     middle = 0.5 * (low[:3] + high[:3])
     middle[2] = 0
     half = 0.5 * (high[:2] - low[:2])
@@ -197,22 +195,15 @@ def _fit(
 
 
 def _coordinates(mesh: Mesh) -> Iterator[Array]:
-    """Yield the points of a mesh in float64, some at a time; of a box only its corners."""
+    """Yield the points of a mesh, some at a time; of a grid that fills its box its corners."""
     for block in all_blocks(mesh):
-        corners = _corners(block)
-        points = block.points if corners is None else corners
+        straight = isinstance(block, pv.RectilinearGrid) or (
+            isinstance(block, pv.ImageData) and np.array_equal(block.direction_matrix, np.eye(3))
+        )
+        corners = [*itertools.product(*np.reshape(block.bounds, (3, 2)))]
+        points = np.array(corners) if straight and block.n_points else block.points
         for start in range(0, len(points), SOME):
             yield np.asarray(points[start : start + SOME], dtype=np.float64)
-
-
-def _corners(block: pv.DataSet) -> Array | None:
-    """Return the corners of a grid that fills its box, and so are its outermost points."""
-    fills = isinstance(block, pv.RectilinearGrid) or (
-        isinstance(block, pv.ImageData) and np.array_equal(block.direction_matrix, np.eye(3))
-    )
-    if not fills or not block.n_points:
-        return None
-    return np.array([*itertools.product(*np.reshape(block.bounds, (3, 2)))])
 
 
 def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:

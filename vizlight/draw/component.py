@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import weakref
 from typing import TYPE_CHECKING, get_args
 
@@ -9,12 +10,12 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
+from vizlight.draw.fragments import Fragments, unfit
 from vizlight.draw.html import write_page
-from vizlight.draw.legends import PLACES, CornerKey, fitted, ink_on, name_no_data, settle
-from vizlight.draw.live import LightAt, Live, colorless, has_pass, is_copy, items
+from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
+from vizlight.draw.live import LightAt, Live, items
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.page import Shown
-from vizlight.draw.painters import Fragments, Points, unfit
 from vizlight.draw.program import Stroke
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Component", "add_recorded"]
 
-#: Passes of VTK that need its own light or normals, and what they draw.
-UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient occlusions (SSAO)"}
 #: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
 UNTOUCHED = (0.0, 1.0, 0.0)
 
@@ -60,8 +59,6 @@ class Component:
         self._plotter = weakref.ref(plotter)
         self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
         self._observed: list[tuple[vtkRenderer, int]] = []
-        #: What was said to be lost.
-        self._lost: set[str] = set()
 
     def add_mesh(
         self,
@@ -140,6 +137,9 @@ class Component:
         ``export_gltf`` and the like raise a ValueError with the remedy while there is any.
         :meth:`export_html` of this component can.
 
+        Shadows and ambient occlusion (SSAO) of PyVista do not show on meshes with live light, and
+        the light of a copy of an actor stays as it is.
+
         With ``bundle`` the shares of light are computed again only for lights that have moved. The
         lights of a scene must stay fixed; the plotter's lights may follow the camera, at the cost
         of one grid for each of them in each frame.
@@ -200,11 +200,9 @@ class Component:
             shown, tints = (here, {}) if here is not None else tinted(source.mesh)
             keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
             keywords_of |= keywords.whole_range(block, here, keywords_of)
-            actor = self._add(plotter, source, used, light, shown, keywords_of, follow=True)
-            live = self._live_of(actor)
-            assert live is not None
+            live = _live(source, used, light, keywords_of)
             live.name = path.lstrip("/") or str(drawing.get("name") or "")
-            actors.append(actor)
+            actors.append(self._add(plotter, live, shown, keywords_of))
         if not several and not actors:
             raise ValueError(_check.message("mesh", "a mesh with points", "none"))
         return actors if several else actors[0]
@@ -281,7 +279,6 @@ class Component:
             if live is not None:
                 lit_by = live.scene_of(plotter.renderer, actor)
                 options: Keywords = {"exponent": live.source.options.exponent}
-                # A page or key reads the colours that are drawn, whatever map made them.
                 table = actor.GetMapper().GetLookupTable()
                 valued = live.scalars is not None and isinstance(table, pv.LookupTable)
                 # The default light is made for values; without values it tells the shape.
@@ -391,7 +388,7 @@ class Component:
         """
         live = self._lit_by_us(actor)
         plotter = self._open_plotter()
-        return live.painter.explain(live, live.scene_of(plotter.renderer, actor))
+        return live.explain(live.scene_of(plotter.renderer, actor))
 
     def set_scene(self, actor: vtkActor, scene: Scene, /) -> None:
         """Light an actor by another scene, from the next frame on; nothing else is computed again.
@@ -437,39 +434,21 @@ class Component:
         return plotter
 
     def _add(
-        self,
-        plotter: pv.BasePlotter,
-        source: Source,
-        scene: Scene | None,
-        light: LightAt,
-        scalars: str | None,
-        drawing: Keywords,
-        *,
-        follow: bool,
+        self, plotter: pv.BasePlotter, live: Live, scalars: str | None, drawing: Keywords
     ) -> pv.Actor:
-        """Draw one source, light it once, and let its light follow."""
-        drawing = dict(drawing)
-        stroke = _stroke(source, drawing)
-        reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
-        painter = Points(reason, stroke.diameter) if reason else Fragments(stroke)
-        live = Live(source, scene, painter, follow=follow)
-        if light == "fragments" and reason:
-            _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
+        """Draw a mesh, light it once, and let its light follow."""
         rendered = drawing.pop("render", True)
         asked = drawing.get("scalar_bar_args") or {}
         if scalars is not None:
-            live.color_by(scalars, drawing.pop("component", None), at_points=bool(reason))
+            live.color_by(scalars, drawing.pop("component", None))
             drawing["scalars"] = live.scalars
             if live.has_colors():
                 drawing["rgb"] = True
             else:
                 drawing |= _map_of(drawing)
-                drawing["scalar_bar_args"] = fitted(plotter, scalars, asked)
-        # Light at points has no normal across a line: VTK's own tubes are drawn instead.
-        if stroke.round and reason and stroke.diameter is None:
-            drawing["render_lines_as_tubes"] = True
-        painter.attach(live)
-        drawing = painter.drawing(live, drawing)
+                drawing["scalar_bar_args"] = {"title": scalars} | asked
+        live.attach()
+        drawing = live.drawing(drawing)
         actor: pv.Actor = plotter.add_mesh(
             # Normals of PyVista would take the place of those attached.
             live.drawn,
@@ -478,7 +457,7 @@ class Component:
             render=False,
             **drawing,
         )
-        if scene is None and not drawing.keys() & keywords.MATERIAL:
+        if live.scene is None and not drawing.keys() & keywords.MATERIAL:
             own, default = actor.prop, Material()
             # PyVista's own defaults are nobody's choice: the material of this package stands in
             # for them.
@@ -486,14 +465,14 @@ class Component:
                 own.ambient, own.diffuse = default.ambient, default.diffuse
                 own.specular = default.specular
         try:
-            painter.start(live, actor)
+            live.start(actor)
             live.paint(plotter.renderer, actor)
         except (TypeError, ValueError):
             plotter.remove_actor(actor, render=False)
             raise
         invalid = live.invalid()
-        if invalid and follow:
-            _check.warn(unlit(invalid, source.inputs.count))
+        if invalid and live.follow:
+            _check.warn(unlit(invalid, live.source.inputs.count))
         for bar in plotter.scalar_bars.values() if scalars is not None else ():
             if bar.GetLookupTable() is actor.mapper.lookup_table:
                 settle(plotter, bar, asked)
@@ -515,48 +494,22 @@ class Component:
 
         def update(renderer: vtkRenderer, _: str) -> None:
             component = me()
-            if component is not None:
-                component._update(renderer)
+            for each in items(renderer.GetActors()):
+                own = None if component is None else component._live_of(each)
+                if own is not None:
+                    own.update(renderer, each)
 
-        def forget() -> None:
-            component = me()
-            if component is not None and not component.has_live_light:
-                component._stop()
-
-        weakref.finalize(holder, forget)
         observed = {_address(renderer) for renderer, _ in self._observed}
         for renderer in plotter.renderers:
             if _address(renderer) not in observed:
                 # PyVista's own render callbacks come after the frame is drawn.
                 self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
 
-    def _update(self, renderer: vtkRenderer) -> None:
-        """Light what a renderer is about to draw, and say once what does not show."""
-        # Called at the beginning of each frame: at first light, then the picture.
-        lost, any_live = set(), False
-        for actor in items(renderer.GetActors()):
-            live = self._live_of(actor)
-            if live is not None:
-                any_live = True
-                live.update(renderer, actor)
-            elif is_copy(actor):
-                lost.add("a copy of an actor has light that does not follow; add its mesh instead")
-        if any_live and renderer.GetPass() is not None:
-            passes = [name for kind, name in UNLIT_PASSES.items() if has_pass(renderer, kind)]
-            lost |= {f"{name} of PyVista do not show on meshes with live light" for name in passes}
-        for text in sorted(lost - self._lost):
-            _check.warn(text)
-        self._lost |= lost
-
-    def _stop(self) -> None:
-        """Remove the observers of the renderers."""
+    def __plotter_close__(self) -> None:
+        """Let go of everything when the plotter closes."""
         for renderer, tag in self._observed:
             renderer.RemoveObserver(tag)
         self._observed.clear()
-
-    def __plotter_close__(self) -> None:
-        """Let go of everything when the plotter closes."""
-        self._stop()
         for holder in list(self._holders.values()):
             holder.release()
         self._holders.clear()
@@ -600,6 +553,20 @@ def _add_cloud(
     return actor
 
 
+def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords) -> Live:
+    """Return a live light in each fragment, or at the points where that is asked for or needed."""
+    stroke = _stroke(source, drawing)
+    reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
+    if not reason:
+        return Fragments(source, scene, stroke)
+    if light == "fragments":
+        _check.warn(f"light='fragments': the light is computed at the points, because {reason}")
+    if stroke.round and stroke.diameter is None:
+        # Light at points has no normal across a line: VTK's own tubes are drawn instead.
+        drawing["render_lines_as_tubes"] = True
+    return Live(source, scene, stroke, reason=reason)
+
+
 def _stroke(source: Source, drawing: Keywords) -> Stroke:
     """Take from keywords how lines are drawn; a surface has none."""
     diameter = drawing.pop("line_diameter", None)
@@ -613,7 +580,7 @@ def _reason(source: Source, drawing: Keywords, stroke: Stroke) -> str:
     """Return why the light cannot be computed in each fragment, or an empty string."""
     if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
         return "VTK shades spheres and tubes by normals of their own"
-    return unfit(source.inputs, source.options, source.mesh, stroke)
+    return unfit(source, stroke)
 
 
 def add_recorded(
@@ -657,11 +624,23 @@ def add_recorded(
     except (TypeError, ValueError):
         # The array says more than the record.
         return None
-    if _reason(source, {}, _stroke(source, dict(drawing))):
+    stroke = _stroke(source, drawing)
+    if _reason(source, drawing, stroke):
         return None
-    used = scene if name == RGB else colorless(scene)
+    live = Fragments(source, scene if name == RGB else _colorless(scene), stroke, follow=False)
     own: Component = plotter.vizlight
-    return own._add(plotter, source, used, "auto", scalars, colors | drawing, follow=False)
+    return own._add(plotter, live, scalars, colors | drawing)
+
+
+def _colorless(scene: Scene) -> Scene:
+    """Return a scene without colours, whose light is luminance alone."""
+    cue, material = scene.depth_cue, scene.material
+    return scene.replace(
+        lights=tuple(dataclasses.replace(light, color=None) for light in scene.lights),
+        material=dataclasses.replace(material, color=None, specular_color=None),
+        ambient_color=None,
+        depth_cue=None if cue is None else dataclasses.replace(cue, color=None),
+    )
 
 
 # As a decorator it would hide the methods from type checkers.

@@ -153,19 +153,17 @@ def _colors(
     clim: Sequence[float] | float | None,
 ) -> list[NDArray[np.uint8] | None]:
     """Return for each source the colours of data, None for the colour of the material."""
-    if scalars is not None:
-        values = [values_of(surface, scalars) for surface, _ in drawn]
-        table = color_table(values, cmap=cmap, clim=clim)
-        return [map_colors(table, value) for value in values]
-    found: list[NDArray[np.uint8] | None] = []
-    for source, (surface, _) in zip(sources, drawn, strict=True):
-        name, own = tinted(source.mesh)
-        if name is None:
-            found.append(None)
-        else:
-            value = values_of(surface, name, own["component"])
-            found.append(map_colors(own["cmap"], value))
-    return found
+    named = [(scalars, {}) if scalars is not None else tinted(source.mesh) for source in sources]
+    values = [
+        None if name is None else values_of(surface, name, own.get("component"))
+        for (name, own), (surface, _) in zip(named, drawn, strict=True)
+    ]
+    known = [value for value in values if value is not None]
+    table = color_table(known, cmap=cmap, clim=clim)
+    return [
+        None if value is None else map_colors(own.get("cmap", table), value)
+        for (_, own), value in zip(named, values, strict=True)
+    ]
 
 
 class _File:
@@ -188,9 +186,10 @@ class _File:
         centre = (drawn.min(axis=0) + drawn.max(axis=0)) / 2
         self.clear |= bool(np.any(shown[:, 3] < 255))
         # glTF knows no number that is not finite in float32; no cell with one is drawn.
-        rows = np.where(good[:, np.newaxis], points - centre, 0.0)
+        rows = np.where(good[:, np.newaxis], points - centre, 0.0).astype("<f4")
+        ends = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
         attributes = {
-            "POSITION": self.put(rows, "<f4", "VEC3", _VERTICES, ends=True),
+            "POSITION": self.put(rows, "<f4", "VEC3", _VERTICES, **ends),
             "COLOR_0": self.put(_linear(shown), "<u2", "VEC4", _VERTICES, normalized=True),
         }
         primitives: list[dict[str, object]] = []
@@ -208,7 +207,7 @@ class _File:
         self.meshes.append({"name": name, "primitives": primitives})
 
     def put(
-        self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: bool
+        self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: object
     ) -> int:
         """Append an array to the buffer and return the index of its accessor."""
         data = np.ascontiguousarray(rows, kind)
@@ -223,8 +222,6 @@ class _File:
             "bufferView": len(self.views) - 1, "componentType": _KINDS[kind], "count": len(data),
             "type": shape,
         }  # fmt: skip
-        if extra.pop("ends", False):
-            accessor |= {"min": data.min(axis=0).tolist(), "max": data.max(axis=0).tolist()}
         self.accessors.append(accessor | extra)
         return len(self.accessors) - 1
 

@@ -51,63 +51,51 @@ LEAST, LETTERS_HIGH = 9, 24
 DIGITS = 7
 
 
-def fitted(plotter: pv.BasePlotter, title: str, asked: Keywords) -> Keywords:
-    """Return keywords of a scalar bar that leave room for its words in the picture.
+def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
+    """Leave room for the words of a scalar bar in the picture, and set them apart.
 
     Parameters
     ----------
     plotter : pyvista.Plotter
         Plotter, whose active renderer and theme are used.
-    title : str
-        Title, where none is asked for.
+    bar : vtkScalarBarActor
+        Bar as PyVista made it; left so where ``asked`` says how large it is or where it stands.
     asked : dict
         Keywords of ``pyvista.Plotter.add_scalar_bar`` that a user gave.
-
-    Returns
-    -------
-    dict
     """
-    asked = {"title": title, **asked}
-    wide, high = plotter.renderer.GetSize()
-    if asked.keys() & PLACED or not (wide and high):
-        return asked
-    theme = plotter.theme
-    upright = asked.get("vertical") or theme.colorbar_orientation == "vertical"
-    place = theme.colorbar_vertical if upright else theme.colorbar_horizontal
-    letters = int(max(min(theme.font.label_size, high / LETTERS_HIGH), LEAST))
-    number = LONGEST * LETTER * letters
-    left, right = place.position_x * wide, (place.position_x + place.width) * wide
-    fonts = {"label_font_size": letters, "title_font_size": letters}
-    made: Keywords = {"unconstrained_font_size": True} | fonts
-    if upright:
-        # The numbers stand at its right.
-        left = max(min(left, wide - number - 2.5 * letters), 0)
-    else:
-        right = max(min(right, wide - 0.5 * number - 4), left + 1)
-        lines = len(_lines(str(asked["title"]), left, right, wide, letters))
-        made["height"] = max(place.height, (lines + 2) * LINE * letters / high)
-    return made | {"position_x": left / wide, "width": (right - left) / wide} | asked
-
-
-def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
-    """Set the words of a scalar bar that :func:`fitted` made apart, where nothing else is asked."""
     wide, high = plotter.renderer.GetSize()
     if asked.keys() & PLACED or not (wide and high):
         return
-    letters = bar.GetLabelTextProperty().GetFontSize()
+    font = plotter.theme.font
+    letters = int(max(min(font.label_size, high / LETTERS_HIGH), LEAST))
+    number = LONGEST * LETTER * letters
     left = bar.GetPosition()[0] * wide
-    words = _lines(str(bar.GetTitle()), left, left + bar.GetWidth() * wide, wide, letters)
-    bar.SetTitle("\n".join(words))
-    bar.SetAnnotationLeaderPadding(2)
+    right = left + bar.GetWidth() * wide
     if bar.GetOrientation():
+        # The numbers stand at its right.
+        left = max(min(left, wide - number - 2.5 * letters), 0)
         bar.SetVerticalTitleSeparation(letters // 2)
     else:
+        right = max(min(right, wide - 0.5 * number - 4), left + 1)
+    words = _lines(str(bar.GetTitle()), left, right, wide, letters)
+    bar.SetTitle("\n".join(words))
+    bar.SetPosition(left / wide, bar.GetPosition()[1])
+    bar.SetWidth((right - left) / wide)
+    bar.SetUnconstrainedFontSize(True)
+    for text in ("Label", "Title", "Annotation"):
+        getattr(bar, f"Get{text}TextProperty")().SetFontSize(letters)
+    bar.SetAnnotationLeaderPadding(2)
+    if not bar.GetOrientation():
+        bar.SetHeight(max(bar.GetHeight(), (len(words) + 2) * LINE * letters / high))
+        # PyVista stacks bars by the height that its theme has for them.
+        place, y = plotter.theme.colorbar_horizontal, bar.GetPosition()[1]
+        above = (y - place.position_y) / place.height * bar.GetHeight()
+        bar.SetPosition(left / wide, place.position_y + above)
         # VTK puts the title of a bar that lies so near to the numbers that they touch.
         bar.GetTitleTextProperty().SetLineOffset(-0.4 * letters)
         bar.SetBarRatio(letters / (bar.GetHeight() * high))
-        room = bar.GetWidth() * wide / (LONGEST * LETTER * letters)
-        bar.SetNumberOfLabels(min(bar.GetNumberOfLabels(), max(int(room), 2)))
-    if not plotter.theme.font.fmt:
+        bar.SetNumberOfLabels(min(bar.GetNumberOfLabels(), max(int((right - left) / number), 2)))
+    if not font.fmt:
         low, top = bar.GetLookupTable().GetRange()
         ticks = np.linspace(low, top, bar.GetNumberOfLabels())
         for digits in range(3, DIGITS + 1):

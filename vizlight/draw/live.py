@@ -1,21 +1,27 @@
-"""What keeps a drawn mesh lit: its source, its scene at a moment, and what has changed since."""
+"""A drawn mesh whose light is at its points, and what keeps the light of any drawn mesh live."""
 
 from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.filters import relight
-from vizlight.filters.tint import are_colors, values_of
+from vizlight.draw import dialects
+from vizlight.draw.program import Stroke
+from vizlight.filters import lighting, relight
+from vizlight.filters.tint import are_colors, light_on_colors, map_colors, values_of
 from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene, View
 from vizlight.scene.conversion import is_light_kit, lights_of
 from vizlight.scene.light import default_lights
+from vizlight.shading.decide import decide
+from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
+from vizlight.vtk import polylines
+from vizlight.vtk.arrays import is_of_cells
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,8 +31,10 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Vector
-    from vizlight.shading.inputs import ShadingInputs
+    from vizlight._types import Array, Bools, Foreign, Indices, Keywords
+    from vizlight.shading.display import Bytes
+    from vizlight.shading.inputs import Layout, ShadingInputs
+    from vizlight.shading.options import ShadingOptions
 
 Number = TypeVar("Number", bound=np.generic)
 #: Place where the light is computed.
@@ -34,34 +42,16 @@ LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside the mesh's own.
 LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight values"
 TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
-
-
-class Painter(Protocol):
-    """The way in which a drawn mesh shows its light."""
-
-    #: Name of the way: "points" or "fragments".
-    light: str
-
-    def attach(self, live: Live) -> None:
-        """Give the drawn mesh the arrays that a new source needs."""
-
-    def drawing(self, live: Live, drawing: Keywords) -> Keywords:
-        """Return the keywords of ``plotter.add_mesh``."""
-
-    def start(self, live: Live, actor: vtkActor) -> None:
-        """Prepare an actor that was just made."""
-
-    def paint(self, live: Live, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:
-        """Show the light of a scene."""
-
-    def explain(self, live: Live, scene: Scene) -> str:
-        """Return what is computed, and what is skipped and why."""
+#: Fragment shader that draws the colours of the points.
+AS_IT_IS = "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n"
 
 
 class Live:
     """A drawn mesh whose light follows the camera, the lights and the mesh.
 
-    An observer of the actor keeps it alive, so that nothing is left once the actor is gone.
+    The light is an array of the points, the same numbers as a filter attaches;
+    :class:`~vizlight.draw.fragments.Fragments` computes it in each fragment. An observer of the
+    actor keeps it alive, so that nothing is left once the actor is gone.
 
     Parameters
     ----------
@@ -69,19 +59,27 @@ class Live:
         What is lit. Its mesh is the caller's.
     scene : Scene or None
         Scene; None for the lights and the material of the plotter.
-    painter : Painter
-        How its light is shown.
+    stroke : Stroke
+        How lines are drawn.
+    reason : str
+        Why the light is not computed in each fragment; empty where it is.
     follow : bool, default: True
         Whether the camera takes the place of the view of the scene.
     """
 
     def __init__(
-        self, source: relight.Source, scene: Scene | None, painter: Painter, *, follow: bool = True
+        self,
+        source: relight.Source,
+        scene: Scene | None,
+        stroke: Stroke = Stroke(),  # noqa: B008 (a tuple is not changed)
+        *,
+        reason: str = "",
+        follow: bool = True,
     ) -> None:
-        self.source, self.scene, self.painter, self.follow = source, scene, painter, follow
+        self.source, self.scene, self.reason, self.follow = source, scene, reason, follow
+        self._stroke = stroke
         # VTK takes normals from the mesh of cells where it extracts the outer surface itself.
-        of_cells = not isinstance(source.mesh, pv.PolyData)
-        self._by_surface = painter.light == "fragments" and of_cells
+        self._by_surface = not reason and not isinstance(source.mesh, pv.PolyData)
         self._shown: Indices | None = None
         #: Shallow copy of the mesh, or of its outer surface, that is drawn.
         self.drawn: pv.DataSet = pv.PolyData() if self._by_surface else source.mesh.copy(deep=False)
@@ -92,7 +90,7 @@ class Live:
         self.scalars: str | None = None
         self.given: str | None = None
         self._component: int | None = None
-        self._of_cells = self._averaged = False
+        self._averaged = False
         self._changed = source.mesh.GetMTime()
         self._state: tuple[object, ...] = ()
         self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
@@ -125,11 +123,9 @@ class Live:
         rows[missing] = 0
         return rows
 
-    def attach(self, name: str, rows: NDArray[np.generic]) -> None:
-        """Attach one row for each point of the mesh to what is drawn."""
-        records.attach_rows(self.drawn, name, self.picked(rows))
+    # Colours of data.
 
-    def color_by(self, scalars: str, component: int | None, *, at_points: bool) -> None:
+    def color_by(self, scalars: str, component: int | None) -> None:
         """Take the colours from an array of the mesh.
 
         Colours of cells are averaged where the light is at the points, with a warning.
@@ -141,39 +137,127 @@ class Live:
         """
         self.given, self._component = scalars, component
         self.scalars = scalars
-        mesh = self.source.mesh
-        self._of_cells = scalars in mesh.cell_data and scalars not in mesh.point_data
-        self._averaged = self._of_cells and at_points
+        self._averaged = bool(self.reason) and is_of_cells(self.source.mesh, scalars)
         if self._averaged:
             _check.warn(f"the colours of {scalars!r} are averaged from cells to points")
         self._color(self._values())
 
     def _values(self) -> NDArray[np.generic] | None:
         """Return the values that are coloured; None for an array of the mesh as it is."""
-        if self.given is None or (self._of_cells and not self._averaged):
+        mesh, name = self.source.mesh, self.given
+        if name is None or (is_of_cells(mesh, name) and not self._averaged):
             return None
-        mesh = self.source.mesh
-        if self._averaged:
-            mesh = _at_points(mesh, self.given)
-        values = values_of(mesh, self.given, self._component)
-        return values if self._averaged or mesh.point_data[self.given].ndim > 1 else None
+        values = values_of(mesh, name, self._component)
+        return values if self._averaged or mesh.point_data[name].ndim > 1 else None
 
     def _color(self, values: NDArray[np.generic] | None) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
         if values is not None:
             self.scalars = VALUES
-            self.attach(VALUES, values)
+            records.attach_rows(self.drawn, VALUES, self.picked(values))
+
+    def shown_values(self) -> NDArray[np.generic]:
+        """Return the values or colours that are drawn, one row per point or per cell."""
+        name, points = self.scalars or "", self.drawn.point_data
+        return np.asarray(points[name] if name in points else self.drawn.cell_data[name])
 
     def has_colors(self) -> bool:
         """Return whether the array that is drawn holds colours, not values."""
-        name, points = self.scalars or "", self.drawn.point_data
-        values = points[name] if name in points else self.drawn.cell_data[name]
-        return self._component is None and are_colors(np.asarray(values))
+        return self._component is None and are_colors(self.shown_values())
+
+    def lacks_values(self) -> bool:
+        """Return whether any of the values that are coloured is NaN."""
+        values = self.shown_values()
+        return bool(values.dtype.kind == "f" and np.isnan(values).any())
+
+    def mapped(self, actor: vtkActor) -> Bytes:
+        """Return the colours of data as the mapper of an actor has them, or as they were given."""
+        return map_colors(actor.GetMapper().GetLookupTable(), self.shown_values())
+
+    # The actor.
+
+    def attach(self) -> None:
+        """Give the drawn mesh the arrays that the light of a new source needs."""
+        count = self.drawn.n_points
+        records.attach_rows(self.drawn, LUMINANCE, np.zeros(count))
+        channels = 3 if self.scalars is None else 4
+        kind = np.float64 if self.scalars is None else np.uint8
+        records.attach_rows(self.drawn, COLORS, np.zeros((count, channels), kind))
+        if self._stroke.diameter is not None:
+            # VTK hands a shader no other vector of lines than their normals.
+            along = polylines.line_tangents(self.source.mesh).astype(np.float32)
+            records.attach_rows(self.drawn, NORMALS, along)
+            self.drawn.GetPointData().SetActiveNormals(NORMALS)
+
+    def drawing(self, drawing: Keywords) -> Keywords:
+        """Return the keywords of ``plotter.add_mesh``."""
+        if self.scalars is not None:
+            return drawing | {"lighting": False}
+        color = drawing.pop("color", None)
+        if color is not None and self.scene is not None:
+            channels = _check.color("color", color)
+            material = dataclasses.replace(self.scene.material, color=channels)
+            self.scene = self.scene.replace(material=material)
+        plain = {"lighting": False, "show_scalar_bar": False}
+        if self.scene is not None and not self.scene.colored:
+            gray = {"scalars": LUMINANCE, "cmap": "gray", "clim": (0.0, 1.0)}
+            return drawing | plain | gray
+        own = True if color is None else color
+        return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
+
+    def start(self, actor: vtkActor) -> None:
+        """Let an actor draw lit colours as they are, in place of the data's."""
+        prop = actor.GetProperty()
+        if self._stroke.diameter is not None:
+            dialects.widen(actor, self._stroke)
+        if self.scene is None:
+            # Without lights VTK multiplies by the sum of both coefficients, which are the material.
+            actor.GetShaderProperty().AddFragmentShaderReplacement(
+                "//VTK::Light::Impl", True, AS_IT_IS, False
+            )
+        else:
+            prop.SetAmbient(1.0)
+            prop.SetDiffuse(0.0)
+        if self.scalars is None:
+            return
+        mapper = actor.GetMapper()
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(COLORS)
+        mapper.SetColorModeToDirectScalars()
+        mapper.SetInterpolateScalarsBeforeMapping(False)
+
+    def show(self, scene: Scene, renderer: vtkRenderer, actor: vtkActor) -> None:  # noqa: ARG002
+        """Show the light of a scene."""
+        inputs = self.source.seen_from(scene.view, self.placed(actor))
+        if self.scalars is not None:
+            (light,) = light_on_colors([self.source._replace(inputs=inputs, sided=None)], scene)
+            _write(self.drawn, COLORS, on_colors(self.mapped(actor), *light))
+            return
+        (shading,), _ = lighting.light([(inputs, self.source.options)], scene, progress_bar=False)
+        if self.scene is None or self.scene.colored:
+            rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
+            # VTK wraps around above 1, so a bright highlight would turn black.
+            shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
+            shown[~shading.valid] = NO_DATA
+            _write(self.drawn, COLORS, shown)
+        else:
+            _write(self.drawn, LUMINANCE, np.where(shading.valid, shading.luminance, NO_DATA[0]))
+
+    def lit_as(self) -> tuple[Layout, ShadingOptions]:
+        """Return the layout and the options of the light that is drawn."""
+        return self.source.inputs.layout, self.source.options
+
+    def explain(self, scene: Scene) -> str:
+        """Return where the light is computed, what is computed, and what is skipped and why."""
+        seen = scene if self.scalars is None else for_colors(scene)
+        plan = decide(lighting.fit_depth_cue(seen, [self.source.inputs]), *self.lit_as())
+        where = f"light at the points: {self.reason}" if self.reason else "light in each fragment"
+        return f"{where}\n{plan.explain()}"
 
     def set_scene(self, scene: Scene, actor: vtkActor) -> None:
         """Take another scene, by which the next frame is lit."""
         self.scene, self._state = scene, ()
-        self.painter.start(self, actor)
+        self.start(actor)
 
     def invalid(self) -> int:
         """Return the number of points whose vectors have no direction."""
@@ -188,12 +272,7 @@ class Live:
         unlit = int(np.count_nonzero(~good)) - (self.source.inside if seen is None else 0)
         return max(unlit, 0) * self.source.inputs.repeat
 
-    def lacks_values(self) -> bool:
-        """Return whether any of the values that are coloured is NaN."""
-        at_cells = self._of_cells and not self._averaged
-        data = self.source.mesh.cell_data if at_cells else self.drawn.point_data
-        values = np.asarray(data[self.scalars or ""])
-        return bool(values.dtype.kind == "f" and np.isnan(values).any())
+    # What changes from frame to frame.
 
     def update(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh anew if anything has changed since; called before a frame is drawn.
@@ -226,15 +305,13 @@ class Live:
         source = self.source.dimmed_by(scene)
         if source is not self.source:
             self.source, self._placed = source, None
-        self.painter.paint(self, scene, renderer, actor)
+        self.show(scene, renderer, actor)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""
         camera, mapper = renderer.GetActiveCamera(), actor.GetMapper()
-        state: list[object] = [
-            camera.GetAddressAsString(""), camera.GetMTime(), self.source.mesh.GetMTime(),
-            _elements(actor),
-        ]  # fmt: skip
+        state: list[object] = [camera.GetAddressAsString(""), camera.GetMTime()]
+        state += [self.source.mesh.GetMTime(), _elements(actor)]
         if self.scene is None:
             lights = renderer.GetLights()
             state += [lights.GetMTime(), *(light.GetMTime() for light in items(lights))]
@@ -262,21 +339,18 @@ class Live:
         self.source, self._placed = source, None
         self._redraw()
         self._color(values)
-        self.painter.attach(self)
+        self.attach()
 
     def scene_of(self, renderer: vtkRenderer, actor: vtkActor) -> Scene:
         """Return the scene of a frame, in the space of the light."""
-        camera = renderer.GetActiveCamera()
-        if self.scene is not None and not self.follow:
-            return self.scene
-        view = View.from_camera(camera)
         if self.scene is None:
             with warnings.catch_warnings():
                 # They were given when the mesh was added.
                 warnings.simplefilter("ignore", UserWarning)
                 return lifted(scene_of(renderer, actor, self.source.options.model), self.n)
-        if self.own_eye:
+        if self.own_eye or not self.follow:
             return self.scene
+        view = View.from_camera(renderer.GetActiveCamera())
         if self.scene.n in (None, 3):
             return lifted(self.scene.replace(view=view), self.n)
         if self.scene.n != self.n:
@@ -287,11 +361,11 @@ class Live:
     def placed(self, actor: vtkActor) -> ShadingInputs:
         """Return the inputs of the light where the actor stands."""
         elements = _elements(actor)
-        inputs = self.source.inputs
-        if self.n != 3 or np.array_equal(np.reshape(elements, (4, 4)), np.eye(4)):
-            return inputs
+        matrix = np.reshape(elements, (4, 4))
+        if self.n != 3 or np.array_equal(matrix, np.eye(4)):
+            return self.source.inputs
         if self._placed is None or self._placed[0] != elements:
-            self._placed = elements, _transformed(inputs, np.reshape(elements, (4, 4)))
+            self._placed = elements, _transformed(self.source.inputs, matrix)
         return self._placed[1]
 
 
@@ -311,18 +385,15 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     return Scene(lights=lights, material=material, view=view)
 
 
-def _at_points(mesh: pv.DataSet, name: str) -> pv.DataSet:
-    """Return points with the means of a cell array over the cells that meet there."""
-    # Without its other arrays, which VTK would average too.
-    bare = mesh.copy(deep=False)
-    bare.clear_data()
-    values = np.asarray(mesh.cell_data[name])
-    bare.cell_data[name] = values.astype(np.float64)
-    points: pv.DataSet = bare.cell_data_to_point_data()
-    if values.dtype == np.uint8:
-        # Means of colours are rounded, not cut.
-        points.point_data[name] = np.rint(points.point_data[name]).astype(np.uint8)
-    return points
+def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
+    """Write values to an array of a mesh, in place where they fit."""
+    array = mesh.point_data[name]
+    if array.shape != values.shape or array.dtype != values.dtype:
+        records.attach_rows(mesh, name, values)
+        return
+    np.copyto(array, values)
+    mesh.GetPointData().GetAbstractArray(name).Modified()
+    mesh.Modified()
 
 
 def items(collection: vtkCollection) -> Iterator[Foreign]:
@@ -336,34 +407,6 @@ def matrix_of(matrix: vtkMatrix4x4) -> Array:
     return np.asarray(pv.array_from_vtkmatrix(matrix), np.float64)
 
 
-def is_copy(actor: vtkActor) -> bool:
-    """Return whether an actor draws what was made for a live light."""
-    mapper: Foreign = actor.GetMapper()
-    data: Foreign = None if mapper is None else mapper.GetInputDataObject(0, 0)
-    own = (NORMALS, TANGENTS, COLORS)
-    if not hasattr(data, "GetPointData"):
-        return False
-    return any(data.GetPointData().HasArray(name) for name in own)
-
-
-def has_pass(renderer: vtkRenderer, kind: str) -> bool:
-    """Return whether a renderer draws by a pass of a class of VTK, at any depth."""
-    # Passes nest: SSAO, for instance, holds the pass that draws.
-    waiting: list[Foreign] = [renderer.GetPass()]
-    while waiting:
-        step = waiting.pop()
-        if step is None:
-            continue
-        if step.IsA(kind):
-            return True
-        if step.IsA("vtkSequencePass"):
-            waiting += items(step.GetPasses())
-        for name in ("GetDelegatePass", "GetSequence"):
-            if hasattr(step, name):
-                waiting.append(getattr(step, name)())
-    return False
-
-
 def lifted(scene: Scene, n: int) -> Scene:
     """Return a scene of 3-space in the hyperplane of the first three axes of n-space."""
     # Without a rotation the picture shows the first three axes, so lamps and eye stand there too.
@@ -371,26 +414,24 @@ def lifted(scene: Scene, n: int) -> Scene:
         return scene
     fixed = (light if light.is_headlight else light.seen_from(scene.view) for light in scene.lights)
     lights = tuple(
-        dataclasses.replace(
-            light, direction=_lifted(light.direction, n), position=_lifted(light.position, n)
-        )
+        dataclasses.replace(light, **_padded(light, ("direction", "position"), n))
         for light in fixed
     )
     view = None if scene.view is None else _lifted_view(scene.view, n)
     return scene.replace(lights=lights, view=view)
 
 
-def _lifted(vector: Vector | None, n: int) -> Vector | None:
-    return None if vector is None else (*vector, *([0.0] * (n - len(vector))))
-
-
 def _lifted_view(view: View, n: int) -> View:
-    return View(
-        position=_lifted(view.position, n),
-        direction=_lifted(view.direction, n),
-        parallel=view.parallel,
-        up=_lifted(view.up, n),
-    )
+    return View(parallel=view.parallel, **_padded(view, ("position", "direction", "up"), n))
+
+
+def _padded(thing: object, names: tuple[str, ...], n: int) -> Keywords:
+    """Return vectors of a light or a view by name, with zeros along the further axes."""
+    found: Keywords = {}
+    for name in names:
+        vector = getattr(thing, name)
+        found[name] = None if vector is None else (*vector, *([0.0] * (n - len(vector))))
+    return found
 
 
 def _elements(actor: vtkActor) -> tuple[float, ...]:
@@ -412,14 +453,3 @@ def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
         rows = np.asarray(inputs.normals[:])
         normals = (rows @ np.linalg.inv(linear)).astype(rows.dtype)
     return dataclasses.replace(inputs, points=points, tangents=tangents, normals=normals)
-
-
-def colorless(scene: Scene) -> Scene:
-    """Return a scene without colours, whose light is luminance alone."""
-    cue, material = scene.depth_cue, scene.material
-    return scene.replace(
-        lights=tuple(dataclasses.replace(light, color=None) for light in scene.lights),
-        material=dataclasses.replace(material, color=None, specular_color=None),
-        ambient_color=None,
-        depth_cue=None if cue is None else dataclasses.replace(cue, color=None),
-    )

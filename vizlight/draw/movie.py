@@ -19,21 +19,18 @@ from vizlight._progress import progress
 from vizlight.draw import render
 from vizlight.draw.cameras import Mesh, common_bounds
 from vizlight.files import check_output, replace_file
-from vizlight.filters.project import ProjectOptions, project
+from vizlight.filters.project import project
 from vizlight.filters.tint import RGB
 from vizlight.mesh.blocks import all_blocks
-from vizlight.shading.options import named
 from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    from vizlight._types import Foreign, Given, VectorLike
-    from vizlight.filters.project import LightWhen
+    from vizlight._types import Foreign, Given
     from vizlight.scene import Scene
-    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
     Picture = NDArray[np.uint8]
 
@@ -123,7 +120,6 @@ def save(
         return writer(_counted(drawn, report, 0))
 
 
-@named
 def turn(
     mesh: Mesh,
     path: str | Path,
@@ -136,26 +132,8 @@ def turn(
     fps: float = 24.0,
     camera: pv.Camera | None = None,
     picture: render.PlotterKeywords | None = None,
-    rotation: object = None,
-    hyperplane: tuple[VectorLike, float] | None = None,
-    distance: float | None = None,
-    positions: str | None = "position",
-    frame: str | None = "frame",
-    vectors: str | Sequence[str] | None = None,
-    cut: bool = False,
-    light: LightWhen = "before",
-    tangents: str | ArrayLike | None = None,
-    normals: str | ArrayLike | None = None,
-    facing: Facing = "auto",
-    conditioned: bool | str | None = False,
-    line_field: bool = False,
-    occlusion: str | None = None,
-    name: str = "luminance",
-    exponent: Exponent = "compensated",
-    model: Model = "phong",
-    components: bool = False,
-    precision: Precision | None = None,
     progress_bar: bool = False,
+    **options: Given,
 ) -> list[Path]:
     """Rotate a mesh in a plane of n-space, light it at every step, and save the pictures.
 
@@ -187,12 +165,9 @@ def turn(
         background.
     progress_bar : bool, default: False
         Show progress on standard error.
-    rotation, hyperplane, distance, positions, frame, vectors, cut, light
-        As for :func:`vizlight.project`.
-    tangents, normals, facing, conditioned, line_field, occlusion
-        As for :func:`vizlight.illuminate`.
-    name, exponent, model, components, precision
-        As for :func:`vizlight.illuminate`.
+    **options
+        Options of :func:`vizlight.project`: those of the projection, such as ``rotation`` before
+        the turn, ``distance`` and ``frame``, and those of the light.
 
     Returns
     -------
@@ -215,18 +190,16 @@ def turn(
     UserWarning
         Once, with the number of frames affected, if :func:`vizlight.project` warns.
     """
-    asked = ProjectOptions.of(locals())
     path = _check_movie(path)
     count = _check.integer("frames", frames, low=1)
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     drawing = _drawing(picture)
     if scene is not None:
-        drawing.setdefault("scalars", RGB if scene.colored else asked.name)
+        drawing.setdefault("scalars", RGB if scene.colored else options.get("name", DEFAULT_NAME))
     else:
         _draw_active(mesh, drawing)
     writer = _writer(path, fps, drawing["size"])
-    options = asked.changed()
     before = options.pop("rotation", None)
     notes: list[str] = []
 

@@ -120,25 +120,13 @@ def guard() -> None:
             pv.jupyter.register_jupyter_backend(registered.name, guarded, override=True)
 
 
-class _Export:
-    """A method of a plotter that writes the scene, unless there is live light in it."""
+def _refusing(plotter: pv.BasePlotter, owner: Foreign, name: str) -> Callable[..., object]:
+    """Return a method that writes the scene, unless there is live light in it."""
+    # The owner has this as an attribute, and is to be released with its last reference.
+    weak = weakref.ref(plotter), weakref.ref(owner)
 
-    def __init__(self, plotter: pv.BasePlotter, owner: object, name: str) -> None:
-        self.name = name
-        # The owner has this as an attribute, and is to be released with its last reference.
-        self._plotter, self._owner = weakref.ref(plotter), weakref.ref(owner)
-
-    def __call__(self, *arguments: object, **options: object) -> object:
-        """Write the scene.
-
-        Raises
-        ------
-        ValueError
-            If there is live light in it, which the file would not have.
-        ImportError
-            In place of it while a gallery is built.
-        """
-        plotter, owner = self._plotter(), self._owner()
+    def export(*arguments: object, **options: object) -> object:
+        plotter, owner = (ref() for ref in weak)
         if plotter is not None and is_live(plotter):
             remedy = (
                 "call plotter.vizlight.export_html or vizlight.live_html for a page whose light "
@@ -148,8 +136,10 @@ class _Export:
             expected = "a scene without light that follows the camera, which this file cannot hold"
             # PyVista's gallery keeps the picture of a plotter whose scene it cannot export.
             kind = ImportError if pv.BUILDING_GALLERY else ValueError
-            raise kind(_check.message(self.name, expected, "live light", remedy))
-        return getattr(type(owner), self.name)(owner, *arguments, **options)
+            raise kind(_check.message(name, expected, "live light", remedy))
+        return getattr(type(owner), name)(owner, *arguments, **options)
+
+    return export
 
 
 class _Component:
@@ -179,4 +169,4 @@ def guard_exports(plotter: pv.BasePlotter) -> None:
 def _guard(plotter: pv.BasePlotter, owner: Foreign) -> None:
     for name in EXPORTS:
         if callable(getattr(owner, name, None)) and name not in vars(owner):
-            setattr(owner, name, _Export(plotter, owner, name))
+            setattr(owner, name, _refusing(plotter, owner, name))

@@ -13,14 +13,15 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.draw import dialects, program
+from vizlight.draw.fragments import Fragments
 from vizlight.draw.live import NORMALS, TANGENTS, items, matrix_of
-from vizlight.draw.painters import Fragments, exact_plan, mapped, without_highlight
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.filters.key import TEXTS
 from vizlight.mesh import blocks, records
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
+from vizlight.shading.decide import decide
 from vizlight.shading.display import NO_DATA_NAME, numerals
 
 if TYPE_CHECKING:
@@ -161,8 +162,8 @@ class Page:
         if live.scalars is not None:
             # The actor's own colour is PyVista's, which no one sees.
             made["color"] = list(scene.material.color or WHITE)
-        if isinstance(live.painter, Fragments):
-            made |= self._followed(live, live.painter, scene, actor, matrix)
+        if isinstance(live, Fragments):
+            made |= self._followed(live, scene, actor, matrix)
         else:
             made |= self._fixed(shown, scene, ids)
         self.meshes.append(made)
@@ -188,12 +189,12 @@ class Page:
                     values[name] = _codes(found[name], ends)
 
     def _followed(
-        self, live: Live, painter: Fragments, scene: Scene, actor: vtkActor, matrix: Array
+        self, live: Fragments, scene: Scene, actor: vtkActor, matrix: Array
     ) -> dict[str, object]:
         """Return the light in fragments: texts, numbers, tangents and normals."""
         rows = self._lights_of(live, scene)
         prop = actor.GetProperty()
-        texts, constants, plan = self._written(live, painter, scene, rows)
+        texts, constants, plan = self._written(live, scene, rows)
         self._lines |= not plan.surface
         self._remember(live)
         made: dict[str, object] = {
@@ -221,13 +222,12 @@ class Page:
             made["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))
         if live.scalars is not None:
             of_cells = live.scalars not in arrays
-            values = live.drawn.cell_data[live.scalars] if of_cells else arrays[live.scalars]
-            made |= {"colors": _packed(mapped(values, actor), "u1"), "ofCells": of_cells}
+            made |= {"colors": _packed(live.mapped(actor), "u1"), "ofCells": of_cells}
             made["colored"] = True
         return made
 
     def _written(
-        self, live: Live, painter: Fragments, scene: Scene, rows: Sequence[dict[str, object]]
+        self, live: Fragments, scene: Scene, rows: Sequence[dict[str, object]]
     ) -> tuple[dict[str, int], dict[str, list[float]], Plan]:
         """Return the texts for all lamps that the page may have, their constants, and a plan.
 
@@ -251,11 +251,8 @@ class Page:
         for data, free, ended, i, j in itertools.product(yes_no, sources, yes_no, *counts):
             lamps = [_NEAR] * i + [_FAR] * j
             lit = scene.replace(lights=lamps, material=whole, depth_cue=cue if ended else None)
-            lit = without_highlight(lit) if data else lit
-            plan, source = exact_plan(lit, sources[free]), sources[free]
-            given = program.numbers(
-                lit, lamps, shown=program.Shown(), fur=plan.fur, tallest=painter.tallest, data=data
-            )
+            plan, source = _plan(lit, sources[free]), sources[free]
+            given = program.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
             if plan.occluded:
                 given.append(program.Uniform("vizSky", "float", (1.0,)))
             constants |= {n.name: list(n.value) for n in given if n.name in _CONSTANT}
@@ -267,7 +264,7 @@ class Page:
             if text not in self._texts:
                 self._texts.append(text)
             found[key] = self._texts.index(text)
-        plan = exact_plan(scene.replace(depth_cue=None), live.source)
+        plan = _plan(scene.replace(depth_cue=None), live.source)
         return found, constants, plan
 
     def _remember(self, live: Live) -> None:
@@ -291,9 +288,7 @@ class Page:
         """Return colours with the light that does not depend on the eye."""
         live, actor = shown.live, shown.actor
         placed = live.source._replace(inputs=live.placed(actor))
-        colors = None
-        if live.scalars is not None:
-            colors = mapped(live.drawn.point_data[live.scalars], actor)
+        colors = None if live.scalars is None else live.mapped(actor)
         if live.own_eye:
             whole = lit_colors(placed, scene, colors)[ids]
             return {"live": False, "colors": _packed(whole, "u1"), "color": [1.0, 1.0, 1.0]}
@@ -301,8 +296,7 @@ class Page:
         lit = lit[ids]
         # Points of the surface that are none of the mesh.
         lit[ids < 0] = 0
-        reason = getattr(live.painter, "reason", "")
-        why = "" if reason == "asked for" else f", because {reason}"
+        why = "" if live.reason == "asked for" else f", because {live.reason}"
         said = f"; {seen} as from the first view" if seen else ""
         self.notices.append(
             f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
@@ -355,6 +349,11 @@ class Page:
                 if plotter.scalar_bars[title].GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
                     self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
+
+
+def _plan(scene: Scene, source: Source) -> Plan:
+    options = dataclasses.replace(source.options, components=False)
+    return decide(scene, source.inputs.layout, options)
 
 
 def _unconditioned(source: Source) -> Source:

@@ -13,8 +13,8 @@ import numpy as np
 
 from vizlight import _check, files
 from vizlight.draw import dialects, program
-from vizlight.draw.live import NORMALS, TANGENTS, Live
-from vizlight.draw.painters import Fragments, unfit, unfit_layout, without_highlight
+from vizlight.draw.fragments import Fragments, unfit, unfit_layout
+from vizlight.draw.live import NORMALS, TANGENTS
 from vizlight.draw.sources import sources_of
 from vizlight.filters.tint import color_table
 from vizlight.mesh import blocks
@@ -210,7 +210,7 @@ def shader(
         normals = "Normals"
     layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
     scalars = _named("scalars", scalars)
-    plan = _plan(scene, layout, asked, data=scalars is not None)
+    plan = _plan(scene, layout, asked)
     written = program.write(
         plan, turned=False, toward=TOWARD.get(asked.facing, ""), data=scalars is not None
     )
@@ -270,15 +270,14 @@ def save(
         _check.text("scalars", scalars, expected="the name of a point array")
     if scalars is not None and scalars not in source.mesh.point_data:
         raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
-    if reason := unfit(source.inputs, source.options, source.mesh):
+    if reason := unfit(source):
         raise ValueError(_unfit(reason))
-    plan = _plan(used, source.inputs.layout, source.options, data=scalars is not None)
-    painter = Fragments()
-    live = Live(source, used, painter)
-    painter.attach(live)
-    painter.see(live, source.inputs, used.view)
+    plan = _plan(used, source.inputs.layout, source.options)
+    live = Fragments(source, used)
+    live.attach()
+    live.see(source.inputs, used.view)
     written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
-    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=painter.tallest)
+    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
     data = files.write_mesh(live.drawn, beside(path))
     text = made.script(data.resolve())
     return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
@@ -301,8 +300,8 @@ def _unfit(reason: str) -> str:
     return _check.message("light", "what a fragment can compute in ParaView", reason, remedy)
 
 
-def _plan(scene: Scene, layout: Layout, options: ShadingOptions, *, data: bool) -> Plan:
-    """Return the plan of a scene as ParaView's camera sees it, on colours of data or without.
+def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
+    """Return the plan of a scene as ParaView's camera sees it.
 
     Raises
     ------
@@ -319,8 +318,7 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions, *, data: bool) 
         expected, remedy = "both ends for ParaView", "pass DepthCue(front=, back=), distances"
         raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
     bare = dataclasses.replace(options, components=False)
-    seen = without_highlight(scene) if data else scene
-    return decide(seen.replace(view=EYE), layout, bare)
+    return decide(scene.replace(view=EYE), layout, bare)
 
 
 def _made(
@@ -335,13 +333,12 @@ def _made(
 ) -> Shader:
     """Return the text of a program and the properties that it needs."""
     material = scene.material
-    shown = program.Shown(
-        min(material.ambient, 1.0), min(material.diffuse, 1.0), material.specular_color or WHITE
-    )
+    ambient, diffuse = min(material.ambient, 1.0), min(material.diffuse, 1.0)
+    shown = ambient, diffuse, material.specular_color or WHITE
     lights = [light for light in scene.lights if light.intensity > 0]
     seen, fixed = scene.replace(view=EYE), [light.seen_from(EYE) for light in lights]
     given = program.numbers(
-        seen, fixed, shown=shown, fur=plan.fur, tallest=tallest, data=scalars is not None
+        seen, fixed, *shown, fur=plan.fur, tallest=tallest, data=scalars is not None
     )
     # What stands with the camera has its numbers in view coordinates already.
     own = {"vizEye", "vizAxis", "vizFrom"}
@@ -358,8 +355,8 @@ def _made(
     properties: dict[str, object] = {
         "AmbientColor": color,
         "DiffuseColor": color,
-        "Ambient": shown.ambient,
-        "Diffuse": shown.diffuse,
+        "Ambient": ambient,
+        "Diffuse": diffuse,
         "Interpolation": "Gouraud",
         "SelectNormalArray": normal_array,
         "SelectTangentArray": tangent_array or "None",

@@ -18,6 +18,7 @@ from vizlight.shading.display import LEAST
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from vizlight._types import Color
     from vizlight.scene import DepthCue, Light, Scene, View
     from vizlight.shading.plan import Plan
 
@@ -107,14 +108,6 @@ class Program(NamedTuple):
     functions: str
     body: str
     varyings: tuple[Varying, ...]
-
-
-class Shown(NamedTuple):
-    """Coefficients that a renderer has multiplied its colours by, and its specular colour."""
-
-    ambient: float = 1.0
-    diffuse: float = 1.0
-    specular_color: tuple[float, float, float] = WHITE
 
 
 #: Statements that turn the normal where its length does not say how.
@@ -210,8 +203,10 @@ def write(
 def numbers(
     scene: Scene,
     lights: Sequence[Light],
+    ambient: float = 1.0,
+    diffuse: float = 1.0,
+    specular_color: Color = WHITE,
     *,
-    shown: Shown,
     fur: float,
     tallest: float,
     data: bool = False,
@@ -224,8 +219,10 @@ def numbers(
         Scene with the ends of its depth cue.
     lights : sequence of Light
         Lights of the plan, with headlights fixed.
-    shown : Shown
-        What the renderer's own colours hold.
+    ambient, diffuse : float, default: 1.0
+        Coefficients that a renderer has multiplied its colours by.
+    specular_color : (r, g, b)
+        Specular colour of the renderer.
     fur : float
         Density of the fur, 0 for none.
     tallest : float
@@ -246,9 +243,10 @@ def numbers(
         got = str(len(lights))
         raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
     # Light on colours of data is a factor, which the colours of a renderer must not hold already.
+    held = (1.0, 1.0, WHITE) if data else (ambient, diffuse, specular_color)
     found = [
         *_of_lights(lights),
-        *_of_material(scene, Shown() if data else shown),
+        *_of_material(scene, *held),
         *_of_view(scene.depth_cue, scene.view),
     ]
     if data:
@@ -256,7 +254,7 @@ def numbers(
         around = tuple(least * c for c in scene.ambient_color or WHITE)
         found.append(Uniform("vizLeastGain", "vec3", around))
         # VTK multiplies a scalar colour by ambient and diffuse before the light sees it.
-        gain = _ratio(1.0, shown.ambient + shown.diffuse)
+        gain = _ratio(1.0, ambient + diffuse)
         found.append(Uniform("vizColorGain", "float", (gain,)))
     if fur:
         # Fur of density 1 lets through what is less than any float.
@@ -292,15 +290,16 @@ def _of_lights(lights: Sequence[Light]) -> list[Uniform]:
     return found
 
 
-def _of_material(scene: Scene, shown: Shown) -> list[Uniform]:
+def _of_material(
+    scene: Scene, ambient: float, diffuse: float, specular_color: Color
+) -> list[Uniform]:
     material = scene.material
-    ambient = scene.ambient_intensity * _ratio(material.ambient, shown.ambient)
-    diffuse = _ratio(material.diffuse, shown.diffuse)
+    gain = scene.ambient_intensity * _ratio(material.ambient, ambient)
     around = scene.ambient_color or WHITE
-    shine = tuple(material.specular * c for c in shown.specular_color)
+    shine = tuple(material.specular * c for c in specular_color)
     return [
-        Uniform("vizAmbientGain", "vec3", tuple(ambient * c for c in around)),
-        Uniform("vizDiffuseGain", "float", (diffuse,)),
+        Uniform("vizAmbientGain", "vec3", tuple(gain * c for c in around)),
+        Uniform("vizDiffuseGain", "float", (_ratio(material.diffuse, diffuse),)),
         Uniform("vizSpecularGain", "vec3", shine),
         Uniform("vizShininess", "float", (material.shininess,)),
     ]

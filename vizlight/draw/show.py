@@ -14,9 +14,11 @@ from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Given
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
@@ -24,13 +26,12 @@ __all__ = ["plot"]
 
 #: Endings of the names of pictures that VTK writes.
 PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
-#: Keywords of ``pyvista.plot`` that a new plotter takes.
-_WINDOW = ("off_screen", "notebook", "theme", "border", "border_color", "border_width")
-#: Keywords of ``pyvista.plot`` by which it shows the plotter.
-_SHOWN = (
-    "auto_close", "interactive", "full_screen", "return_img", "before_close_callback",
-    "jupyter_kwargs", "return_viewer", "return_cpos",
-)  # fmt: skip
+#: Effects of a plotter, and keywords of ``pyvista.plot`` for them.
+EFFECTS = {
+    "eye_dome_lighting": ("eye_dome_lighting", "edl"),
+    "parallel_projection": ("parallel_projection",),
+    "ssao": ("ssao",),
+}
 #: Keywords of ``pyvista.plot`` that its signature does not name.
 _MORE = {"edl", "show_grid", "auto_close", "camera"}
 
@@ -104,7 +105,7 @@ def plot(
     for name in ("off_screen", "notebook"):
         if given.get(name) is not None:
             _check.boolean(name, given[name])
-    window = {name: given.pop(name) for name in _WINDOW if name in given}
+    window = _taken(given, pv.Plotter.__init__)
     size = None if window_size is None else list(window_size)
     plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
@@ -113,8 +114,7 @@ def plot(
             plotter.add_volume(mesh, scalars=scalars, **options)
         else:
             plotter.vizlight.add_mesh(mesh, scene=scene, light=light, scalars=scalars, **options)
-        shown = {name: given.pop(name) for name in _SHOWN if name in given}
-        _furnish(plotter, **given)
+        _furnish(plotter, given)
         if camera is not None:
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
     except BaseException:
@@ -122,7 +122,7 @@ def plot(
         raise
     # Outside a notebook PyVista warns that it ignores the backend.
     backend = jupyter_backend if plotter.notebook else None
-    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **shown)
+    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
 
 
 def _size(window_size: object) -> tuple[int, int]:
@@ -133,49 +133,39 @@ def _size(window_size: object) -> tuple[int, int]:
     return int(sides[0]), int(sides[1])
 
 
-def _furnish(
-    plotter: Foreign,
-    *,
-    background: Foreign = None,
-    text: str = "",
-    show_axes: bool | None = None,
-    show_bounds: bool = False,
-    show_grid: bool = False,
-    cpos: Foreign = None,
-    zoom: float | str | None = None,
-    parallel_projection: bool = False,
-    anti_aliasing: Foreign = None,
-    eye_dome_lighting: bool = False,
-    edl: bool = False,
-    ssao: bool = False,
-) -> None:
-    """Give a plotter what the keywords of ``pyvista.plot`` ask for beside the mesh."""
+def _taken(given: Keywords, function: Callable[..., object]) -> Keywords:
+    """Take from keywords those of a function."""
+    known = inspect.signature(function).parameters
+    return {name: given.pop(name) for name in [*given] if name in known}
+
+
+def _furnish(plotter: Foreign, given: Keywords) -> None:
+    """Give a plotter what keywords of ``pyvista.plot`` ask for beside the mesh, and take them."""
+    background = given.pop("background", None)
     if isinstance(background, str | Path) and Path(background).is_file():
         plotter.add_background_image(background)
     elif background is not None:
         plotter.background_color = _check.color("background", background)
-    if plotter.theme.axes.show if show_axes is None else show_axes:
-        (plotter.add_box_axes if plotter.theme.axes.box else plotter.add_axes)()
-    if text:
+    axes, asked = plotter.theme.axes, given.pop("show_axes", None)
+    if axes.show if asked is None else asked:
+        (plotter.add_box_axes if axes.box else plotter.add_axes)()
+    if text := given.pop("text", ""):
         plotter.add_text(text)
-    if show_grid:
-        plotter.show_grid()
-    elif show_bounds:
-        plotter.show_bounds()
-    if cpos is not None:
-        plotter.camera_position = cpos
-    else:
-        plotter.camera_position = plotter.get_default_cam_pos()
-        plotter.camera_set = False
-    if anti_aliasing is False:
+    grid, bounds = given.pop("show_grid", False), given.pop("show_bounds", False)
+    if grid or bounds:
+        (plotter.show_grid if grid else plotter.show_bounds)()
+    cpos = given.pop("cpos", None)
+    plotter.camera_position = plotter.get_default_cam_pos() if cpos is None else cpos
+    plotter.camera_set = cpos is not None
+    smooth = given.pop("anti_aliasing", None)
+    if smooth is False:
         plotter.disable_anti_aliasing()
-    elif anti_aliasing is not None:
-        plotter.enable_anti_aliasing("msaa" if anti_aliasing is True else anti_aliasing)
-    if eye_dome_lighting or edl:
-        plotter.enable_eye_dome_lighting()
-    if parallel_projection:
-        plotter.enable_parallel_projection()
-    if ssao:
-        plotter.enable_ssao()
+    elif smooth is not None:
+        plotter.enable_anti_aliasing("msaa" if smooth is True else smooth)
+    for effect, names in EFFECTS.items():
+        asked_for = [given.pop(name, False) for name in names]
+        if any(asked_for):
+            getattr(plotter, f"enable_{effect}")()
+    zoom = given.pop("zoom", None)
     if zoom is not None:
         plotter.camera.zoom(zoom)

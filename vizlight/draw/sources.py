@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -140,26 +141,22 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     if GHOSTS in mesh.point_data or GHOSTS in mesh.cell_data:
         return None
     size = np.array(mesh.dimensions)
-    steps, cell_steps = (np.cumprod([1, *n[:2]]) for n in (size, size - 1))
     source, middle = GridPoints(mesh), np.asarray(mesh.center)
     origin, cells, quads, vectors, count = [], [], [], [], 0
-    for side in range(6):
-        axis, end = side // 2, int(size[side // 2] - 1) * (side % 2)
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        own = end * steps[axis] + _sheet(size, steps, u, v)
+    for axis, end in itertools.product(range(3), (0, -1)):
+        own, of_cells = _side(size, axis, end), _side(size - 1, axis, end)
         a, b, c = source.at(own[:2, :2].ravel()[:3])
         normal = np.cross(c - a, b - a)
-        inward = normal @ (a - middle) < 0
-        normal /= np.linalg.norm(normal) * (-1 if inward else 1)
+        if normal @ (a - middle) < 0:
+            own, of_cells, normal = own[::-1], of_cells[::-1], -normal
         at = count + np.arange(own.size).reshape(own.shape)
         corners = [at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]]
-        quads.append(np.stack(corners[::-1] if inward else corners, axis=-1).reshape(-1, 4))
-        inner = min(end, size[axis] - 2) * cell_steps[axis]
-        cells.append((inner + _sheet(size - 1, cell_steps, u, v)).ravel())
+        quads.append(np.stack(corners, axis=-1).reshape(-1, 4))
+        cells.append(of_cells.ravel())
         origin.append(own.ravel())
-        vectors.append(np.broadcast_to(normal.astype(np.float32), (own.size, 3)))
+        vectors.append(np.tile(np.float32(normal / np.linalg.norm(normal)), (own.size, 1)))
         count += own.size
-    ids, of_cells = np.concatenate(origin), np.concatenate(cells)
+    ids = np.concatenate(origin)
     found = pv.PolyData()
     found.SetPoints(pv.vtk_points(np.asarray(source.at(ids), dtype=float)))
     corners_of = np.concatenate(quads)
@@ -167,16 +164,17 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     for key, array in mesh.point_data.items():
         records.attach_rows(found, key, np.asarray(array)[ids])
     for key, array in mesh.cell_data.items():
-        found.cell_data[key] = np.asarray(array)[of_cells]
+        found.cell_data[key] = np.asarray(array)[np.concatenate(cells)]
     records.carry_active(mesh, found)
     lean = np.zeros(count, dtype=np.float32)
     normals.keep(found, Sided(np.concatenate(vectors), lean, computed=True))
     return found
 
 
-def _sheet(size: Indices, steps: Indices, u: int, v: int) -> Indices:
-    """Return numbers of the places of a grid along two axes, from the first one."""
-    found: Indices = np.add.outer(np.arange(size[u]) * steps[u], np.arange(size[v]) * steps[v])
+def _side(size: Indices, axis: int, end: int) -> Indices:
+    """Return numbers of the places on a side of a grid, along its two other axes."""
+    along = [np.arange(n) * step for n, step in zip(size, np.cumprod([1, *size[:2]]), strict=True)]
+    found: Indices = along[axis][end] + np.add.outer(along[axis - 2], along[axis - 1])
     return found
 
 

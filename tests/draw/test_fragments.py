@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import pyvista as pv
+import shapes
 from fields import swatches
 from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.draw import component
-from vizlight.draw.backends import probe
 from vizlight.geometry import manifolds
 
 pytestmark = pytest.mark.opengl
@@ -27,25 +22,14 @@ CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 def torus():
     """Return a fine surface with a tangent field that has no singular point."""
-    angles = np.linspace(0, 2 * np.pi, 240)
-    angles[-1] = 0.0
-    u, v = np.meshgrid(angles, angles, indexing="ij")
-    ring = 1 + 0.4 * np.cos(v)
-    grid = pv.StructuredGrid(ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v))
-    mesh = grid.extract_surface(algorithm=None)
-    a, b = (np.ravel(x, order="F") for x in (u, v))
-    mesh["Normals"] = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], 1)
+    mesh = shapes.torus(240)
+    mesh.rename_array("n", "Normals")
     mesh.point_data.active_normals_name = "Normals"
-    mesh["around"] = np.stack([-np.sin(a), np.cos(a), 0 * a], 1)
-    mesh["height"] = np.array(mesh.points[:, 2])
     return mesh
 
 
 def helix(count=12001):
-    t = np.linspace(0, 12 * np.pi, count)
-    mesh = pv.MultipleLines(np.stack([np.cos(t), np.sin(t), t * 0.03 - 0.6], 1))
-    mesh["height"] = np.array(mesh.points[:, 2])
-    return mesh
+    return shapes.helix(count, turns=6, rise=0.03)
 
 
 def shot(plotter, camera=None):
@@ -284,16 +268,6 @@ def test_open_surface_faces_the_eye_in_each_fragment():
         assert np.quantile(np.abs(fragments - points), 0.99) <= 4
 
 
-def test_coarse_lines_are_right_between_their_points():
-    scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), material=shiny(shininess=60))
-    coarse, coarse_points = pictures(helix(73), scene, line_width=3)
-    fine, _ = pictures(helix(73 * 120 + 1), scene, line_width=3)
-    # The courses of both lines differ by less than the width, so pixels that both cover count.
-    both = (fine.min(axis=-1) > 0) & (coarse.min(axis=-1) > 0)
-    fragments, points = (np.abs(picture - fine)[both].mean() for picture in (coarse, coarse_points))
-    assert fragments < 0.5 * points
-
-
 def test_camera_light_and_moved_actor_are_followed():
     mesh = torus()
     plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
@@ -397,35 +371,4 @@ def test_what_fragments_cannot_do_is_done_at_points_with_the_reason(reason):
     assert reason in plotter.vizlight.explain(actor).splitlines()[0]
     with pytest.warns(UserWarning, match=f"computed at the points, because .*{reason}"):
         plotter.vizlight.add_mesh(mesh(), scene=scene, light="fragments", **options)
-    plotter.close()
-
-
-@pytest.mark.parametrize("backend", ["egl", "osmesa"])
-def test_each_backend_draws_the_light_in_fragments(backend):
-    if not probe(backend).works:
-        pytest.skip(probe(backend).detail)
-    code = (
-        "import sys; sys.path[:0] = ['tests', 'tests/draw']\n"
-        "import test_painters as t, numpy as np\n"
-        "scene, options = t.SCENES['two in fog'], t.SURFACE['conditioned']\n"
-        "a, b = t.pictures(t.torus(), scene, **options)\n"
-        "print(np.abs(a - b).max(), int(b.std()))"
-    )
-    window = {"egl": "vtkEGLRenderWindow", "osmesa": "vtkOSOpenGLRenderWindow"}[backend]
-    run = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=os.fspath(pytest.importorskip("pathlib").Path(__file__).parents[2]),
-        env={**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": window},
-    )
-    error, spread = map(int, run.stdout.split()[-2:])
-    assert error <= 4
-    assert spread > 5
-
-
-def test_component_is_the_one_of_the_plotter():
-    plotter = pv.Plotter(off_screen=True)
-    assert isinstance(plotter.vizlight, component.Component)
     plotter.close()
