@@ -187,8 +187,7 @@ def _outputs(job: Job, stem: str, out: Output, inputs: Sequence[Path]) -> list[S
                 mesh = Step("", "[]", job.lit, part)
                 written.append(_written(job, mesh, path.with_stem(f"{path.stem}-{part}"), out))
     for step in (*written, *pictures):
-        path = step.arguments[-1]
-        assert isinstance(path, Path)
+        path = Path(str(step.arguments[-1]))
         files.check_output(path, (".png", *SHOWN, *files.SUFFIXES))
         if path.suffix.lower() == ".py":
             from vizlight.draw.paraview import beside

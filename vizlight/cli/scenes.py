@@ -224,7 +224,7 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
 
     found = data.run()
     arrays = {**found.cell_data, **found.point_data}
-    if color.scalars in arrays:
+    if color.scalars is not None and color.scalars in arrays:
         named = known(cmap=color.cmap) | {"light": name, "name": TINT}
         shown = Step("shown", "vizlight.tint", lit, color.scalars, **named)
         values = arrays[color.scalars]
