@@ -54,3 +54,13 @@ def spread(bands, random, count):
     chosen = random.choice(len(t), count, p=size / size.sum())
     weight = random.dirichlet([1, 1, 1], count)
     return np.einsum("ti,tij->tj", weight, t[chosen]), owner[chosen]
+
+
+def lambert(points, normal, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
+    """Return ``0.1 + 0.8 cosine^power fading`` of one light, by the law itself."""
+    toward = np.asarray(direction) + 0 * points if position is None else position - points
+    d = np.linalg.norm(toward, axis=1)
+    cosine = np.einsum("ij,ij->i", normal, toward) / d
+    c1, c2, c3 = attenuation
+    fading = 1 if position is None else np.minimum(1, 1 / (c1 + c2 * d + c3 * d * d))
+    return 0.1 + 0.8 * np.maximum(cosine, 0) ** power * (cosine > 0) * fading

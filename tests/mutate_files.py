@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 from hostile import runner, seeds
 
-#: Formats that do not say how much they hold: lines of such a file are a whole file.
-UNCOUNTED = (".obj",)
+#: Formats that do not say how much they hold, or are not held to it.
+UNCOUNTED = (".obj", ".dem")
 #: Files of one process, and the least number of bytes that matter in a mutation.
 BATCH = 100
 NUMBERS = (0, 1, -1, 2**31 - 1, 2**31, 2**32 - 1, 10**12)

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from vtkmodules import vtkIOXML
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonCore import (
@@ -71,19 +70,11 @@ FORMATS: dict[str, tuple[str, ...]] = {
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
+#: Largest number of points of a mesh: half of the addresses that processors have.
+MOST_POINTS = 1 << 40
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
-
-
-#: Readers of VTK's XML formats.
-READERS = {
-    ".vtp": vtkIOXML.vtkXMLPolyDataReader,
-    ".vtu": vtkIOXML.vtkXMLUnstructuredGridReader,
-    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
-    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
-    ".vti": vtkIOXML.vtkXMLImageDataReader,
-}
 
 
 #: Where VTK says that an error or a warning arose, which stands before what it says.
@@ -156,8 +147,9 @@ def read(
     -----
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
-    states (.obj states no size). Threads may read at the same time: what VTK says is told
-    apart by thread, and no stream is redirected. Libraries other than VTK may print.
+    states: .stl, .ply, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same
+    time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
+    VTK may print.
     """
     path = _path("file", path)
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
@@ -182,8 +174,8 @@ def read(
     with reading, captured_errors() as errors:
         try:
             found: Foreign = _found(path, time)
-            if lacking := short_files.contradiction(found, path):
-                raise FileError(lacking)
+            for block in blocks.all_blocks(found):
+                _check_block(block, path)
             mesh = _whole(found, path.suffix.lower(), overlays)
         except series.NoStepError:
             raise
@@ -217,15 +209,25 @@ def no_file(path: Path) -> str:
     return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
 
 
-def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
-    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
-    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+def _check_block(mesh: pv.DataSet, path: Path) -> None:
+    """Raise ValueError for what VTK's reader makes of a file that lacks something."""
+    size = getattr(mesh, "dimensions", (1,))
+    if min(size) < 0 or mesh.n_points > MOST_POINTS:
+        raise FileError(f"no points: the dimensions are {tuple(size)}")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
     odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]
     for key in odd:
         del mesh.cell_data[key]
     if odd:
         _check.warn(f"file: arrays without a row for each cell are left out: {odd}")
+    check_whole(mesh, "mesh")
+    if lacking := short_files.missing_numbers(mesh, path):
+        raise FileError(lacking)
+
+
+def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
+    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
         mesh = normals.welded(blocks.surface(mesh, "file"))
     for path in overlays:
@@ -661,7 +663,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         own = _to_save(mesh)
         with captured_errors() as errors:
             own.save(draft)
-        _check_draft(Path(draft), mesh, errors)
+        _check_drafts([Path(draft)], errors)
 
     return replace_file(path, save)
 
@@ -700,20 +702,9 @@ def _save_blocks(mesh: pv.MultiBlock, folder: Path, draft: Path) -> None:
     with captured_errors() as errors:
         own.save(draft)
     files = sorted(draft.with_suffix("").glob("*"))
-    reason = errors[0] if errors else ""
-    if not (reason or (draft.is_file() and all(map(_ended, [draft, *files])))):
-        reason = "the file is not whole"
-    if reason:
-        raise FileError(_check.message("output", "a file that can be written", reason))
+    _check_drafts([draft, *files], errors)
     for file in files:
         file.replace(folder / file.name)
-
-
-def _ended(path: Path) -> bool:
-    """Return whether a file of XML has its end."""
-    with path.open("rb") as file:
-        file.seek(-min(64, path.stat().st_size), os.SEEK_END)
-        return file.read().rstrip().endswith(b"</VTKFile>")
 
 
 def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
@@ -759,22 +750,10 @@ def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
         raise FileError(_check.message("output", f"{size / 1e6:.1f} MB of free disk", got))
 
 
-def _check_draft(draft: Path, mesh: pv.DataSet, errors: list[str]) -> None:
-    """Check that a file that was written is whole, by what the writer said and by its reader."""
-    reason = errors[0] if errors else ""
-    if not reason and not draft.is_file():
-        reason = "nothing was written"
-    if not reason and draft.suffix == ".stl":
-        reason = short_files.missing_part(draft)
-    elif not reason and draft.suffix != ".vtk":
-        reader = READERS[draft.suffix]()
-        reader.SetFileName(str(draft))
-        with captured_errors() as errors:
-            reader.UpdateInformation()
-        seen = {reader.GetPointArrayName(i) for i in range(reader.GetNumberOfPointArrays())}
-        if errors or not _ended(draft) or seen != set(mesh.point_data):
-            reason = errors[0] if errors else "the file is not whole"
-    if reason:
+def _check_drafts(drafts: Iterable[Path], errors: list[str]) -> None:
+    """Check that files that were written are whole, by what the writer said and by their ends."""
+    reasons = [short_files.missing_part(one) if one.is_file() else "none" for one in drafts]
+    for reason in (*errors, *filter(None, reasons)):
         raise FileError(_check.message("output", "a file that can be written", reason))
 
 

@@ -2,7 +2,7 @@
 
 The scene is the most expensive of the common ones: lines on a surface, a light with a position, a
 perspective view, the compensated diffuse term, the Phong term and the self-shadow of the surface.
-The script (:mod:`vizlight.verify.reference`) works on whole arrays. The engine runs its NumPy code
+The script (:mod:`studies.script`) works on whole arrays. The engine runs its NumPy code
 in blocks and, where numba is installed, compiled code. All are timed in turn, so a busy machine
 slows all of them. A first call is that of a process of its own, with imports and the preparation
 of compiled code.
@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from studies import SHINY, Row, Study, peak_memory, take_turns
+from studies import script as reference
 from vizlight import _compiled
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-from vizlight.verify import reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -40,7 +40,7 @@ FIRST_CALL = """
 import sys, time
 import numpy as np
 from vizlight.shading import engine
-from vizlight.verify import reference
+from studies import script as reference
 from studies.engine import SCENE
 random = np.random.default_rng(7)
 vectors = [random.standard_normal((int(sys.argv[1]), 3), dtype=np.float32) for _ in range(2)]

@@ -22,12 +22,12 @@ from vizlight.mesh.batches import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
-from vizlight.verify.between import Between, columns, error_between, random_places
+from vizlight.verify.between import Between, Places, columns, error_between, random_places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Indices
+    from vizlight._types import Array, Indices
 
 SCENE = Scene(
     lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0.1, 0.3, 0.9)), material=SHINY
@@ -95,6 +95,45 @@ def uniform_size(cells: Indices, parts: int) -> int:
     return used + edges * (parts - 1) + len(cells) * (parts - 1) * (parts - 2) // 2
 
 
+def uniform_error(between: Between, light: Array, places: Places, parts: int) -> Array:
+    """Return the error at places where the sides of all cells have so many equal parts."""
+    if parts == 1:
+        return error_between(between, light, places)
+    within, share = sub_cells(places.weights, parts)
+    true = between.light(places)
+    shown = np.zeros_like(true)
+    for i in range(share.shape[1]):
+        shown += share[:, i : i + 1] * between.light(Places(places.corners, within[:, i]))
+    return np.asarray(np.abs(true - shown).max(axis=1, initial=0))
+
+
+def sub_cells(weights: Array, factor: int) -> tuple[Array, Array]:
+    """Return the cell around each place where the sides of all cells are divided evenly.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (M, s)
+        Places by the shares of the corners of their cells.
+    factor : int
+        Number of parts of a side.
+
+    Returns
+    -------
+    ndarray, shape (M, s, s)
+        Weights of the corners of the smaller cells, one per row.
+    ndarray, shape (M, s)
+        Weights of those corners in the places.
+    """
+    s = weights.shape[1]
+    whole = np.minimum(np.floor(weights * factor), factor)
+    rest = weights * factor - whole
+    # Of a triangle's parts those that stand on a tip have shares that add up to 2.
+    turned = (rest.sum(axis=1) > 1.5)[:, np.newaxis] if s == 3 else np.zeros((1, 1), np.bool_)
+    steps = np.where(turned[..., np.newaxis], 1 - np.eye(s), np.eye(s))
+    share = np.where(turned, 1 - rest, rest)
+    return (whole[:, np.newaxis] + steps) / factor, share
+
+
 def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Row]:
     """Return the rows of one mesh: its uniform refinements, then its adaptive ones."""
     mesh, tangents = sample(name)
@@ -108,7 +147,7 @@ def measure(name: str, errors: Sequence[float], parts: Sequence[int]) -> list[Ro
     places, _ = random_places(between.points, cells, PLACES, np.random.default_rng(0))
     light, rows = columns(shading), []
     for count in parts:
-        off = error_between(between, light, places, count)
+        off = uniform_error(between, light, places, count)
         rows.append(_row(name, UNIFORM, count, off, uniform_size(cells, count)))
         if off.max() < min(errors) / 2:
             break

@@ -179,19 +179,6 @@ def test_an_error_names_the_block():
         vizlight.illuminate(blocks, SCENE, conditioned=True, model="phong")
 
 
-def test_lit_blocks_share_no_memory_and_are_lit_again():
-    blocks = pv.MultiBlock([sheet(i) for i in range(3)])
-    once = vizlight.illuminate(blocks, SCENE)
-    for block, given in zip(once, blocks, strict=True):
-        assert not np.shares_memory(block.points, given.points)
-        assert np.asarray(block["luminance"]).base is None or block["luminance"].base.size < 99
-    again = vizlight.illuminate(once, SCENE)
-    inplace = vizlight.illuminate(once, SCENE, inplace=True)
-    assert inplace is once
-    for one, other in zip(once, again, strict=True):
-        np.testing.assert_array_equal(one["luminance"], other["luminance"])
-
-
 def test_small_meshes_keep_no_normals_and_are_joined_again():
     large = pv.Plane(i_resolution=16, j_resolution=16)
     large.clear_data()

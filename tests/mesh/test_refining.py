@@ -459,17 +459,6 @@ def test_bad_input():
         refine(pv.MultiBlock([cloud]), SCENE, tangents="t")
 
 
-def test_the_search_ends_if_nothing_helps(monkeypatch):
-    """Rounds are limited, whatever the light does."""
-    calls = []
-    right = refining._Refinement.round
-    monkeypatch.setattr(refining, "ROUNDS", 3)
-    monkeypatch.setattr(refining._Refinement, "round", lambda *a: calls.append(1) or right(*a))
-    with pytest.warns(UserWarning, match="of the places are off by more than 0.0001"):
-        refine(ball(), SCENE, error=1e-4)
-    assert len(calls) == 3
-
-
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_parts_interpolate_to_the_directions_of_their_cell(dtype):
     """Also after many splits, a place has the normal that interpolation over the mesh gives it."""

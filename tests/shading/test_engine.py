@@ -16,7 +16,6 @@ from lamps import SHINY, shiny
 from studies import peak_memory
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, _pool, engine
 from vizlight.model import reflection
-from vizlight.shading.inputs import ShadingInputs
 
 SUN = Light(direction=(1, 2, 0.5))
 LAMP = Light(position=(0.5, 4, 2), intensity=0.7, attenuation=(0.5, 0.2, 0.05), color="red")
@@ -622,15 +621,3 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
     )  # fmt: skip
     # 2500 pages of output; without the memory kept 78,000 were seen.
     assert int(run.stdout) < 15_000
-
-
-def test_rows_that_are_made_on_demand_are_stored_as_they_are(random):
-    """Also those that several points share."""
-    points, tangents, normals = (random.normal(size=(n, 3)) for n in (12, 12, 4))
-    made = ShadingInputs(
-        points=points, tangents=tangents, normals=normals, repeat=3, block=2, generated=True
-    )
-    kept = made.stored()
-    assert (kept.generated, kept.block) == (False, None)
-    for name, rows in (("points", points), ("tangents", tangents), ("normals", normals)):
-        np.testing.assert_array_equal(getattr(kept, name), rows)

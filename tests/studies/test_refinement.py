@@ -26,3 +26,15 @@ def test_the_points_of_a_uniform_refinement_are_counted():
         assert refinement.uniform_size(mesh.regular_faces, times) == fine.n_points
     segments = np.array([[0, 1], [1, 2]])
     assert refinement.uniform_size(segments, 4) == 9
+
+
+@pytest.mark.parametrize("s", [2, 3])
+@pytest.mark.parametrize("factor", [1, 2, 5])
+def test_smaller_cells_hold_the_places(s, factor, random):
+    weights = random.dirichlet(np.ones(s), 500)
+    within, share = refinement.sub_cells(weights, factor)
+    assert np.min(share) > -1e-12
+    np.testing.assert_allclose(share.sum(axis=1), 1)
+    np.testing.assert_allclose(within.sum(axis=2), 1)
+    np.testing.assert_allclose(np.einsum("ms,msr->mr", share, within), weights)
+    np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)

@@ -11,9 +11,8 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate, refine
-from vizlight.mesh.batches import inputs_of
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions, ShadingOptions
+from vizlight.shading.options import ShadingOptions
 from vizlight.verify import between
 from vizlight.verify.between import Between, Places
 from vizlight.verify.report import Run, unseen
@@ -63,43 +62,17 @@ def test_the_error_is_that_of_many_places(ball):
     assert np.mean(off > run.between) < unseen(run.places)
 
 
-@pytest.mark.parametrize("model", ["phong", "blinn"])
-def test_the_resolution_is_the_one_it_takes(ball, model):
-    """A mesh whose sides are divided by that factor has no visible error, one by less has."""
-    found = report_of(lambda: illuminate(ball, SCENE, normals="normal", model=model))
-    factor = found.runs[0].finer
-    assert factor in (2, 4, 8)
-    for times, enough in ((factor // 2, False), (factor, True)):
-        fine = ball.subdivide(int(np.log2(times)), "linear") if times > 1 else ball
-        fine["normal"] = unit(np.asarray(fine["normal"]))
-        (run,) = report_of(
-            lambda: illuminate(fine, SCENE, normals="normal", model=model)  # noqa: B023
-        ).runs
-        assert (run.visible < 1e-3) == enough
-
-
 def test_words(ball):
     said = str(report_of(lambda: illuminate(ball, SCENE, normals="normal")))
     assert "rounding error" in said
     assert "all 1522 points computed again one by one in float64" in said
     assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in said
-    assert "are off by more than 1/255: cells 1/4 as long, or refining to 1/255, would do" in said
+    assert "are off by more than 1/255; vizlight.refine to 1/255 leaves only places where" in said
     fine = str(report_of(lambda: refine(ball, SCENE, normals="normal")))
-    assert "would do" not in fine
+    assert "vizlight.refine" not in fine
     part = str(report_of(lambda: illuminate(ball, SCENE, normals="normal"), sample=100))
     assert "100 points computed again" in part
     assert "95 %: fewer than 3 % of the points are worse" in part
-
-
-def test_a_resolution_that_is_not_enough_is_named():
-    """Light that jumps within a triangle is right at no resolution."""
-    normals = np.array([[0.0, 0, 1], [0, 0, 1], [0.1, 0, -1]])
-    mesh = pv.PolyData(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), [3, 0, 1, 2])
-    mesh["n"] = normals
-    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)), material=SHINY)
-    found = report_of(lambda: illuminate(mesh, scene, normals="n", facing="as given"))
-    assert found.runs[0].finer is None
-    assert "cells 1/128 as long would not do; refining to 1/255 leaves" in str(found)
 
 
 @pytest.mark.parametrize("count", [1, 10, 300, 4096])
@@ -191,18 +164,6 @@ def test_places_are_uniform_in_area(random):
         assert len(places.weights) == 0
 
 
-@pytest.mark.parametrize("s", [2, 3])
-@pytest.mark.parametrize("factor", [1, 2, 5])
-def test_smaller_cells_hold_the_places(s, factor, random):
-    weights = random.dirichlet(np.ones(s), 500)
-    within, share = between.sub_cells(weights, factor)
-    assert np.min(share) > -1e-12
-    np.testing.assert_allclose(share.sum(axis=1), 1)
-    np.testing.assert_allclose(within.sum(axis=2), 1)
-    np.testing.assert_allclose(np.einsum("ms,msr->mr", share, within), weights)
-    np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)
-
-
 @pytest.mark.parametrize("k", [1, 2, 3])
 def test_a_mean_of_spaces_depends_on_no_basis(k, random):
     n = 5
@@ -224,14 +185,6 @@ def unit_space(frames):
     """Return the projections on the spaces of frames."""
     rows = np.linalg.qr(frames.swapaxes(1, 2))[0]
     return rows @ rows.swapaxes(1, 2)
-
-
-def test_the_mean_of_vectors_that_agree_is_linear(random):
-    vectors = np.array([1.0, 0.2, 0.1]) + 0.3 * random.standard_normal((3, 1, 3))
-    weights = random.dirichlet(np.ones(3), 20)
-    places = Places(np.tile([0, 1, 2], (20, 1)), weights)
-    found = between.mean_spaces(vectors, places)[:, 0]
-    np.testing.assert_allclose(found, weights @ vectors[:, 0], atol=1e-14)
 
 
 @pytest.mark.parametrize("near", [False, True])
@@ -256,14 +209,6 @@ def test_the_peak_of_a_highlight_is_found(lines, near, random):
         other = field.light(Places(cells, np.tile(weights, (len(cells), 1))))[:, 0]
         inside = best > 0.95
         assert np.max(other[inside] - best[inside]) < 0.02
-
-
-def test_cells_of_what_a_filter_lights():
-    mesh = pv.Plane(i_resolution=2, j_resolution=1)
-    inputs = inputs_of(mesh, "", SCENE, LightOptions())
-    assert inputs.cells().shape == (4, 3)
-    line = pv.MultipleLines([[0, 0, 0], [1, 0, 0], [1, 1, 0]])
-    assert inputs_of(line, "", SCENE, LightOptions()).cells().tolist() == [[0, 1], [1, 2]]
 
 
 def test_rows_of_no_length_are_no_unit_vectors():

@@ -20,7 +20,6 @@ from vizlight import (
     Scene,
     Sphere,
     View,
-    cli,
     engine,
     fur,
     illuminate,
@@ -31,7 +30,6 @@ from vizlight import (
 )
 from vizlight.geometry import manifolds
 from vizlight.mesh import casters
-from vizlight.model import formulas
 from vizlight.shading import algebra
 from vizlight.verify import oracle, rays
 from vizlight.verify import report as reports
@@ -201,14 +199,6 @@ def test_the_oracle_agrees_on_what_can_be_lit(random):
     assert run.error < 1e-5
 
 
-def test_a_wrong_engine_is_found_out(surface, monkeypatch):
-    right = formulas.diffuse
-    monkeypatch.setattr(formulas, "diffuse", lambda *a: 1.01 * right(*a))
-    with vizlight.report() as told:
-        illuminate(surface, SCENE, tangents="V")
-    assert told.error > 1e-3
-
-
 def test_invalid_points_are_counted(random):
     vectors = random.standard_normal((50, 3))
     vectors[:7] = 0
@@ -301,19 +291,6 @@ def test_the_scalar_ray_has_the_lengths_of_samples(random):
             length = np.mean(within) * 2 / way[2]
             t = rays.relief_ratio(x, y, z, place, up, 0.7, way=way, wall=wall)
             assert t == pytest.approx(0.7 / max(length, 0.7), abs=1e-3)
-
-
-def test_command_line(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    pv.Sphere().save("ball.vtp")
-    assert cli.main(["light", "ball.vtp", "-o", "lit.vtp", "--report", "--explain"]) == 0
-    said = capfd.readouterr().out
-    assert "842 points lit in 1 run(s)" in said
-    assert "ns per point" in said
-    assert "error" in said
-    assert "diffuse: max(0, N.wi) to the power 1" in said
-    assert cli.main(["light", "ball.vtp", "-o", "lit.vtp", "--refine", "much"]) == 2
-    assert "--refine: expected a number of at least 1e-05, such as 1/255" in capfd.readouterr().err
 
 
 def test_light_above_one_is_counted():

@@ -49,10 +49,3 @@ def test_the_check_is_no_cost_of_the_light(monkeypatch):
         assert run.sample == 50
         assert elapsed > checked
         assert run.seconds <= told.seconds <= elapsed - checked
-
-
-def test_all_that_is_done_meanwhile_is_timed():
-    with vizlight.report(sample=0) as told:
-        time.sleep(0.05)
-        vizlight.illuminate(pv.Sphere(), SCENE)
-    assert told.seconds >= 0.05 + told.runs[0].seconds

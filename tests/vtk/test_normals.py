@@ -8,20 +8,9 @@ import pyvista as pv
 import scipy.ndimage
 
 import vizlight
-from vizlight import Light, Material, Scene, View
-from vizlight.mesh.normals import onlooker, split_edges
+from vizlight import Light, Scene, View
+from vizlight.mesh.normals import split_edges
 from vizlight.vtk import normals
-
-
-@pytest.mark.parametrize("winding", [1, -1])
-def test_normals_of_a_closed_surface_are_outward(winding):
-    mesh = pv.Sphere().copy()
-    mesh.clear_data()
-    faces = mesh.regular_faces[:, ::winding]
-    mesh = pv.PolyData.from_regular_faces(mesh.points, faces)
-    found = normals.computed_normals(mesh).vectors
-    outward = np.asarray(mesh.points) / 0.5
-    assert np.einsum("ij,ij->i", found, outward).min() > 0.99
 
 
 @pytest.mark.parametrize("winding", [1, -1])
@@ -74,17 +63,6 @@ def test_what_is_nearly_closed_faces_outward_wherever_the_eye_is(winding, eye):
     flat = np.all(np.abs(open_end.points[:, :2]) < (1.6, 0.4), axis=1)
     assert flat.sum() > 10
     assert (np.sign(open_end.points[flat, 2]) * found[flat, 2]).min() > 0.99
-
-
-def test_without_a_view_the_light_is_looked_from():
-    sheet = pv.Plane(i_resolution=3, j_resolution=3)
-    sheet.clear_data()
-    for side in (1.0, -1.0):
-        for where in ({"direction": (0, 0.5, side)}, {"position": (0, 0, 7 * side)}):
-            scene = Scene(lights=Light(**where), material=Material(specular=0))
-            lit = vizlight.illuminate(sheet, scene)
-            assert lit["luminance"].min() > 0.3
-    assert onlooker(Scene(lights=Light.headlight())) is None
 
 
 def test_separate_triangles_of_a_closed_surface_face_outward():

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _pool
 from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, records
 from vizlight.mesh.normals import NORMALS, onlooker, split_where_computed, with_normals
 from vizlight.mesh.sky import in_medium
-from vizlight.mesh.strands import Grown, Strands
 from vizlight.model import kernels
 from vizlight.scene import Material, Scene
 from vizlight.scene.scene import as_scene
@@ -34,15 +32,15 @@ from vizlight.vtk.arrays import vectors_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight._types import Array, Indices, VectorLike
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03
 #: Material of fur, which is lit through fur and seen through fur.
 MATERIAL = Material(ambient=0.4, diffuse=2.0, specular=0.3)
-#: Number of blocks of random numbers that are kept for threads that work on parts of them.
-KEPT = 8
+#: Number of fibres that a thread grows at once.
+AT_ONCE = 1 << 13
 #: Largest length of a fibre: differences of longer ones leave the range of float32.
 LONGEST = 1e30
 
@@ -264,32 +262,17 @@ def _grow(
     coat = _Coat(surface, skin, options)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
-    far = any(coat.origin)
-    strands = Strands(
-        coat.grow,
-        options.fibres,
-        options.segments + 1,
-        np.dtype(np.float64) if far else np.result_type(skin.points.dtype, np.float32),
-        straight=options.straight,
-        unit=coat.unit,
-    )
-    through = options.lost
-    fibres = strands.inputs(
-        normals=bool(options.conditioned or through), fur=through, origin=coat.origin
-    )
+    fibres, inside = coat.fibres()
     below = ShadingInputs(
         points=np.asarray(skin.points),
         normals=np.asarray(skin.point_data[NORMALS]),
-        fur_height=coat.skin_heights() if through else None,
-        fur=through,
+        fur_height=coat.skin_heights() if options.lost else None,
+        fur=options.lost,
     )
+    points = np.asarray(fibres.points)
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
-        # The shares of light need the points of all fibres.
-        fibres = fibres.stored()
-        lines = strands.mesh()
-        if far:
-            lines.points = np.asarray(lines.points) + np.array(coat.origin)
+        lines = _mesh(points + np.array(coat.origin) if any(coat.origin) else points, fibres.repeat)
         dimmings = lighting.dimmings(
             [lines, surface], [fibres, below], scene, options.bundle, name,
             show=progress_bar,
@@ -301,14 +284,19 @@ def _grow(
             dataclasses.replace(given, occlusion=share)
             for given, share in zip(lighting.dimmed([fibres, below], dimmings), shares, strict=True)
         )
+    # A depth cue spans the skin.
+    scene = lighting.fit_depth_cue(scene, [below])
+    m = fibres.repeat
     parts = [(fibres, options.shading), (below, options.shading.for_surface())]
+    del fibres, below
     results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
-    if far:
-        strands.points += np.array(coat.origin, strands.points.dtype)
-    inside = int(np.count_nonzero(strands.inside))
+    # What the light was computed from is freed before the cells of the lines are made.
+    parts.clear()
+    if any(coat.origin):
+        points += np.array(coat.origin)
     if inside:
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
-    meshes = [strands.mesh(), surface.copy(deep=True)]
+    meshes = [_mesh(points, m), surface.copy(deep=True)]
     lighting.finish(meshes, results, "fur", scene, options, name, dimmings=dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
@@ -322,6 +310,10 @@ class _Coat:
     def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
         self.options = options
         self.origin = blocks.near_origin(skin)
+        #: Type of the points.
+        self.kind = np.dtype(np.float64)
+        if not any(self.origin):
+            self.kind = np.result_type(skin.points.dtype, np.float32)
         size = float(skin.length)
         if not 1e-30 <= size <= 1e30 and skin.n_points:
             remedy = "scale the mesh"
@@ -329,8 +321,6 @@ class _Coat:
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
         order, self.total = geometry.laid(np.asarray(skin.points), faces)
         self.faces = faces.take(order, axis=0)
-        self._drawn: dict[int, geometry.Draws] = {}
-        self._lock = threading.Lock()
         self.normals = np.asarray(skin.point_data[NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.vectors is not None:
@@ -360,12 +350,57 @@ class _Coat:
         self._table = np.concatenate(parts, axis=1)
         self._cuts = np.cumsum([part.shape[1] for part in parts])[:-1]
 
-    def grow(self, block: slice) -> Grown:
-        """Return some of the fibres."""
-        start = block.start // geometry.SEED_BLOCK * geometry.SEED_BLOCK
-        part = slice(block.start - start, block.stop - start)
-        face, weights = geometry.seed_block(self.total, self._draws(start))
-        face, weights = face[part], weights[part]
+    def fibres(self) -> tuple[ShadingInputs, int]:
+        """Grow all fibres; return what they are lit by, and the number of those reversed."""
+        options = self.options
+        count, m = options.fibres, options.segments + 1
+        # Straight fibres have one tangent each.
+        each = (count,) if options.straight else (count, m)
+        points, single = np.empty((count, m, 3), self.kind), np.float32
+        tangents: Array = np.empty((*each, 3), single)
+        normals: Array | None = None
+        if options.conditioned or options.lost:
+            # Straight fibres without vectors stand along the normals.
+            upright = options.straight and self.vectors is None
+            normals = tangents if upright else np.empty((count, 3), single)
+        heights: Array | None = np.empty((count, m), single) if options.lost else None
+
+        def work(block: slice) -> int:
+            face, weights = geometry.seed_block(self.total, block.start, count, options.seed)
+            phases = self._phases(block.start, len(face))
+            reversed_ = 0
+            # In parts that fit the caches.
+            for part in _pool.blocks(len(face), AT_ONCE):
+                at = slice(block.start + part.start, block.start + part.stop)
+                phase = None if phases is None else phases[part]
+                root, normal, way, offsets, inside = self._grown(face[part], weights[part], phase)
+                np.add(root, offsets, out=points[at].transpose(1, 2, 0))
+                along = way if options.straight else geometry.tangents(offsets, way)
+                np.moveaxis(tangents[at], 0, -1)[...] = along
+                if normals is not None:
+                    normals[at] = normal.T
+                if heights is not None:
+                    height = self._heights(offsets, normal)
+                    np.subtract(height.max(axis=0), height, out=heights[at].T)
+                reversed_ += inside
+            return reversed_
+
+        inside = sum(_pool.run(work, _pool.blocks(count, geometry.SEED_BLOCK)))
+        made = ShadingInputs(
+            points=points.reshape(-1, 3),
+            tangents=tangents.reshape(-1, 3),
+            normals=normals,
+            fur_height=None if heights is None else heights.reshape(-1),
+            fur=options.lost,
+            repeat=m,
+            origin=self.origin,
+        )
+        return made, inside
+
+    def _grown(
+        self, face: Indices, weights: Array, phase: Array | None
+    ) -> tuple[Array, Array, Array, Array, int]:
+        """Return roots, normals, directions, points less roots, and the number reversed."""
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
         found *= weights[:, :1]
@@ -380,38 +415,24 @@ class _Coat:
         if toward is not None and toward.shape[1] > 1:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
-        phase = self._phases(start, part)
-        offsets = self._strands(way, length, toward, phase)
-        return Grown(root, offsets, way, normal, inside)
+        return root, normal, way, self._strands(way, length, toward, phase), inside
 
-    def _draws(self, start: int) -> geometry.Draws:
-        """Return the random numbers of the block of seeds at ``start``, drawn once."""
-        with self._lock:
-            drawn = self._drawn.get(start)
-            if drawn is None:
-                options = self.options
-                drawn = geometry.draw(self.total, start, options.fibres, options.seed)
-                self._drawn[start] = drawn
-                if len(self._drawn) > KEPT:
-                    del self._drawn[next(iter(self._drawn))]
-            return drawn
-
-    def _phases(self, start: int, part: slice) -> Array | None:
-        """Return the angles at which the curl starts of a part of the block at ``start``."""
+    def _phases(self, start: int, count: int) -> Array | None:
+        """Return the angles at which the curl starts, of the block at ``start``."""
         if not self.options.curl:
             return None
         random = np.random.default_rng([self.options.seed, start, 1])
-        return np.asarray(random.random(part.stop)[part] * 2 * np.pi)
+        return np.asarray(random.random(count) * 2 * np.pi)
 
-    def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, Bools | None]:
-        """Return unit directions at the root, and which of the vectors point into the surface."""
+    def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, int]:
+        """Return unit directions at the root, and how many of the vectors point inward."""
         if vector is None:
-            return normal, None
+            return normal, 0
         way, size = kernels.unit(vector)
         way = np.where(size > 0, way, normal)
         inside = kernels.dot(way, normal) < 0
         way[:, inside] *= -1
-        return way, inside
+        return way, int(np.count_nonzero(inside))
 
     def _strands(
         self, way: Array, length: Array | float, toward: Array | None, phase: Array | None
@@ -434,9 +455,26 @@ class _Coat:
         way, _ = self._ways(normal, None if self.vectors is None else self.vectors.T)
         toward = None if self.toward is None else self.toward.T
         offsets = self._strands(way, self.length, toward, None)
-        height: Array = np.einsum("jib,ib->jb", offsets, normal).max(axis=0)
+        return np.asarray(self._heights(offsets, normal).max(axis=0))
+
+    def _heights(self, offsets: Array, normal: Array) -> Array:
+        """Return heights of points over the surface at the root, in units."""
+        height: Array = np.einsum("jib,ib->jb", offsets, normal)
         height /= np.float32(self.unit)
         return height
+
+
+def _mesh(points: Array, m: int) -> pv.PolyData:
+    """Return fibres of m points each as lines; the points are not copied."""
+    count = int(points.shape[0])
+    # Indices of 32 bits take half the memory.
+    number = np.int32 if count < 2**31 else np.int64
+    out = pv.PolyData()
+    out.points = points
+    offsets = np.arange(0, count + 1, m, dtype=number)
+    ids = np.arange(count, dtype=number)
+    out.SetLines(pv.CellArray.from_arrays(offsets, ids))  # type: ignore[arg-type]
+    return out
 
 
 def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | None:

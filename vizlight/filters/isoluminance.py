@@ -16,7 +16,7 @@ from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
-from vizlight.mesh import blocks, normals, records
+from vizlight.mesh import blocks, normals, records, splitting
 from vizlight.mesh.batches import inputs_of
 from vizlight.model import kernels
 from vizlight.scene.scene import as_scene
@@ -201,10 +201,7 @@ class _Light:
     """The luminance of points with normals, and its record."""
 
     def __init__(
-        self,
-        scene: Scene,
-        options: ContourOptions,
-        progress: Callable[[float], None],
+        self, scene: Scene, options: ContourOptions, progress: Callable[[float], None]
     ) -> None:
         self.scene, self.options = scene, options
         #: Function that is called with the share of the refinement that is done.
@@ -220,12 +217,7 @@ class _Light:
         """Return the light of points with normals."""
         asked = self.options
         self.last = engine.shade(
-            points,
-            None,
-            self.scene,
-            normals=normals,
-            model=asked.model,
-            precision="float64",
+            points, None, self.scene, normals=normals, model=asked.model, precision="float64"
         )
         return self.last
 
@@ -282,11 +274,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
         )
     inputs = inputs_of(surface, "", scene, asked)
-    (lit,), fitted = lighting.light(
-        [(inputs, asked)],
-        scene,
-        progress_bar=False,
-    )
+    (lit,), fitted = lighting.light([(inputs, asked)], scene, progress_bar=False)
     invalid = int(np.count_nonzero(~lit.valid[used]))
     if invalid:
         _check.warn(unlit(invalid, len(used)))
@@ -317,11 +305,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             triangles = triangles + len(unit) * other[:, np.newaxis]
         rows = np.concatenate(columns, axis=1, dtype=np.float64)
         del unit, shown, averted, columns
-        near = any(lamp.position is not None for lamp in scene.lights)
-        near |= scene.view is not None and scene.view.position is not None
-        lit_facets = refinement.Facets(
-            rows, triangles, light, valid, near or scene.depth_cue is not None
-        )
+        lit_facets = refinement.LitTriangles(rows, triangles, light, valid)
         del rows, triangles
         bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
@@ -388,12 +372,7 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
                 "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
             )
         )
-    bare = pv.PolyData()
-    bare.SetPoints(surface.GetPoints())
-    bare.SetPolys(surface.GetPolys())
-    bare.SetStrips(surface.GetStrips())
-    bare = bare if bare.is_all_triangles else bare.triangulate()
-    triangles = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
+    triangles, _ = splitting.triangles(surface)
     used = np.zeros(surface.n_points, np.bool_)
     used[triangles] = True
     finite: Bools = np.isfinite(np.asarray(surface.points)).all(axis=1)

@@ -43,7 +43,7 @@ def light(
         Scene with both ends of its depth cue.
     """
     # One range of depth for all parts: a cue that began anew in each block would lie.
-    fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts if not inputs.generated])
+    fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts])
     results: list[engine.Shading] = []
     total, done = sum(inputs.count for inputs, _ in parts), 0
     with _progress.progress("light", total, show=progress_bar) as report:

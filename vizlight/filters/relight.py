@@ -298,7 +298,7 @@ class _Seen:
     def __call__(
         self, inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions
     ) -> None:
-        self.runs.append((inputs.stored(), options))
+        self.runs.append((inputs, options))
 
 
 def _of_fur(

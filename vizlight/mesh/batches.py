@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
 from vizlight.mesh import normals, splitting
 from vizlight.vtk import parts, polylines
@@ -18,7 +18,6 @@ from vizlight.vtk.cells import (
     as_numpy,
     cell_data,
     connectivity,
-    grid_cells,
     point_count,
     point_data,
     vtk_points,
@@ -26,14 +25,9 @@ from vizlight.vtk.cells import (
 
 if TYPE_CHECKING:
     Key: TypeAlias = tuple[object, ...]
-    SplitsT = TypeVar("SplitsT", bound="Splits | None")
     from collections.abc import Iterable, Sequence
 
-    from typing_extensions import Self
-    from vtkmodules.vtkCommonCore import vtkDataArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    from vizlight._types import Indices
+    from vizlight._types import Foreign, Indices
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import LightOptions
@@ -115,16 +109,12 @@ def _alone(meshes: Sequence[pv.DataSet], members: Iterable[int]) -> list[Batch]:
     return [Batch(meshes[i], [i]) for i in reversed(list(members))]
 
 
-class Splits(Protocol):
-    """What belongs to the points of a batch."""
+def split(groups: Sequence[Batch], of_groups: Sequence[Foreign]) -> list[Foreign]:
+    """Return what belongs to each mesh, from what belongs to each batch.
 
-    def part(self, i: int, rows: slice, /) -> Self:
-        """Return what belongs to a member, by its number in the batch and its points."""
-
-
-def split(groups: Sequence[Batch], of_groups: Sequence[SplitsT]) -> list[SplitsT]:
-    """Return what belongs to each mesh, from what belongs to each batch."""
-    found: dict[int, SplitsT] = {}
+    Its ``part`` takes the number of a member in the batch, and its points.
+    """
+    found: dict[int, Foreign] = {}
     for group, whole in zip(groups, of_groups, strict=True):
         if group.starts is None or whole is None:
             found |= dict.fromkeys(group.members, whole)
@@ -190,7 +180,7 @@ def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     arrays += [vtk_points(mesh).GetData()]
     if (carried := data.GetNormals()) is not None:
         arrays.append(carried)
-    # VTK's arrays are laid end to end only if name, type and number of components agree.
+    # VTK appends arrays only if name, type and number of components agree.
     forms = ((a.GetName(), a.GetDataType(), a.GetNumberOfComponents()) for a in arrays)
     return (*kinds, *forms)
 
@@ -216,51 +206,20 @@ def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[st
     """Return some meshes of one key as one mesh."""
     if len(members) == 1:
         return Batch(meshes[members[0]], members)
-    own = [meshes[i] for i in members]
+    own: list[Foreign] = [meshes[i] for i in members]
     starts = np.concatenate([[0], np.cumsum([point_count(mesh) for mesh in own])])
-    out = pv.PolyData() if isinstance(own[0], pv.PolyData) else pv.UnstructuredGrid()
-    points = vtkPoints()
-    points.SetData(_end_to_end([vtk_points(mesh).GetData() for mesh in own], starts))
-    out.SetPoints(points)
-    if isinstance(out, pv.PolyData):
-        puts = (out.SetVerts, out.SetLines, out.SetPolys, out.SetStrips)
-        for (count, get), put in zip(POLYDATA, puts, strict=True):
-            if count(own[0]):
-                put(_cells([get(mesh) for mesh in own], starts))
-    else:
-        of_all = _cells([grid_cells(mesh) for mesh in own], starts)
-        kinds = as_numpy(own[0].GetDistinctCellTypesArray()).astype(np.uint8)
-        if len(kinds) > 1:
-            kinds = np.concatenate([np.asarray(mesh.celltypes) for mesh in own])
-        else:
-            kinds = np.repeat(kinds, of_all.GetNumberOfCells())
-        out.SetCells(pv.convert_array(kinds), of_all)
-    data, of_each = out.GetPointData(), [point_data(mesh) for mesh in own]
-    for name in names:
-        data.AddArray(_end_to_end([each.GetArray(name) for each in of_each], starts))
-    carried = [each.GetNormals() for each in of_each]
-    if carried[0] is not None:
-        data.SetNormals(_end_to_end(carried, starts))
-    return Batch(out, members, starts)
-
-
-def _end_to_end(arrays: Sequence[vtkDataArray], starts: Indices) -> vtkDataArray:
-    """Return arrays of one type as one array."""
-    out = arrays[0].NewInstance()
-    out.SetName(arrays[0].GetName())
-    out.SetNumberOfComponents(arrays[0].GetNumberOfComponents())
-    out.SetNumberOfTuples(int(starts[-1]))
-    for array, start in zip(arrays, starts.tolist(), strict=False):
-        out.InsertTuples(start, array.GetNumberOfTuples(), 0, array)
-    return out
-
-
-def _cells(cells: Sequence[vtkCellArray], starts: Indices) -> vtkCellArray:
-    """Return cells of meshes as cells of one mesh, which has their points one after the other."""
-    out = pv.CellArray()
-    for own, start in zip(cells, starts.tolist(), strict=False):
-        out.Append(own, start)
-    return out
+    surfaces = isinstance(own[0], pv.PolyData)
+    append = vtkAppendPolyData() if surfaces else vtkAppendFilter()
+    for mesh in own:
+        # Only what light depends on is copied.
+        bare = vtkPolyData() if surfaces else vtkUnstructuredGrid()
+        bare.CopyStructure(mesh)
+        for name in names:
+            bare.GetPointData().AddArray(point_data(mesh).GetArray(name))
+        bare.GetPointData().SetNormals(point_data(mesh).GetNormals())
+        append.AddInputData(bare)
+    append.Update()
+    return Batch(pv.wrap(append.GetOutput()), members, starts)
 
 
 def inputs_of(mesh: pv.DataSet, path: str, scene: Scene, options: LightOptions) -> ShadingInputs:

@@ -8,7 +8,7 @@ import tempfile
 import threading
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -111,11 +111,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
-            if kind == "tecplot":
-                with path.open() as file:
-                    found = reader.read(_Lines(file))
-            else:
-                found = reader.read(path)
+            found = reader.read(path)
         except meshio.ReadError:
             if kind == kinds[-1]:
                 raise
@@ -145,26 +141,6 @@ class _Console:
         """Keep a text without its marks of style."""
         plain = " ".join(re.sub(r"\[/?[a-z]+\]|Warning:", "", text).split())
         _SAID.texts = [*getattr(_SAID, "texts", ()), plain]
-
-
-class _Lines:
-    """A text whose reader looks for lines behind its end without end."""
-
-    def __init__(self, file: TextIO) -> None:
-        self.read, self.tell, self.seek = file.read, file.tell, file.seek
-        self._next, self.past = file.readline, 0
-
-    def readline(self) -> str:
-        """Return the next line, an empty text behind the end."""
-        line = self._next()
-        self.past += not line
-        if self.past > _PAST:
-            raise EOFError("its end is missing")
-        return line
-
-
-#: Number of times that a reader may ask for a line behind the end.
-_PAST = 100
 
 
 def _refuse_narrow(path: Path) -> None:

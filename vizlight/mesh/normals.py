@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check
 from vizlight._version import __version__
@@ -20,19 +19,16 @@ from vizlight.scene import View
 from vizlight.shading.results import digest
 from vizlight.vtk.cells import (
     POLYDATA,
-    around,
     as_numpy,
-    as_vtk,
     connectivity,
     faces_only,
     first_twins,
     has_faces,
-    part_size,
     places,
     point_data,
     triangles,
 )
-from vizlight.vtk.hull import NUMBERS
+from vizlight.vtk.corners import numbered, split_faces
 from vizlight.vtk.normals import Sided, computed_normals, given_normals
 from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.topology import Owners, coincident
@@ -41,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import TypeVar
 
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array, Indices
     from vizlight.scene import Scene
@@ -49,7 +45,6 @@ if TYPE_CHECKING:
     from vizlight.shading.results import Record
 
     SurfaceT = TypeVar("SurfaceT")
-    from numpy.typing import NDArray
 
     from vizlight._types import Foreign
 
@@ -215,13 +210,10 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
 
     One that is split shares no memory with the mesh.
     """
-    ids, ends, more = _corners(faces_only(mesh), mesh)
-    split, origin = split_faces(places(mesh), ids, ends, angle)
-    if len(origin) == mesh.n_points:
-        return mesh
-    if len(ends) - 1 - more < mesh.GetNumberOfPolys():
-        ends, split = _with_twins(mesh.GetPolys(), split, ends, origin)
-    return _at(mesh, split, ends, origin)
+    ids, ends = _corners(mesh)
+    twins = first_twins(blocks.cell_array(ids, ends))
+    corners, origin = split_faces(places(mesh), ids, ends, angle, twins)
+    return mesh if len(origin) == mesh.n_points else _at(mesh, corners, ends, origin)
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
@@ -231,34 +223,30 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     are then the cells' own.
     """
     values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
-    ids, ends, _ = _corners(mesh, mesh)
+    ids, ends = _corners(mesh)
     _, kind = np.unique(values, axis=0, return_inverse=True)
     # A point and a value of cells there make one new point.
     code = ids * (kind.max(initial=0) + 1) + np.repeat(kind.reshape(-1), np.diff(ends))
     _, first, number = np.unique(code, return_index=True, return_inverse=True)
-    # Of the values at a point the first leaves it as it is.
-    own = ids[first]
-    more = np.diff(own, prepend=-1) == 0
-    # The first value keeps the point's index, so that arrays of the mesh stay in their place.
-    place = np.where(more, mesh.n_points - 1 + np.cumsum(more), own)
-    origin = np.concatenate([np.arange(mesh.n_points), own[more]])
-    found = _at(mesh, place[number.reshape(-1)], ends, origin)
+    corners, origin = numbered(first[number.reshape(-1)], ids, mesh.n_points)
+    found = _at(mesh, corners, ends, origin)
     if (sided := kept(mesh)) is not None:
         # The surface is as smooth as it was.
         keep(found, dataclasses.replace(sided.part(0, origin), kept=False))
     return found, origin
 
 
-def _corners(surface: vtkPolyData, mesh: pv.PolyData) -> tuple[Indices, Indices, int]:
-    """Return corners and ends of polygons and of a mesh's strips, the last number of triangles."""
-    ids, ends = connectivity(surface.GetPolys())
+def _corners(mesh: pv.PolyData) -> tuple[Indices, Indices]:
+    """Return corners and ends of the polygons of a mesh, and of its strips as triangles."""
+    ids, ends = connectivity(mesh.GetPolys())
+    if not mesh.n_strips:
+        return ids, ends
     strips = pv.PolyData()
     strips.SetPoints(mesh.GetPoints())
     strips.SetStrips(mesh.GetStrips())
     more = triangles(strips)
-    ids = np.concatenate([ids, more.ravel()]) if len(more) else ids
-    ends = np.concatenate([ends, ends[-1] + 3 * np.arange(1, len(more) + 1)])
-    return ids, ends, len(more)
+    more_ends = ends[-1] + 3 * np.arange(1, len(more) + 1)
+    return np.concatenate([ids, more.ravel()]), np.concatenate([ends, more_ends])
 
 
 def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> pv.PolyData:
@@ -282,37 +270,6 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
     found.GetFieldData().DeepCopy(mesh.GetFieldData())
     records.carry(mesh, found)
     return found
-
-
-def _with_twins(
-    cells: vtkCellArray, split: Indices, ends: Indices, origin: Indices
-) -> tuple[Indices, Indices]:
-    """Return the ends and corners of polygons at points that were split, and those after them.
-
-    Parameters
-    ----------
-    cells : vtkCellArray
-        Polygons before the split.
-    split, ends : ndarray of int
-        Corners and ends of the polygons that differ, and of more faces, after the split.
-    origin : ndarray of int
-        Point before the split of each point.
-    """
-    first = first_twins(cells)
-    assert first is not None
-    ids, before = connectivity(cells)
-    size, count = np.diff(before), len(origin)
-    kept = first == np.arange(len(first))
-    # Each corner of a polygon is the corner of its first twin that was the same point.
-    corners = np.repeat(np.arange(len(ends) - 1), np.diff(ends)) * count + origin[split]
-    order = np.argsort(corners)
-    row = (np.cumsum(kept) - 1)[first]
-    at = np.searchsorted(corners, np.repeat(row, size) * count + ids, sorter=order)
-    more = ends[np.count_nonzero(kept) :]
-    return (
-        np.concatenate([before, before[-1] + more[1:] - more[0]]),
-        np.concatenate([split[order[at]], split[more[0] :]]),
-    )
 
 
 def _rows(mesh: pv.PolyData) -> Indices:
@@ -398,70 +355,6 @@ def kept(mesh: pv.DataSet) -> Sided | None:
         computed=True,
         inside=records.count(record, "inside", mesh.n_points),
     )
-
-
-#: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are
-#: those of 30 degrees, are split together or not at all.
-_BEYOND = 0.01
-
-
-def split_faces(
-    points: NDArray[np.generic], ids: Indices, ends: Indices, angle: float, size: int | None = None
-) -> tuple[Indices, Indices]:
-    """Return faces at points that are split, and the point that each point was.
-
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points of the surface.
-    ids : ndarray of int
-        Corners of all faces, one face after the other.
-    ends : ndarray of int, shape (M + 1,)
-        Place in ``ids`` at which each face begins, and the end of the last.
-    angle : float
-        Angle in degrees between two faces from which their edge is sharp.
-    size : int, optional
-        Number of points around which faces are split at once.
-
-    Returns
-    -------
-    ndarray of int
-        Corners of the faces, which VTK turns over where they are not wound alike.
-    ndarray of int
-        Point that each point was: first all of the surface, then those that VTK adds.
-    """
-    count = len(points)
-    size = part_size(count) if size is None else size
-    new, added = ids.copy(), [np.arange(count)]
-    total = count
-    for block, surface, used, at in around(points, ids, ends, size):
-        found, origin = _by_vtk(surface, angle)
-        was = used[origin[found]]
-        if not np.array_equal(was, ids[at]):
-            if size < count:
-                # What is turned over depends on all faces.
-                return split_faces(points, ids, ends, angle, count)
-            new[at] = was
-        own = (found >= len(used)) & (was >= block.start) & (was < block.stop)
-        made, number = np.unique(found[own], return_inverse=True)
-        new[at[own]] = total + number.reshape(-1)
-        added.append(used[origin[made]])
-        total += len(made)
-    return new, np.concatenate(added)
-
-
-def _by_vtk(surface: vtkPolyData, angle: float) -> tuple[Indices, Indices]:
-    """Return corners of faces at points that VTK has split, and the point that each was."""
-    numbers = as_vtk(np.arange(surface.GetNumberOfPoints()), NUMBERS)
-    surface.GetPointData().AddArray(numbers)
-    normals = vtkPolyDataNormals()
-    normals.SetFeatureAngle(angle + _BEYOND)
-    normals.NonManifoldTraversalOff()
-    normals.SetInputData(surface)
-    normals.Update()
-    found = normals.GetOutput()
-    origin = as_numpy(found.GetPointData().GetArray(NUMBERS))
-    return connectivity(found.GetPolys())[0].copy(), np.array(origin)
 
 
 #: Name of the point array of normals, chosen not to clash with a user's array.

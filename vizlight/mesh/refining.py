@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight.mesh import records, splitting
 from vizlight.mesh.splitting import Cells
 from vizlight.shading import engine
-from vizlight.verify.between import Between, Places, columns, interpolated, random_places
+from vizlight.verify.between import Between, Places, columns, error_between, random_places
 from vizlight.vtk.cells import field_data, has_faces
 
 if TYPE_CHECKING:
@@ -306,8 +306,7 @@ class _Refinement:
     def _miss(self, cells: Indices, weights: Array) -> Array:
         """Return the error at one place of each part."""
         places = Places(self.cells.corners[cells], weights)
-        missed = np.abs(self.between.light(places) - interpolated(self.light, places))
-        return np.asarray(missed.max(axis=1, initial=0))
+        return error_between(self.between, self.light, places)
 
     def _worst_edges(self, fresh: Indices) -> tuple[Indices, Array, Array]:
         """Return the edges of parts to be split, where each errs most, and the error there."""

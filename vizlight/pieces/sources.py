@@ -35,7 +35,9 @@ SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind !=
 INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
 STRUCTURED = {
-    **{suffix: files.READERS[suffix] for suffix in (".vti", ".vtr", ".vts")},
+    ".vti": vtkIOXML.vtkXMLImageDataReader,
+    ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
+    ".vts": vtkIOXML.vtkXMLStructuredGridReader,
     ".pvti": vtkIOXML.vtkXMLPImageDataReader,
     ".pvtr": vtkIOXML.vtkXMLPRectilinearGridReader,
     ".pvts": vtkIOXML.vtkXMLPStructuredGridReader,

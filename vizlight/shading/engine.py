@@ -304,7 +304,6 @@ def run(
     code, reason = compiled.prepare(made, inputs)
     made = dataclasses.replace(made, compiled=code is not None, code=reason or compiled.IN_WORDS)
     light = shade_block if code is None else code.shade_block
-    block = inputs.block if block is None else block
     step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: slice) -> int:

@@ -129,12 +129,8 @@ class ShadingInputs:
         Whether a single tangent per point is a line without sign, which matters between the points.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal.
-    block : int, optional
-        Number of rows in a block that suits an ``ArraySource`` which makes its rows.
     origin : vector of n components, optional
         What was subtracted from the points, where differences would lose digits.
-    generated : bool, default: False
-        Whether the points exist only once they are lit.
     cells : callable, optional
         Function that returns the segments or triangles between whose points the light is
         interpolated, shape (C, 2) or (C, 3).
@@ -155,9 +151,7 @@ class ShadingInputs:
     two_sided: bool = False
     line_field: bool = False
     repeat: int = 1
-    block: int | None = None
     origin: Vector | None = None
-    generated: bool = False
     cells: Callable[[], Indices] | None = None
     sides: Callable[[], Sides] | None = None
 
@@ -194,36 +188,6 @@ class ShadingInputs:
         if self.dimensions is None:
             return self
         return dataclasses.replace(self, tangents=None, dimensions=None)
-
-    def stored(self) -> ShadingInputs:
-        """Return inputs whose rows are arrays, not made on demand."""
-        if not self.generated:
-            return self
-        step, m, rows = self.block or self.rows, self.repeat, self.rows
-
-        def stored(source: ArraySource | None) -> Array | None:
-            if source is None:
-                return None
-            array: Array = np.empty(source.shape, source.dtype)
-            each = source.shape[0] != rows
-            for start in range(0, rows, step):
-                stop = min(start + step, rows)
-                for j in range(m if each else 1):
-                    at = slice(start * m + j, stop * m, m) if each else slice(start, stop)
-                    array[at] = source[at]
-            return array
-
-        points = stored(self.points)
-        assert points is not None
-        return dataclasses.replace(
-            self,
-            points=points,
-            tangents=stored(self.tangents),
-            normals=stored(self.normals),
-            fur_height=stored(self.fur_height),
-            block=None,
-            generated=False,
-        )
 
     def check(self, lights: int) -> None:
         """Check all shapes against each other, for a number of lights.

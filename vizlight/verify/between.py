@@ -18,7 +18,7 @@ from vizlight.model.frames import orthonormalize
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Indices
     from vizlight.scene import Light, Scene, View
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 BLOCK = 1 << 17
 #: Largest deviation of the length of unit vectors from 1.
 UNIT = 1e-3
-#: Factors by which cells are tried shorter, to find the resolution that an error takes.
-FINER = (2, 4, 8, 16, 32, 64, 128)
 
 
 class Places(NamedTuple):
@@ -51,7 +49,7 @@ def measurable(inputs: ShadingInputs) -> bool:
     """Return whether light between the points follows from what the inputs hold at the points."""
     given = inputs.shadow is None and inputs.fur_height is None
     given = given and inputs.transmittance is None and inputs.occlusion is None
-    return given and inputs.repeat == 1 and not inputs.generated
+    return given and inputs.repeat == 1
 
 
 class Between:
@@ -302,13 +300,6 @@ def random_places(
     return Places(cells[cell], weights), cell
 
 
-class Measured(NamedTuple):
-    """Difference of interpolated light from the light of interpolated vectors, at places."""
-
-    error: Array
-    finer: int | None
-
-
 def measure(
     inputs: ShadingInputs,
     scene: Scene,
@@ -318,9 +309,8 @@ def measure(
     *,
     count: int,
     seed: int,
-    allowed: float,
-) -> Measured:
-    """Return the error at random places, and how much shorter cells must be for an error.
+) -> Array:
+    """Return the error of interpolated light at random places between the points.
 
     Parameters
     ----------
@@ -332,15 +322,11 @@ def measure(
         Segments or triangles; those with a point that could not be lit are left out.
     count, seed : int
         Number of places and seed of the drawing.
-    allowed : float
-        Error to be met.
 
     Returns
     -------
-    Measured
-        Error of each place, and the factor, 1 or one of FINER, by which all cells must be shorter
-        so that the error at these places is within the one allowed; None where the largest factor
-        is not enough.
+    ndarray, shape (count,)
+        Error of each place, empty if the cells have no area.
     """
     points = np.asarray(inputs.points[:])
     good = shading.valid & np.isfinite(points).all(axis=1)
@@ -348,25 +334,13 @@ def measure(
         cells = cells[good[cells].all(axis=1)]
     places, _ = random_places(points, cells, count, np.random.default_rng(seed))
     if not len(places.weights):
-        return Measured(np.empty(0), 1)
+        return np.empty(0)
     # Only the corners of the cells that were drawn are looked at.
     used, corner = np.unique(places.corners, return_inverse=True)
     places = Places(corner.reshape(places.corners.shape), places.weights)
-    between = Between(_taken(inputs, used), scene, options)
-    light = columns(shading, used)
-    error = error_between(between, light, places)
-    bad: Bools = error > allowed
-    finer: int | None = 1
-    for factor in FINER if bad.any() else ():
-        left = Places(places.corners[bad], places.weights[bad])
-        # The places that are left decide on the next factor.
-        bad[bad] = error_between(between, light, left, factor) > allowed
-        finer = factor
-        if not bad.any():
-            break
-    else:
-        finer = None if bad.any() else 1
-    return Measured(error, finer)
+    return error_between(
+        Between(_taken(inputs, used), scene, options), columns(shading, used), places
+    )
 
 
 def _taken(inputs: ShadingInputs, rows: Indices) -> ShadingInputs:
@@ -386,54 +360,10 @@ def _taken(inputs: ShadingInputs, rows: Indices) -> ShadingInputs:
     )
 
 
-def error_between(between: Between, light: Array, places: Places, parts: int = 1) -> Array:
-    """Return the error of interpolated light at places, shape (M,).
-
-    Parameters
-    ----------
-    between : Between
-    light : ndarray, shape (N, c)
-        Luminance and colour of the points.
-    places : Places
-    parts : int, default: 1
-        Number of equal parts of the sides of all cells, with light at the points between them.
-    """
-    true = between.light(places)
-    if parts == 1:
-        shown = interpolated(light, places)
-    else:
-        within, share = sub_cells(places.weights, parts)
-        shown = np.zeros_like(true)
-        for i in range(share.shape[1]):
-            shown += share[:, i : i + 1] * between.light(Places(places.corners, within[:, i]))
-    return np.asarray(np.abs(true - shown).max(axis=1, initial=0))
-
-
-def sub_cells(weights: Array, factor: int) -> tuple[Array, Array]:
-    """Return the cell around each place where the sides of all cells are divided evenly.
-
-    Parameters
-    ----------
-    weights : ndarray, shape (M, s)
-        Places by the shares of the corners of their cells.
-    factor : int
-        Number of parts of a side.
-
-    Returns
-    -------
-    ndarray, shape (M, s, s)
-        Weights of the corners of the smaller cells, one per row.
-    ndarray, shape (M, s)
-        Weights of those corners in the places.
-    """
-    s = weights.shape[1]
-    whole = np.minimum(np.floor(weights * factor), factor)
-    rest = weights * factor - whole
-    # Of a triangle's parts those that stand on a tip have shares that add up to 2.
-    turned = (rest.sum(axis=1) > 1.5)[:, np.newaxis] if s == 3 else np.zeros((1, 1), np.bool_)
-    steps = np.where(turned[..., np.newaxis], 1 - np.eye(s), np.eye(s))
-    share = np.where(turned, 1 - rest, rest)
-    return (whole[:, np.newaxis] + steps) / factor, share
+def error_between(between: Between, light: Array, places: Places) -> Array:
+    """Return the error at places, shape (M,), of interpolated ``light``, shape (N, c)."""
+    missed = np.abs(between.light(places) - interpolated(light, places))
+    return np.asarray(missed.max(axis=1, initial=0))
 
 
 def are_unit(rows: Array) -> bool:

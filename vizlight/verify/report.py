@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import contextvars
-import dataclasses
 import math
 import time
 from dataclasses import dataclass, field
@@ -21,7 +20,7 @@ from vizlight.verify import between, oracle
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, Foreign, Indices
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -82,9 +81,6 @@ class Run:
         at those places; NaN without places.
     visible : float
         Share of those places that are off by more than 1/255.
-    finer : int or None
-        Factor by which all segments or triangles must be shorter so that no such place is left;
-        None if 128 is not enough.
     unmeasured : str
         What of the error between the points is not measured and why, in words; empty if all is.
     tinted : bool
@@ -97,10 +93,10 @@ class Run:
     precision: str
     seconds: float
     bytes: int
+    invalid: int
     sample: int
     error: float
     rms: float
-    invalid: int
     bright: int = 0
     disagreed: int = 0
     bound: float = math.nan
@@ -108,7 +104,6 @@ class Run:
     between: float = math.nan
     between_rms: float = math.nan
     visible: float = math.nan
-    finer: int | None = 1
     unmeasured: str = ""
     tinted: bool = False
 
@@ -237,13 +232,7 @@ def _lines(run: Run) -> list[str]:
         if run.visible:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
-            if run.finer:
-                text += f": cells 1/{run.finer} as long, or refining to 1/255, would do"
-            else:
-                text += (
-                    ": cells 1/128 as long would not do; "
-                    "refining to 1/255 leaves only places where the light jumps"
-                )
+            text += "; vizlight.refine to 1/255 leaves only places where the light jumps"
         found.append(text)
     if run.unmeasured:
         found.append(f"  not measured between points: {run.unmeasured}")
@@ -329,74 +318,84 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
         _ACTIVE.reset(token)
 
 
+@contextlib.contextmanager
+def _checking() -> Iterator[Report | None]:
+    """Give the open report, if there is one; the time of a check is not a cost of the light."""
+    active, start = _ACTIVE.get(), time.perf_counter()
+    yield active
+    if active is not None:
+        active.seconds -= time.perf_counter() - start
+
+
+def _drawn(active: Report, count: int, most: int) -> Indices:
+    """Return at most so many of a count of rows, drawn at random."""
+    random = np.random.default_rng(active.seed)
+    return random.choice(count, min(active.sample, most, count), replace=False)
+
+
+def _largest(off: Array) -> tuple[float, float]:
+    """Return the largest and the root mean square error; NaN without any."""
+    if not off.size:
+        return math.nan, math.nan
+    return float(off.max()), float(np.sqrt(np.mean(off * off)))
+
+
 def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
     """Add a run of the engine to the open report, if there is one."""
-    active = _ACTIVE.get()
-    if active is None:
-        return
-    start = time.perf_counter()
-    count = shading.luminance.size
-    random = np.random.default_rng(active.seed)
-    drawn = np.sort(random.choice(count, min(active.sample, count), replace=False))
-    apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
-    width = 1 if shading.rgb is None else 4
-    reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
-    true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(-1, width)
-    got = shading.luminance[drawn, np.newaxis]
-    got = got if shading.rgb is None else np.hstack([got, shading.rgb[drawn]])
-    valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
-    both = valid & known
-    off = np.abs(got[both] - true[both]).max(axis=1, initial=0.0)
-    results = (
-        shading.luminance, shading.valid, shading.diffuse, shading.specular, shading.rgb
-    )  # fmt: skip
-    places = _between(given, scene, shading, options, active)
-    # The time of the check is not a cost of the light.
-    active.seconds -= time.perf_counter() - start
-    active.runs.append(
-        Run(
+    with _checking() as active:
+        if active is None:
+            return
+        count = shading.luminance.size
+        drawn = np.sort(_drawn(active, count, count))
+        apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
+        reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
+        got = between.columns(shading, drawn)
+        true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(got.shape)
+        valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
+        both = valid & known
+        off = np.abs(got[both] - true[both]).max(axis=1, initial=0.0)
+        places: Array = np.empty(0)
+        if given.cells is not None and active.sample and between.measurable(given):
+            places = between.measure(
+                given, scene, options, shading, given.cells(), count=active.sample,
+                seed=active.seed,
+            )  # fmt: skip
+        largest, mean = _largest(places)
+        results = (
+            shading.luminance, shading.valid, shading.diffuse, shading.specular, shading.rgb
+        )  # fmt: skip
+        _add(
+            active,
+            off,
             points=count,
-            bright=_bright(shading),
+            bright=int(np.count_nonzero((between.columns(shading) > 1).any(axis=1))),
             terms=shading.plan.terms,
             precision=shading.plan.dtype.name,
             seconds=shading.seconds,
             bytes=sum(array.nbytes for array in results if array is not None),
-            sample=int(both.sum()),
-            error=float(off.max()) if off.size else math.nan,
-            rms=float(np.sqrt(np.mean(off * off))) if off.size else math.nan,
             invalid=shading.invalid,
             disagreed=int(np.count_nonzero(valid != known)),
-            bound=math.nan,
-            places=len(places.error),
-            between=float(places.error.max()) if len(places.error) else math.nan,
-            between_rms=(
-                float(np.sqrt(np.mean(places.error**2))) if len(places.error) else math.nan
-            ),
-            visible=float(np.mean(places.error > VISIBLE)) if len(places.error) else math.nan,
-            finer=places.finer,
+            places=len(places),
+            between=largest,
+            between_rms=mean,
+            visible=float(np.mean(places > VISIBLE)) if len(places) else math.nan,
             tinted=_TINTED.get(),
-            unmeasured=_unmeasured(given, shading, len(places.error)) if active.sample else "",
+            unmeasured=_unmeasured(given, shading, len(places)) if active.sample else "",
         )
-    )
 
 
-def _between(
-    given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions, active: Report
-) -> between.Measured:
-    """Return the error of interpolated light at random places between the points."""
-    if given.cells is None or not active.sample or not between.measurable(given):
-        return between.Measured(np.empty(0), 1)
-    return between.measure(
-        given, scene, options, shading, given.cells(), count=active.sample, seed=active.seed,
-        allowed=VISIBLE,
-    )  # fmt: skip
+def _add(active: Report, off: Array, **known: Foreign) -> None:
+    """Add a run with the errors of a sample and what else is known."""
+    off = off[np.isfinite(off)]
+    error, rms = _largest(off)
+    active.runs.append(Run(sample=off.size, error=error, rms=rms, **known))
 
 
 def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
     """Return what of the error between the points was not measured, and why."""
     if given.shadow is not None:
         return SHADOWED
-    if given.generated or given.fur_height is not None:
+    if given.repeat > 1 or given.fur_height is not None:
         return "fur, which light passes on a way of its own at each place"
     if given.transmittance is not None or given.occlusion is not None:
         return "light inside a bundle, or in the shade of the sky, whose shares the points have"
@@ -409,14 +408,6 @@ def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
             "one that is smaller than a cell is seen only where a place falls on it"
         )
     return ""
-
-
-def _bright(shading: Shading) -> int:
-    """Return the number of points whose light is above 1."""
-    above = shading.luminance > 1
-    if shading.rgb is not None:
-        above = above | np.any(shading.rgb > 1, axis=1)
-    return int(np.count_nonzero(above))
 
 
 def note_ratio(
@@ -438,20 +429,18 @@ def note_ratio(
     effort : int
         Number of planes of nodes or triangles that ``reference`` tests; 0 if it cannot be called.
     """
-    active = _ACTIVE.get()
-    if active is None:
-        return
-    start = time.perf_counter()
-    random, good = np.random.default_rng(active.seed), np.flatnonzero(valid)
-    rays = min(active.sample, RAYS, max(TRIALS // effort, 1)) if effort else 0
-    drawn = random.choice(good.size * t.shape[1], min(rays, good.size * t.shape[1]), replace=False)
-    at = [(int(good[k // t.shape[1]]), int(k % t.shape[1])) for k in drawn]
-    off = np.array([abs(t[i, light] - reference(i, light)) for i, light in at], dtype=np.float64)
-    off = off[np.isfinite(off)]
-    active.seconds -= time.perf_counter() - start
-    invalid = int(np.count_nonzero(~valid))
-    run = _run(off, SHADOW, t, seconds, size, len(t), invalid, math.nan)
-    active.runs.append(dataclasses.replace(run, unmeasured=SHADOWED if active.sample else ""))
+    with _checking() as active:
+        if active is None:
+            return
+        good, lights = np.flatnonzero(valid), t.shape[1]
+        rays = min(RAYS, max(TRIALS // effort, 1)) if effort else 0
+        at = [divmod(int(k), lights) for k in _drawn(active, good.size * lights, rays)]
+        off = np.array([abs(t[good[i], k] - reference(int(good[i]), k)) for i, k in at])
+        _add(
+            active, off, points=len(t), terms=SHADOW, precision=t.dtype.name, seconds=seconds,
+            bytes=size, invalid=int(np.count_nonzero(~valid)),
+            unmeasured=SHADOWED if active.sample else "",
+        )  # fmt: skip
 
 
 @contextlib.contextmanager
@@ -488,46 +477,21 @@ def note_bands(
     terms: tuple[str, ...], seconds: float, size: int, bound: float, *, model: str,
 ) -> None:  # fmt: skip
     """Add bands of equal luminance to the open report, compared with the light at places."""
-    active = _ACTIVE.get()
-    if active is None:
-        return
-    start = time.perf_counter()
-    random, count = np.random.default_rng(active.seed), len(places)
-    drawn = random.choice(count, min(active.sample, count), replace=False)
-    off = np.array(
-        [
-            abs(
-                values[i]
-                - oracle.light(
-                    places[i].tolist(), None, normals[i].tolist(), scene, model=model,
-                ).luminance
-            )
-            for i in drawn
-        ],
-        dtype=np.float64,
-    )  # fmt: skip
-    off = off[np.isfinite(off)]
-    active.seconds -= time.perf_counter() - start
-    run = _run(off, terms, values, seconds, size, points, 0, bound)
-    active.runs.append(dataclasses.replace(run, unmeasured=BANDED if active.sample else ""))
-
-
-def _run(
-    off: Array, terms: tuple[str, ...], values: Array, seconds: float, size: int, points: int,
-    invalid: int, bound: float,
-) -> Run:  # fmt: skip
-    return Run(
-        points=points,
-        terms=terms,
-        precision=values.dtype.name,
-        seconds=seconds,
-        bytes=size,
-        sample=off.size,
-        error=float(off.max()) if off.size else math.nan,
-        rms=float(np.sqrt(np.mean(off * off))) if off.size else math.nan,
-        invalid=invalid,
-        bound=bound,
-    )
+    with _checking() as active:
+        if active is None:
+            return
+        off: Array = np.empty(0)
+        if len(places):
+            drawn = _drawn(active, len(places), len(places))
+            true = [
+                oracle.light(places[i].tolist(), None, normals[i].tolist(), scene, model=model)
+                for i in drawn
+            ]
+            off = np.abs(values[drawn] - [lit.luminance for lit in true])
+        _add(
+            active, off, points=points, terms=terms, precision=values.dtype.name, seconds=seconds,
+            bytes=size, invalid=0, bound=bound, unmeasured=BANDED if active.sample else "",
+        )  # fmt: skip
 
 
 def is_open() -> bool:
@@ -549,9 +513,11 @@ def note_stored(values: Array, name: str) -> None:
     """Add light on colours that is taken from the arrays of an earlier result."""
     active = _ACTIVE.get()
     if active is not None:
-        run = _run(np.empty(0), ("stored",), values, 0.0, 0, len(values), 0, math.nan)
         said = f"light on colours as the arrays of {name!r} hold it, measured where that was lit"
-        active.runs.append(dataclasses.replace(run, tinted=True, unmeasured=said))
+        _add(
+            active, np.empty(0), points=len(values), terms=("stored",), seconds=0.0, bytes=0,
+            precision=values.dtype.name, invalid=0, tinted=True, unmeasured=said,
+        )  # fmt: skip
 
 
 @contextlib.contextmanager

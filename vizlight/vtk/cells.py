@@ -18,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataSet,
     vtkPointSet,
     vtkPolyData,
+    vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
@@ -156,61 +157,6 @@ def _cells(cells: vtkCellArray, kept: Bools) -> vtkCellArray:
     return found
 
 
-#: Least number of points of a part of a surface that VTK works on, and largest number of parts.
-PART, PARTS = 1 << 16, 16
-
-
-def part_size(count: int) -> int:
-    """Return the number of points around which VTK works at once; it takes 400 bytes for each."""
-    return max(PART, -(-count // PARTS))
-
-
-def around(
-    points: AnyArray, ids: Indices, ends: Indices, size: int
-) -> Iterator[tuple[slice, vtkPolyData, Indices, Indices]]:
-    """Yield ranges of ``size`` points with the faces around them, where there are any.
-
-    ``ids`` has the corners of all faces one after the other, ``ends`` the place at which each face
-    begins, followed by the end of the last. Only what is around those points takes memory. With
-    each range come those faces and their points as a surface, in the order of the whole, the point
-    of the whole that each of its points is, and the places of its corners in ``ids``.
-    """
-    runs = _pool.blocks(len(ids), PART)
-    least, most = (np.array([own(ids[run]) for run in runs]) for own in (np.min, np.max))
-    for block in _pool.blocks(len(points), size):
-        near = [ids[:0]]
-        for i in np.flatnonzero((least < block.stop) & (most >= block.start)):
-            own = ids[runs[i]]
-            near.append(runs[i].start + np.flatnonzero((own >= block.start) & (own < block.stop)))
-        face = np.searchsorted(ends, np.concatenate(near), side="right") - 1
-        if len(face):
-            yield block, *_faces(points, ids, ends, face[np.diff(face, prepend=-1) > 0])
-
-
-def _faces(
-    points: AnyArray, ids: Indices, ends: Indices, face: Indices
-) -> tuple[vtkPolyData, Indices, Indices]:
-    """Return some faces, their points, and the places of their corners."""
-    size = ends[face + 1] - ends[face]
-    starts = np.concatenate([[0], np.cumsum(size)])
-    corners = np.arange(starts[-1]) + np.repeat(ends[face] - starts[:-1], size)
-    own = ids[corners]
-    least = own.min()
-    own -= least
-    there = np.zeros(own.max() + 1, dtype=np.bool_)
-    there[own] = True
-    used = np.flatnonzero(there)
-    number = np.empty(len(there), dtype=np.intp)
-    number[used] = np.arange(len(used))
-    used += least
-    surface, where, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
-    where.SetData(as_vtk(points[used]))
-    cells.SetData(as_vtk(starts), as_vtk(number[own]))
-    surface.SetPoints(where)
-    surface.SetPolys(cells)
-    return surface, used, corners
-
-
 def first_twins(cells: vtkCellArray) -> Indices | None:
     """Return the first cell of the same points as each cell, None if they all differ."""
     ids, offsets = connectivity(cells)
@@ -329,11 +275,14 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     Raises
     ------
     ValueError
-        If a cell or an array does not fit.
+        If a cell, an array or the points of a grid do not fit.
     """
     if not isinstance(mesh, vtkDataSet):
         return
     count = mesh.GetNumberOfPoints()
+    if isinstance(mesh, vtkStructuredGrid) and len(places(mesh)) != count:
+        expected = f"{count} points by the extent {tuple(mesh.GetExtent())}"
+        raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
     for of, data, rows in (
         ("point", point_data(mesh), count),
         ("cell", cell_data(mesh), mesh.GetNumberOfCells()),

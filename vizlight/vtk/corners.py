@@ -1,7 +1,8 @@
-"""Normals of a surface at its points, as means over the corners of the faces around each."""
+"""Corners of the faces around points: normals as means over them, and points split between them."""
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity, places, triangles
-from vizlight.vtk.topology import BLOCK, components
+from vizlight.vtk.topology import BLOCK, EDGES, components
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -133,6 +134,110 @@ def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
                     total[k, low:high] += sums
                 else:
                     total[k, used] += sums
+
+
+#: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are
+#: those of 30 degrees, are split together or not at all.
+BEYOND = 0.01
+
+
+def split_faces(
+    points: NDArray[np.generic],
+    ids: Indices,
+    ends: Indices,
+    angle: float,
+    twins: Indices | None = None,
+) -> tuple[Indices, Indices]:
+    """Return the corners of faces at points that are split, and the point that each point was.
+
+    Around a point the faces that edges join which are not sharp have one point. An edge of more
+    than two faces joins none of them. Faces need not be wound alike.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        Points of the surface.
+    ids : ndarray of int
+        Corners of all faces, one face after the other.
+    ends : ndarray of int, shape (M + 1,)
+        Place in ``ids`` at which each face begins, and the end of the last.
+    angle : float
+        Angle in degrees between two faces from which their edge is sharp.
+    twins : ndarray of int, shape (M,), optional
+        First face of the same points as each face; others stay with that one.
+    """
+    unit = _face_normals(points, ids, ends)
+    least = np.cos(np.radians(angle + BEYOND))
+    root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
+    # By ranges of points: a sort of all edges at once would take more memory.
+    for block in _pool.blocks(len(points), EDGES // 16):
+        own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
+        face = np.searchsorted(ends, own, side="right") - 1
+        begin, end = ends[face], ends[face + 1]
+        after = ids[np.where(own + 1 < end, own + 1, begin)]
+        before = ids[np.where(own > begin, own, end) - 1]
+        # Each corner has an edge ahead of it and one behind it.
+        at, toward = np.tile(ids[own], 2), np.concatenate([after, before])
+        known = at != toward
+        if twins is not None:
+            known &= np.tile(twins[face] == face, 2)
+        rows = np.flatnonzero(known)
+        key = at[rows].astype(np.int64) << 32 | toward[rows]
+        order = np.argsort(key, kind="stable")
+        key, rows = key[order], rows[order]
+        new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
+        pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
+        one, other = rows[pair] % len(own), rows[pair + 1] % len(own)
+        cosine = np.einsum("ij,ij->i", unit[face[one]], unit[face[other]])
+        # Faces that are wound alike run along their common edge against each other.
+        against = (rows[pair] < len(own)) != (rows[pair + 1] < len(own))
+        smooth = np.where(against, cosine, -cosine) > least
+        joins = np.sort([one[smooth], other[smooth]], axis=0)
+        root[own] = own[components(joins[0], joins[1], len(own))]
+    if twins is not None:
+        corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
+        _, first, number = np.unique(corner, return_index=True, return_inverse=True)
+        root = root[first[number.reshape(-1)]]
+    return numbered(root, ids, len(points))
+
+
+def _face_normals(points: NDArray[np.generic], ids: Indices, ends: Indices) -> Array:
+    """Return the unit normals of faces in float32, zero without an area."""
+    unit = np.zeros((len(ends) - 1, 3), dtype=np.float32)
+    size = np.diff(ends)
+    for s in np.unique(size[size > 2]):
+        of_size = np.flatnonzero(size == s)
+        for block in _pool.blocks(len(of_size), BLOCK):
+            rows = of_size[block]
+            corners = ids[ends[rows][:, np.newaxis] + np.arange(s)]
+            first, *more = (points.take(at, axis=0).T.astype(np.float64) for at in corners.T)
+            sides = [corner - first for corner in more]
+            across = sum(kernels.cross(a, b) for a, b in itertools.pairwise(sides))
+            unit[rows] = kernels.unit(np.asarray(across))[0].T
+    return unit
+
+
+def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return the points of corners, of which those of one root are one, and what each point was.
+
+    The first of the roots at a point has that point; others come after all points.
+
+    Parameters
+    ----------
+    root : ndarray of int
+        First corner that is one with each corner.
+    ids : ndarray of int
+        Point of each corner before.
+    count : int
+        Number of points before.
+    """
+    roots = np.flatnonzero(root == np.arange(len(root), dtype=root.dtype))
+    own = ids[roots]
+    first = np.zeros(len(roots), dtype=np.bool_)
+    first[np.unique(own, return_index=True)[1]] = True
+    place = np.empty(len(root), dtype=root.dtype)
+    place[roots] = np.where(first, own, count - 1 + np.cumsum(~first))
+    return place[root], np.concatenate([np.arange(count), own[~first]])
 
 
 #: Share of the longest side of a triangle up to which another side joins its ends, and of the

@@ -320,7 +320,7 @@ def sided_normals(
 
 def _lean_of_given(shape: Shape, normals: Array) -> Array:
     """Return the sine of the largest angle between normals and faces, however these are wound."""
-    return np.minimum(*(np.abs(shape.survey(sign * normals).lean) for sign in (1, -1)))
+    return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
 
 
 def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bools:
@@ -449,16 +449,16 @@ def computed_normals(
     sharp: Array = np.zeros(owners.count)
     inside = np.zeros(owners.count, dtype=np.intp)
     if sides or not as_wound:
-        survey = shape.survey(vectors)
+        sums, leaning = shape.survey(vectors)
         if told is not None:
-            shape.turn(told.sign < 0, vectors, survey)
+            shape.turn(told.sign < 0, vectors, leaning)
         elif not as_wound:
-            shape.orient(vectors, survey, view)
+            shape.orient(vectors, sums, leaning, view)
         if sides:
-            lean = survey.lean if first is None else survey.lean[first]
+            lean = leaning if first is None else leaning[first]
             side = sides_of(vectors, shape.piece, border) if told is None else told.number
             side = np.where(shape.inside_out, 1, side)
-            sharp = crease_share(shape.edge_counts(survey.faces, survey.full))
+            sharp = crease_share(shape.edges)
     number = side[shape.piece]
     if origin is not None:
         if dimension(mesh) == 3:
@@ -580,11 +580,11 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         vectors[part.origin[own]] = normals[own]
-        survey = shape.survey(normals)
-        sums.append(survey.sums._replace(score=shape.score(normals, view)))
+        own_sums, own_lean = shape.survey(normals)
+        sums.append(own_sums._replace(score=shape.score(normals, view)))
         if sides:
-            lean[part.origin[own]] = survey.lean[own]
-            counts += shape.edge_counts(survey.faces, survey.full)
+            lean[part.origin[own]] = own_lean[own]
+            counts += shape.edges
         if len(single):
             single = np.setdiff1d(single, inner_edges(shape.points, shape.triangles, ends))
     border = np.array([len(single) > 0])

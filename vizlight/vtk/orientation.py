@@ -10,11 +10,9 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.cells import faces, places, triangles
-from vizlight.vtk.topology import BLOCK, Owners, ends_of, sorted_edges, topology
+from vizlight.vtk.topology import BLOCK, Owners, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -100,28 +98,6 @@ class Sums(NamedTuple):
         return found
 
 
-class Survey(NamedTuple):
-    """What one walk over the triangles of a surface finds.
-
-    Attributes
-    ----------
-    sums : Sums
-        Sums over each piece, but for the score, which is 0.
-    lean : ndarray of float32, shape (n_points,)
-        Sine of the largest angle between the normal of each point and a face around it, 1 from a
-        right angle on; negative where the surface is concave.
-    faces : ndarray of float32, shape (3, n_triangles)
-        Unit normals of the triangles.
-    full : ndarray of bool, shape (n_triangles,)
-        Whether a triangle has an area to speak of.
-    """
-
-    sums: Sums
-    lean: Array
-    faces: Array
-    full: Bools
-
-
 class Shape:
     """The triangles of a surface, its connected pieces, and which of those have a border.
 
@@ -131,8 +107,6 @@ class Shape:
     #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for points of
     #: the one before. Cells belong to the part in which they begin.
     side: NDArray[np.int8] | None = None
-    #: Pairs of triangles that share an edge, where all are wound alike.
-    shared: Indices | None = None
 
     def __init__(
         self, surface: vtkPolyData, owners: Owners, side: NDArray[np.int8] | None = None
@@ -140,18 +114,19 @@ class Shape:
         self.points, self.owners, self.side = places(surface), owners, side
         self.triangles = triangles(surface)
         own = None if side is None else side == 0
-        found = topology(self.triangles, self.points, owners, own)
-        self.piece, self.open, self.alike, self.shared, folded, self.same = found
+        self._start_count()
+        found = topology(self.triangles, self.points, owners, own, self._count)
+        self.piece, self.open, self.alike, folded, self.same = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
-            self.alike, self.shared = False, None
+            self.alike = False
         self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.count = len(self.open)
         self._note_folded(folded)
 
     def rewind(self, surface: vtkPolyData) -> None:
         """Take the faces of a surface at the same points that are wound in another way."""
-        self.triangles, self.shared = triangles(surface), None
+        self.triangles = triangles(surface)
         edges = sorted_edges(self.triangles, len(self.points), self.same)
         self._note_folded([part.folded() for part in edges])
 
@@ -164,6 +139,41 @@ class Shape:
             self.seam[ends] = True
         if self.same is not None:
             self.seam = self.seam[self.same]
+
+    def _start_count(self) -> None:
+        """Find the directions of the triangles, between which :meth:`_count` counts sharp edges."""
+        self._unit = np.zeros((3, len(self.triangles)), dtype=np.float32)
+        self._full = np.zeros(len(self.triangles), dtype=np.bool_)
+        #: Number of edges of two faces of each mesh, and of sharp ones by three limits.
+        self.edges = np.zeros((4, self.owners.count), dtype=np.intp)
+        for block in _pool.blocks(len(self.triangles), BLOCK):
+            corners = [self.points.take(at, axis=0).T for at in self.triangles[block].T]
+            a, b, c = (at.astype(np.float64) for at in corners)
+            with np.errstate(all="ignore"):
+                self._unit[:, block], size = kernels.unit(kernels.cross(b - a, c - a))
+                self._full[block] = _wide(size, b - a, c - a, c - b)
+
+    def _count(self, edges: SortedEdges) -> None:
+        """Count edges of two faces, and sharp ones.
+
+        Faces without area, which many meshes have at a pole, have no direction and no sharp edges.
+        """
+        first = np.flatnonzero(edges.keys[1:] == edges.keys[:-1])
+        if self.side is not None:
+            lower, upper = ends_of(edges.keys[first])
+            first = first[np.minimum(self.side[lower], self.side[upper]) == 0]
+        least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
+        for block in _pool.blocks(len(first), BLOCK):
+            at = first[block]
+            one, other = edges.places[at] // 3, edges.places[at + 1] // 3
+            full = self._full[one] & self._full[other]
+            # Faces that are wound alike run along their common edge against each other.
+            against = edges.forward[at] != edges.forward[at + 1]
+            cosine = kernels.dot(self._unit.take(one, axis=1), self._unit.take(other, axis=1))
+            cosine = np.where(against, cosine, -cosine)
+            for count, beyond in zip(self.edges, (2.0, *least), strict=True):
+                sharp = np.flatnonzero(full & (cosine < beyond))
+                count += self.owners.counts(self.triangles[one[sharp], 0])
 
     @cached_property
     def frame(self) -> tuple[Array, Array]:
@@ -206,28 +216,30 @@ class Shape:
         """Whether all points are finite."""
         return bool(self.finite.all())
 
-    def survey(self, normals: Array) -> Survey:
-        """Return what a walk over the triangles finds, given the normals of the points."""
+    def survey(self, normals: Array) -> tuple[Sums, Array]:
+        """Return what a walk over the triangles finds, given the normals of the points.
+
+        Returns
+        -------
+        Sums
+            Sums over each piece, but for the score, which is 0.
+        ndarray of float32, shape (n_points,)
+            Sine of the largest angle between the normal of each point and a face around it, 1 from
+            a right angle on; negative where the surface is concave.
+        """
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
-        faces = np.zeros((3, len(self.triangles)), dtype=np.float32)
-        full = np.zeros(len(self.triangles), dtype=np.bool_)
         for block in _pool.blocks(len(self.triangles), BLOCK):
             rows: Indices = self.triangles[block]
-            numbers: slice | Indices = block
             if not self.all_finite:
-                known = self.finite[rows].all(axis=1)
-                rows, numbers = rows[known], np.flatnonzero(known) + block.start
+                rows = rows[self.finite[rows].all(axis=1)]
             corners = [np.ascontiguousarray(at) for at in rows.T]
             a, b, c = (self.away(at) for at in corners)
             u, v = b - a, c - a
             across = kernels.cross(u, v)
             unit, size = kernels.unit(across)
-            sides = [kernels.dot(side, side) for side in (u, v, c - b)]
-            longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
-            wide = size > NARROWEST * longest
-            faces[:, numbers], full[numbers] = unit, wide
+            wide = _wide(size, u, v, c - b)
             own = slice(None)
             if self.side is not None:
                 own = self.side[rows].min(axis=1) == 0
@@ -245,54 +257,22 @@ class Shape:
             sine = np.where(near > 0, np.sqrt(np.clip(1 - near * near, 0, 1)), 1)
             bent = bend[block]
             lean[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
-        return Survey(sums, lean, faces, full)
+        return sums, lean
 
-    def edge_counts(self, faces: Array, full: Bools) -> Indices:
-        """Return of each mesh the number of edges of two faces, and of sharp ones by three limits.
-
-        Faces without area, which many meshes have at a pole, have no direction and no sharp edges.
-        """
-        least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
-        counts = np.zeros((4, self.owners.count), dtype=np.intp)
-        for pairs in self._pairs(full):
-            for block in _pool.blocks(pairs.shape[1], BLOCK):
-                one, other = (faces.take(at, axis=1) for at in pairs[:, block])
-                cosine = kernels.dot(one, other)
-                beyond = [np.flatnonzero(cosine < limit) for limit in least]
-                for count, at in zip(counts, (np.arange(len(cosine)), *beyond), strict=True):
-                    count += self.owners.counts(self.triangles[pairs[0, block][at], 0])
-        return counts
-
-    def _pairs(self, full: Bools) -> Iterator[Indices]:
-        """Yield the pairs of faces with an area that share an edge."""
-        if self.shared is not None:
-            yield self.shared if full.all() else self.shared[:, full[self.shared].all(axis=0)]
-            return
-        for keys, corners, _ in sorted_edges(self.triangles, len(self.points)):
-            face = corners // 3
-            there = full[face]
-            if self.side is not None:
-                lower, upper = ends_of(keys)
-                there &= np.minimum(self.side[lower], self.side[upper]) == 0
-            keys, face = keys[there], face[there]
-            twice = np.flatnonzero(keys[1:] == keys[:-1])
-            yield np.stack([face[twice], face[twice + 1]])
-
-    def orient(self, normals: Array, survey: Survey, view: View | None) -> None:
+    def orient(self, normals: Array, sums: Sums, lean: Array, view: View | None) -> None:
         """Flip normals, with their lean, of pieces where they point inward or away from the eye."""
-        sums = survey.sums
         if not sums.around(self.open).all():
             sums = sums._replace(score=self.score(normals, view))
-        self.turn(sums.turned(self.open), normals, survey)
+        self.turn(sums.turned(self.open), normals, lean)
 
-    def turn(self, turned: Bools, normals: Array, survey: Survey) -> None:
+    def turn(self, turned: Bools, normals: Array, lean: Array) -> None:
         """Flip the normals of some pieces, with their lean."""
         if not turned.any():
             return
         for block in _pool.blocks(len(normals), BLOCK):
             flipped = turned[self.piece[block]] if len(turned) > 1 else slice(None)
             normals[block][flipped] *= -1
-            survey.lean[block][flipped] *= -1
+            lean[block][flipped] *= -1
 
     def score(self, normals: Array, view: View | None) -> Array:
         """Return how far the normals of each piece agree with the directions of a sheet."""
@@ -318,6 +298,13 @@ class Shape:
         return np.asarray(eye - self.points[block].T.astype(np.float64))
 
 
+def _wide(size: Array, *sides: Array) -> Bools:
+    """Return which triangles have a direction, given the lengths of their area vectors."""
+    longest = np.maximum.reduce([kernels.dot(side, side) for side in sides])
+    found: Bools = size > NARROWEST * longest
+    return found
+
+
 class PartShape(Shape):
     """The triangles of a part of a surface of one piece, whose centroid and size are known."""
 
@@ -328,6 +315,9 @@ class PartShape(Shape):
         self.triangles = triangles(surface)
         self.finite = np.all(np.isfinite(self.points), axis=1)
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
+        self._start_count()
+        for edges in sorted_edges(self.triangles, len(self.points)):
+            self._count(edges)
         self.frame = middle[:, np.newaxis], np.array([scale])
 
 
@@ -409,8 +399,7 @@ def crease_share(counts: Indices) -> Array:
     """Return of each mesh the share of sharp edges where these are creases, else 0.
 
     Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-    are more of those, and no edge is meant to be seen. ``counts`` come from
-    :meth:`Shape.edge_counts`.
+    are more of those, and no edge is meant to be seen. ``counts`` are :attr:`Shape.edges`.
     """
     beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)

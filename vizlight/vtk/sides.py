@@ -50,7 +50,7 @@ class Look(NamedTuple):
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
         Numbers of the places of points that other parts have too, their pieces and normals.
     edges : ndarray of int, shape (4, 1)
-        See :meth:`.orientation.Shape.edge_counts`.
+        See :attr:`.orientation.Shape.edges`.
     """
 
     open: Bools
@@ -90,8 +90,6 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     if found is None:
         return None
     shape, vectors, _, origin = found
-    survey = shape.survey(vectors)
-    edges = shape.edge_counts(survey.faces, survey.full)
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
     if given is not None:
@@ -122,7 +120,7 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     if given is not None:
         # A place of all parts, with no opinion of its side: what does not touch is one piece too.
         common = np.zeros(1, dtype=np.uint64), np.zeros(1, dtype=np.intp), np.zeros((1, 3))
-    return Look(border, far, shown, total, field, outermost, of, *common, edges)
+    return Look(border, far, shown, total, field, outermost, of, *common, shape.edges)
 
 
 def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indices]:

@@ -10,7 +10,7 @@ from vizlight import _pool
 from vizlight.vtk.cells import mixed, places, triangles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 #: Least number of edges that are sorted at once, and largest number of parts of these.
 EDGES, PARTS = 1 << 19, 16
-#: Number of edges of one mesh up to which all pairs of its triangles are kept, and of a larger one
-#: about as many: the share of sharp ones among so many is known to 0.1 % of all.
-FEW = 1 << 18
 
 
 class Owners:
@@ -51,7 +48,7 @@ class Owners:
 
 
 class Topology(NamedTuple):
-    """Connected pieces of the points of a surface, and which triangles share an edge.
+    """Connected pieces of the points of a surface, and how its triangles are wound.
 
     Attributes
     ----------
@@ -61,9 +58,6 @@ class Topology(NamedTuple):
         Whether a piece has an edge of one triangle only.
     alike : bool
         Whether all edges have one triangle, or two that are wound alike.
-    shared : ndarray of int, shape (2, n), or None
-        Pairs of triangles that share an edge, where all are wound alike: of one mesh with many, an
-        even sample; of a batch with many, None.
     folded : list of ndarray of int
         Ends of edges, by place, at which two triangles are wound against each other.
     same : ndarray of int, shape (n_points,), or None
@@ -73,7 +67,6 @@ class Topology(NamedTuple):
     piece: Indices
     open: Bools
     alike: bool
-    shared: Indices | None
     folded: list[Indices]
     same: Indices | None
 
@@ -157,11 +150,16 @@ def sorted_edges(
 
 
 def topology(
-    corners: Indices, points: NDArray[np.generic], owners: Owners, own: Bools | None = None
+    corners: Indices,
+    points: NDArray[np.generic],
+    owners: Owners,
+    own: Bools | None = None,
+    visit: Callable[[SortedEdges], object] = len,
 ) -> Topology:
-    """Return the pieces of a surface, and the pairs of triangles that share an edge.
+    """Return the pieces of a surface.
 
-    With ``own``, a mask of points, only an edge between two of these makes a border.
+    With ``own``, a mask of points, only an edge between two of these makes a border. ``visit`` is
+    called with all edges, range by range.
     """
     count = len(points)
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
@@ -170,10 +168,6 @@ def topology(
     folded: list[Indices] = []
     # What is not filled takes no memory.
     ends: Indices = np.empty((2, 3 * len(corners)), dtype=kind)
-    pairs: list[Indices] = []
-    step = 1 + 3 * len(corners) // (2 * FEW)
-    known = step == 1 or owners.of is None
-    anywhere = np.random.default_rng(0)
     alike, edges, different = True, 0, 0
     for part in sorted_edges(corners, count):
         twice = part.keys[1:] == part.keys[:-1]
@@ -182,12 +176,7 @@ def topology(
             np.any(twice & (part.forward[1:] == part.forward[:-1]))
             or np.any(twice[1:] & twice[:-1])
         )
-        if alike and known:
-            first = np.arange(0, len(twice) - step + 1, step)
-            first += anywhere.integers(0, step, len(first)) if step > 1 else 0
-            first = first[twice[first]]
-            both = part.places[np.stack([first, first + 1])] // 3
-            pairs.append(both.astype(kind))
+        visit(part)
         if not alike:
             folded.append(part.folded())
         if same is None:
@@ -207,8 +196,7 @@ def topology(
     for one in single:
         borders[piece[one]] = True
     alike = alike and edges == 3 * len(corners)
-    shared = np.concatenate([np.empty((2, 0), kind), *pairs], axis=1) if alike and known else None
-    return Topology(piece, borders, alike, shared, folded, same)
+    return Topology(piece, borders, alike, folded, same)
 
 
 def ends_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

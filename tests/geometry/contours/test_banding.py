@@ -99,13 +99,6 @@ def test_a_luminance_that_is_not_monotone_along_an_edge():
     assert np.quantile(gap, 0.99) < 1e-10
 
 
-def test_no_triangles():
-    made, _ = banding.cut(
-        np.empty((0, 3)), np.empty((0, 3), int), np.empty((0, 3)), spacing.steps(4, 0.0, 1.0)
-    )
-    assert len(made.values) == len(made.points) == len(made.lines) == 0
-
-
 @pytest.mark.parametrize("pattern", range(8))
 def test_split_of_each_pattern(pattern):
     corners = np.array([[0.0, 0], [1, 0], [0, 1]])

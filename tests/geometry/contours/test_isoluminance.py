@@ -21,15 +21,10 @@ LIGHTS = {
 }
 
 
-def many(points, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
-    """The law at many points of the unit sphere, in float64."""
+def many(points, **light):
+    """The law at many points of the unit sphere."""
     normal = points / np.linalg.norm(points, axis=1, keepdims=True)
-    toward = np.asarray(direction) + 0 * normal if position is None else position - normal
-    d = np.linalg.norm(toward, axis=1)
-    cosine = np.einsum("ij,ij->i", normal, toward) / d
-    c1, c2, c3 = attenuation
-    fading = 1 if position is None else np.minimum(1, 1 / (c1 + c2 * d + c3 * d * d))
-    return 0.1 + 0.8 * np.maximum(cosine, 0) ** power * (cosine > 0) * fading
+    return banded.lambert(normal, normal, **light)
 
 
 def made(light, **options):
@@ -110,13 +105,6 @@ def test_a_sphere_of_radius_0_has_no_cells():
     bands = sphere((1, 2, 3), 0, direction=(0, 0, 1))
     assert len(bands.points) == len(bands.values) == len(bands.lines) == 0
     assert len(sphere((1, 2, 3), 0, direction=(0, 0, 1), form="laminae").values) == 0
-
-
-def test_equal_steps_are_equally_far_along_the_axis():
-    """The source: latitudes have a cosine distribution along the light's direction."""
-    bands = sphere((0, 0, 0), 1.0, direction=(0, 0, 1), levels=8)
-    height = np.unique(np.round(bands.points[np.unique(bands.lines)][:, 2], 12))
-    np.testing.assert_allclose(height, np.arange(8) / 8, atol=1e-12)
 
 
 def test_laminae_from_the_light_from_behind_and_across(random):

@@ -35,15 +35,6 @@ def normals(points, shape):
     return normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
 
-def law(points, normal, *, direction=None, position=None, power=1.0, attenuation=(1, 0, 0)):
-    toward = np.asarray(direction) + 0 * points if position is None else position - points
-    d = np.linalg.norm(toward, axis=1)
-    cosine = np.einsum("ij,ij->i", normal, toward) / d
-    c1, c2, c3 = attenuation
-    fading = 1 if position is None else np.minimum(1, 1 / (c1 + c2 * d + c3 * d * d))
-    return 0.1 + 0.8 * np.maximum(cosine, 0) ** power * (cosine > 0) * fading
-
-
 def onto(points, patch, shape):
     """Return places of polygons on the true surface, and the normals there."""
     height, radii = SHAPES[shape]
@@ -67,7 +58,7 @@ def test_bands_of_a_far_light(shape, direction, random):
     assert banded.is_closed(bands)
     place, polygon = banded.places(bands, random, 8)
     on, normal = onto(place, bands.patch[polygon], shape)
-    error = np.abs(law(on, normal, direction=direction) - bands.values[polygon])
+    error = np.abs(banded.lambert(on, normal, direction=direction) - bands.values[polygon])
     assert error.max() <= bands.error + 1e-12
     ends = bands.patch[polygon] > 0
     assert error[ends].max() < 1e-14
@@ -88,7 +79,7 @@ def test_curves_of_a_near_light(shape, light, random):
     assert banded.is_closed(bands)
     place, polygon = banded.places(bands, random)
     on, normal = onto(place, bands.patch[polygon], shape)
-    error = np.abs(law(on, normal, **light) - bands.values[polygon])
+    error = np.abs(banded.lambert(on, normal, **light) - bands.values[polygon])
     # Chords between exact contour points add at most a tenth of half a step almost everywhere.
     assert np.quantile(error, 0.999) <= 1.15 * bands.steps.error
     assert error.max() <= 1.5 * bands.steps.error
@@ -109,7 +100,7 @@ def test_the_sources_approximation_falls_with_distance():
         bands = made("frustum", position=position, method="rulings", levels=400)
         place, polygon = banded.places(bands, np.random.default_rng(3), 20)
         on, normal = onto(place, bands.patch[polygon], "frustum")
-        error = np.abs(law(on, normal, position=position) - bands.values[polygon])
+        error = np.abs(banded.lambert(on, normal, position=position) - bands.values[polygon])
         worst.append(error.max() - bands.steps.error)
     order = np.log2(np.array(worst[:-1]) / worst[1:])
     np.testing.assert_allclose(order, 1, atol=0.2)

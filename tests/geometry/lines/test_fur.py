@@ -182,8 +182,8 @@ def test_places_are_even_on_shuffled_triangles(size, random):
 
 
 def test_the_curve_through_triangles_that_are_not_finite_or_in_one_place():
-    assert fur.along_curve(np.zeros((3, 3)), np.array([[0, 1, 2]] * 4)).tolist() == [0, 1, 2, 3]
-    assert fur.along_curve(np.empty((0, 3)), np.empty((0, 3), int)).shape == (0,)
+    assert fur.laid(np.zeros((3, 3)), np.array([[0, 1, 2]] * 4))[0].tolist() == [0, 1, 2, 3]
+    assert fur.laid(np.empty((0, 3)), np.empty((0, 3), int))[0].shape == (0,)
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [np.nan, 0, 0], [np.inf, 1, 0.0]])
     faces = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
-    assert sorted(fur.along_curve(points, faces)) == [0, 1, 2]
+    assert sorted(fur.laid(points, faces)[0]) == [0, 1, 2]

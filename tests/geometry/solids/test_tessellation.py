@@ -311,12 +311,6 @@ def test_random_trees(kind, seed):
     assert not found
 
 
-def test_triangles_are_upright():
-    for kind, seed in (("coaxial", 0), ("grid", 10), ("deep", 0)):
-        mesh = solids.tessellate(solid_trees.tree(kind, seed))
-        assert not tessellation.flipped(mesh).any()
-
-
 HARD = {
     "an apex on another surface": ("turned", 28, 1990),
     "three cylinders in one point": ("crossing", 3, 1990),
@@ -332,12 +326,6 @@ HARD = {
 def test_positions_that_flip_triangles_or_move_creases(name):
     found, _ = solid_trees.problems(solid_trees.tree(*HARD[name]), count=20_000)
     assert not found
-
-
-def test_an_apex_is_a_point_of_the_mesh():
-    mesh = solids.tessellate(solid_trees.tree(*HARD["an apex on another surface"]))
-    gap = np.linalg.norm(mesh.points - mesh.surfaces[7].apex, axis=1)
-    assert gap.min() < 1e-9
 
 
 def test_thin_walls_keep_the_volume_of_parallel_facets():

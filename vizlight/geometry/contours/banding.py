@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,18 +21,13 @@ if TYPE_CHECKING:
 
     Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
-#: Share of an edge that the search for a contour point leaves: the rounding of the luminance moves
-#: it by as much.
+#: Share of an edge to which a contour point is found, about the rounding of the luminance.
 WIDTH = 2.0**-40
-#: Number of places at which a root is estimated before its bracket is divided, and number of
-#: brackets in which this is tried.
-ESTIMATES, TRIES = 3, 2
-#: Number of parts that a round of the search divides all brackets into, and the largest number of
-#: parts of one bracket.
-PARTS, MOST = 2048, 32
-#: Width of a bracket at which the chord gives the crossing to rounding, and at which a jump of the
-#: luminance is not searched more closely: a change by more than JUMP of the span of all levels.
+#: Width of a bracket at which a jump of the luminance is not searched more closely: a change by
+#: more than JUMP of the span of all levels.
 NARROW, JUMP = 2.0**-20, 1e-3
+#: Number of parts that a bracket is divided into, to find where the light ends.
+PARTS = 32
 #: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
 #: Number of triangles that are taken at once.
@@ -167,7 +163,6 @@ def cut(
     patch: Indices | None = None,
     place: Callable[[Indices, Indices, Array], Array] | None = None,
     luminance: Luminance | None = None,
-    known: Crossings | None = None,
 ) -> tuple[Bands, Indices]:
     """Cut triangles along contours.
 
@@ -189,10 +184,8 @@ def cut(
         edges from a to b. Default: points on the chord.
     luminance : callable, optional
         Function ``luminance(a, b, t, patch)`` that returns the luminance at fractions t, shape
-        (N, m), of N edges. With it,
-        contour points are found by bracketing, else by linear interpolation.
-    known : Crossings, optional
-        Crossings of the levels that were found before; new ones are added.
+        (N, m), of N edges. With it, contour points are found by bracketing, else by linear
+        interpolation.
 
     Returns
     -------
@@ -203,9 +196,9 @@ def cut(
 
     Notes
     -----
-    A value in (edges[k-1], edges[k]] belongs to band k. Brackets keep the order of the levels along
-    an edge even where the luminance is not monotone there, so that each triangle is cut into one
-    polygon per band. All triangles at an edge have all its contour points as corners, whichever
+    A value in (edges[k-1], edges[k]] belongs to band k. Contour points keep the order of the levels
+    along an edge even where the luminance is not monotone there, so that each triangle is cut into
+    one polygon per band. All triangles at an edge have all its contour points as corners, whichever
     side they come from: a closed surface stays closed. Triangles without contour points are taken
     over as they are.
     """
@@ -213,25 +206,20 @@ def cut(
     lowest, touched = _touched(triangles, values, levels, patch)
     rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
     patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
-    pieces, new, lines, line_level = _pieces(
+    new, pieces = _pieces(
         points, triangles[rows], at_corners(values, triangles, rows), levels, patch[rows], place,
-        luminance, Crossings() if known is None else known,
+        luminance,
     )  # fmt: skip
+    size, cut_corners, cut_band, owner, lines, line_level = pieces
     # The triangles that stay whole follow the pieces of the others.
-    triangle = np.concatenate([rows[pieces.triangle], whole])
-    band = np.concatenate([pieces.band, lowest[whole]])
-    offsets = np.empty(len(triangle) + 1, np.intp)
-    offsets[: len(pieces.offsets)] = pieces.offsets
-    offsets[len(pieces.offsets) :] = pieces.offsets[-1] + 3 * np.arange(1, len(whole) + 1)
-    corners = np.empty(offsets[-1], np.intp)
-    corners[: pieces.offsets[-1]] = pieces.corners
-    np.take(triangles, whole, axis=0, out=corners[pieces.offsets[-1] :].reshape(-1, 3))
+    triangle = np.concatenate([rows[owner], whole])
+    band = np.concatenate([cut_band, lowest[whole]])
+    offsets = np.append(0, np.cumsum(np.append(size, np.full(len(whole), 3))))
+    corners = np.concatenate([cut_corners, triangles[whole].ravel()])
     count = len(points)
     used, lookup = _compact(corners, count + len(new))
     old = np.searchsorted(used, count)
-    made = np.empty((len(used), points.shape[1]))
-    np.take(points, used[:old], axis=0, out=made[:old])
-    np.take(new, used[old:] - count, axis=0, out=made[old:])
+    made = np.concatenate([points[used[:old]], new[used[old:] - count]])
     lines = lookup[lines]
     kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
     cut_bands = Bands(
@@ -254,64 +242,14 @@ def at_corners(values: Array, triangles: Indices, rows: slice | Indices) -> Arra
     return np.asarray(values[rows] if values.ndim == 2 else values[triangles[rows]])
 
 
-class Crossings:
-    """The fractions at which levels are crossed along sides, by the edge and patch of a side.
-
-    They hold for one luminance and one sequence of levels. The indices of points must not change;
-    points may be added.
-    """
-
-    #: Bits of the index of a point and of a patch in a key; of larger indices nothing is kept.
-    POINT, PATCH = 24, 14
-
-    def __init__(self) -> None:
-        self._keys, self._start = np.empty(0, np.intp), np.empty(0, np.intp)
-        self._share = np.empty(0)
-
-    def keys(self, ends: Indices, patch: Indices) -> Indices | None:
-        """Return a key for each side, or None if the indices are too large for keys."""
-        if max(ends.max(initial=0) >> self.POINT, patch.max(initial=0) >> self.PATCH):
-            return None
-        return (ends[:, 0] << self.POINT | ends[:, 1]) << self.PATCH | patch
-
-    def find(self, keys: Indices) -> tuple[Bools, Indices]:
-        """Return which sides are known, and the place of the first fraction of each."""
-        if not len(self._keys):
-            return np.zeros(len(keys), np.bool_), np.zeros(len(keys), np.intp)
-        place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-        return self._keys[place] == keys, self._start[place]
-
-    def taken(self, places: Indices) -> Array:
-        """Return fractions by their places."""
-        return self._share[places]
-
-    def add(self, keys: Indices, start: Indices, share: Array) -> None:
-        """Add the fractions of sides, which begin at ``start``."""
-        keys = np.concatenate([self._keys, keys])
-        order = np.argsort(keys, kind="stable")
-        self._keys = keys[order]
-        self._start = np.concatenate([self._start, start + len(self._share)])[order]
-        self._share = np.concatenate([self._share, share])
-
-
-@dataclass(frozen=True)
-class _Pieces:
-    """Polygons that triangles are cut into, in the order of the triangles and of the bands."""
-
-    offsets: Indices
-    corners: Indices
-    band: Indices
-    triangle: Indices
-
-
 def _pieces(
     points: Array, triangles: Indices, values: Array, levels: Array, patch: Indices,
     place: Callable[[Indices, Indices, Array], Array] | None, luminance: Luminance | None,
-    known: Crossings,
-) -> tuple[_Pieces, Array, Indices, Indices]:  # fmt: skip
-    """Return the pieces of triangles, the contour points, and the contours with their levels.
+) -> tuple[Array, list[Indices]]:  # fmt: skip
+    """Return the contour points, which follow the given points, and the pieces of triangles.
 
-    The contour points follow the given points.
+    Of the pieces: sizes, corners, bands and triangles, in the order of the triangles and of the
+    bands; then the contours and their levels.
     """
     side, edge, ends, owner, side_values = _sides(triangles, values, patch)
     at = np.searchsorted(levels, side_values, side="left")
@@ -320,7 +258,7 @@ def _pieces(
     if luminance is None:
         share = _linear(side_values[of_side], levels[level])
     else:
-        share = _crossings(ends[edge], owner, side_values, levels, first, last, luminance, known)
+        share = _crossed(ends[edge], owner, side_values, levels, of_side, level, luminance)
     share[share < SNAP] = 0
     share[share > 1 - SNAP] = 1
 
@@ -348,18 +286,12 @@ def _pieces(
     for begin in range(0, max(len(triangles), 1), BLOCK):
         block = slice(begin, begin + BLOCK)
         bands = np.searchsorted(levels, values[block], side="left")
-        turn = np.argsort(bands, axis=1, kind="stable")
-        rows = np.arange(len(bands))[:, np.newaxis]
-        flipped = ((turn[:, 1] - turn[:, 0]) % 3) == 2
         triangle, band, position, corner, crossed = _walk(
-            triangles[block][rows, turn], bands[rows, turn], turn, side[block], edge, ends, starts,
-            of_side, level, vertex,
-        )  # fmt: skip
-        position = np.where(flipped[triangle], -position, position)
+            triangles[block], bands, side[block], edge, ends, starts, of_side, level, vertex
+        )
         # By triangle, band and position; no two are equal, and the numbers are below 2^60.
-        low, many = position.min(initial=0), band.max(initial=0) + 1
-        places = position.max(initial=0) - low + 1
-        order = np.argsort((triangle * many + band) * places + position - low)
+        many, places = band.max(initial=0) + 1, position.max(initial=0) + 1
+        order = np.argsort((triangle * many + band) * places + position)
         size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
         parts.append(
@@ -371,11 +303,7 @@ def _pieces(
                 *_lines(triangle, crossed, corner),
             )
         )
-    size, corners, band, triangle, lines, line_level = (
-        np.concatenate(part) for part in zip(*parts, strict=True)
-    )
-    offsets = np.concatenate([[0], np.cumsum(size)])
-    return _Pieces(offsets, corners, band, triangle), new, lines, line_level
+    return new, [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 
 def _touched(
@@ -491,183 +419,121 @@ def _linear(values: Array, level: Array) -> Array:
     return np.clip(np.nan_to_num(linear, nan=0.5), 0, 1)
 
 
-def _crossings(
-    ends: Indices, patch: Indices, values: Array, levels: Array, first: Indices, last: Indices,
-    luminance: Luminance, known: Crossings,
-) -> Array:  # fmt: skip
-    """Return the fraction of its side at which each level is crossed, as :func:`_bracketed`."""
-    keys = known.keys(ends, patch)
-    if keys is None:
-        return _bracketed(ends, patch, values, levels, first, last, luminance)
-    crossed = first < last
-    there, start = known.find(keys)
-    new = np.flatnonzero(crossed & ~there)
-    found = _bracketed(ends[new], patch[new], values[new], levels, first[new], last[new], luminance)
-    size = (last - first)[new]
-    known.add(keys[new], np.cumsum(size) - size, found)
-    _, start = known.find(keys)
-    _, places = _ranges(start, start + last - first)
-    return known.taken(places)
-
-
-def _bracketed(
-    ends: Indices, patch: Indices, values: Array, levels: Array, first: Indices, last: Indices,
+def _crossed(
+    ends: Indices, patch: Indices, values: Array, levels: Array, of_side: Indices, level: Indices,
     luminance: Luminance,
 ) -> Array:  # fmt: skip
-    """Return the fraction of its side at which each level is crossed.
+    """Return the fraction of its side at which each level is crossed, in the order of the levels.
 
-    The levels of a side run from ``first`` to ``last``; the result has all levels of one side, then
-    all levels of the next.
-
-    Notes
-    -----
-    A bracket is an interval of a side with all levels that are crossed there. Where one level is
-    left, its crossing is estimated from all places found so far, see :func:`_estimated`. In each
-    round the luminance is found at places inside all other brackets, which divides each bracket and
-    its levels. Brackets do not overlap, so the levels stay in order.
+    The levels of a side follow each other, the sides follow each other.
     """
-    size = last - first
-    start = np.cumsum(size) - size - first
-    share = np.empty(int(size.sum()))
+
+    def above(rows: Indices, places: Array) -> Array:
+        side = of_side[rows]
+        found = luminance(ends[side, 0], ends[side, 1], places, patch[side])
+        return found - levels[level[rows], np.newaxis]
+
     rising = values[:, 0] < values[:, 1]
-    side = np.flatnonzero(size)
-    lower, upper = first[side], last[side]
-    place = np.tile([0.0, 1.0], (len(side), 1))
-    light = values[side]
-    tries = np.zeros(len(side), np.intp)
-    span = float(levels[-1] - levels[0]) or 1.0
-    while len(side):
-        gap = light - levels[lower][:, np.newaxis]
-        single = (upper - lower == 1) & (tries < TRIES) & np.all(gap != 0, axis=1)
-        tries[single] += 1
-        if len(one := np.flatnonzero(single)):
-            own, level = side[one], lower[one]
-            root = _estimated(ends[own], patch[own], place[one], gap[one], levels[level], luminance)
-            good = np.isfinite(root)
-            share[(start[own] + level)[good]] = root[good]
-            kept = np.ones(len(side), np.bool_)
-            kept[one[good]] = False
-            side, lower, upper, tries = side[kept], lower[kept], upper[kept], tries[kept]
-            place, light = place[kept], light[kept]
-            if not len(side):
-                break
-        # Fewer brackets are divided into more parts, as a round has a cost of its own.
-        parts = min(max(PARTS // len(side), 3), MOST)
-        t = place[:, :1] + np.arange(1, parts) / parts * np.diff(place, axis=1)
-        found = luminance(ends[side, 0], ends[side, 1], t, patch[side])
-        place = np.column_stack([place[:, 0], t, place[:, 1]])
-        light = np.column_stack([light[:, 0], found, light[:, 1]])
-        # Levels that are crossed before each place: the lowest ones where the luminance rises.
-        split = np.clip(np.searchsorted(levels, light), lower[:, np.newaxis], upper[:, np.newaxis])
-        up = rising[side]
-        split = np.where(up[:, np.newaxis], split, (lower + upper)[:, np.newaxis] - split)
-        split[:, 0], split[:, -1] = lower, upper
-        split = np.maximum.accumulate(split, axis=1)
-        bracket, part = np.nonzero(np.diff(split, axis=1))
-        begin, end = split[bracket, part], split[bracket, part + 1]
-        turned = lower[bracket] + upper[bracket]
-        up = up[bracket]
-        lower, upper = np.where(up, begin, turned - end), np.where(up, end, turned - begin)
-        both = np.stack([part, part + 1], axis=1)
-        rows = bracket[:, np.newaxis]
-        place, light = place[rows, both], light[rows, both]
-        side, tries = side[bracket], tries[bracket]
-        width = place[:, 1] - place[:, 0]
-        gap = light - levels[lower][:, np.newaxis]
-        smooth = np.all(gap != 0, axis=1) & (upper - lower == 1)
-        jump = np.abs(light[:, 1] - light[:, 0]) > JUMP * span
-        done = width <= np.where(smooth | jump, NARROW, WIDTH)
-        which, level = _ranges(lower[done], upper[done])
-        # A jump as near to a corner as it is searched is at the corner.
-        middle = np.where(place[:, 0] == 0, 0.0, np.where(place[:, 1] == 1, 1.0, 0.5))
-        part = np.where(smooth & ~jump, _root(gap), middle)[done]
-        share[start[side[done]][which] + level] = (place[done, 0] + part * width[done])[which]
+    top, bottom = (pick(values, axis=1)[of_side] - levels[level] for pick in (np.max, np.min))
+    bright = rising[of_side].astype(np.float64)
+    share = np.empty(len(level))
+    # On the side of the lowest luminance there is no slope that leads to the end of the light.
+    flat = bottom == 0
+    rows = np.flatnonzero(flat)
+    share[rows] = _divided(rows, bright[rows], above)
+    rows, jump = np.flatnonzero(~flat), JUMP * float(np.ptp(levels))
+    share[rows] = _rooted(rows, bright[rows], top[rows], bottom[rows], jump, above)
+    # Where the luminance is not monotone the levels stay in order.
+    same, down = np.diff(of_side) == 0, ~rising[of_side[1:]]
+    while True:
+        step = np.where(down, -1, 1) * np.diff(share)
+        turned = np.flatnonzero(same & (step < 0))
+        if not len(turned):
+            return share
+        share[turned + 1] = share[turned]
+
+
+def _divided(rows: Indices, bright: Array, above: Callable[[Indices, Array], Array]) -> Array:
+    """Return where a luminance falls to its lowest value, by division of brackets."""
+    start, size = bright, 1 - 2 * bright
+    share = np.arange(1, PARTS) / PARTS
+    for _ in range(round(math.log(WIDTH, 1 / PARTS))):
+        lit = above(rows, start[:, np.newaxis] + share * size[:, np.newaxis]) > 0
+        size = size / PARTS
+        start = start + size * np.logical_and.accumulate(lit, axis=1).sum(axis=1)
+    # A jump as near to a corner as it is searched is at the corner.
+    middle = np.where(start == bright, 0, np.where(start + size == 1 - bright, 1, 0.5))
+    return np.asarray(start + middle * size)
+
+
+def _rooted(
+    rows: Indices, bright: Array, top: Array, bottom: Array, jump: float,
+    above: Callable[[Indices, Array], Array],
+) -> Array:  # fmt: skip
+    """Return where a luminance crosses a level, by Chandrupatla's method."""
+    share = np.empty(len(rows))
+    which = np.arange(len(rows))
+    # The last place, the other end of the bracket, and the place before; with the luminance there.
+    x1, x2, f1, f2 = bright, 1 - bright, top, bottom
+    t = f1 / (f1 - f2)
+    while len(which):
+        x = x1 + t * (x2 - x1)
+        f = above(rows[which], x[:, np.newaxis])[:, 0]
+        same = (f > 0) == (f1 > 0)
+        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
+        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
+        x1, f1 = x, f
+        width = np.abs(x2 - x1)
+        done = (f1 == 0) | (width <= np.where(np.abs(f2 - f1) > jump, NARROW, WIDTH))
+        share[which[done]] = np.where(np.abs(f1) <= np.abs(f2), x1, x2)[done]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+            smooth = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
+            t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (
+                f3 - f2
+            )
+        least = WIDTH / 2 / np.maximum(width, WIDTH)
+        t = np.where(smooth, np.clip(np.nan_to_num(t, nan=0.5), least, 1 - least), 0.5)
         kept = ~done
-        side, lower, upper, tries = side[kept], lower[kept], upper[kept], tries[kept]
-        place, light = place[kept], light[kept]
+        which, t = which[kept], t[kept]
+        x1, x2, f1, f2 = x1[kept], x2[kept], f1[kept], f2[kept]
     return share
 
 
-def _estimated(
-    ends: Indices, patch: Indices, place: Array, gap: Array, level: Array, luminance: Luminance
-) -> Array:  # fmt: skip
-    """Return where in each bracket a level is crossed, NaN where that is not found soon.
-
-    The place is interpolated as a polynomial of the luminance through the ends of the bracket and
-    all places found, by Neville's scheme. An estimate is taken where the next one would differ from
-    it by less than WIDTH, judged by the last two changes.
-    """
-    (low, high), (first, found) = place.T, gap.T
-    root, result = high, np.full(len(place), np.nan)
-    # Values of the polynomials through the last place, the last two, and so on.
-    through, off, change = [low], [first], high - low
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        for turn in range(ESTIMATES + 1):
-            off.append(found)
-            last = [root]
-            for i, value in enumerate(through):
-                other = off[-2 - i]
-                last.append((found * value - other * last[-1]) / (found - other))
-            through, earlier, root = last, root, last[-1]
-            inside = (root >= low) & (root <= high)
-            before, change = change, np.abs(root - earlier)
-            # The next change is smaller by more than this one was.
-            near = change * change <= WIDTH * before
-            result = np.where(inside & near & (turn > 0) & np.isnan(result), root, result)
-            root = np.where(inside, root, (low + high) / 2)
-            if turn < ESTIMATES:
-                found = luminance(ends[:, 0], ends[:, 1], root[:, np.newaxis], patch)[:, 0] - level
-    return result
-
-
-def _root(gap: Array) -> Array:
-    """Return where in [0, 1] a chord crosses 0, from its values at both ends."""
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        root = gap[:, 0] / (gap[:, 0] - gap[:, 1])
-    return np.asarray(np.clip(np.where(np.isfinite(root), root, 0.5), 0, 1))
-
-
 def _walk(
-    corner: Indices, band: Indices, turn: Indices, side: Indices, edge: Indices, ends: Indices,
-    starts: Indices, of_side: Indices, level: Indices, vertex: Indices,
-) -> tuple[Indices, Indices, Indices, Indices, Indices]:  # fmt: skip
-    """Walk around each triangle, up from its darkest corner and down again.
+    corner: Indices, band: Indices, side: Indices, edge: Indices, ends: Indices, starts: Indices,
+    of_side: Indices, level: Indices, vertex: Indices,
+) -> tuple[Indices, ...]:  # fmt: skip
+    """Walk around each triangle; the points of one band are a polygon in the order of the walk.
 
     Returns columns of triangle, band, position, point and the level crossed there, or -1 without
     a crossing. A point on a contour has two rows, one for each of its bands.
     """
-    count = len(corner)
+    rows = []
+    every, nothing = np.arange(len(corner)), np.full(len(corner), -1)
     # More than the positions of one side.
     span = 2 * int(np.diff(starts).max(initial=0)) + 3
-    rows: list[list[Indices]] = []
     for slot in range(3):
-        here = corner[:, slot]
-        tri = np.arange(count)
-        none = np.full(count, -1)
-        rows.append([tri, band[:, slot], none + 1 + slot * span, here, none])
-        i, j = turn[:, slot], turn[:, (slot + 1) % 3]
+        rows.append([every, band[:, slot], nothing + 1 + slot * span, corner[:, slot], nothing])
         # Edge i of a triangle runs from corner i to the next.
-        own_side = side[tri, np.where((j - i) % 3 == 1, i, j)]
-        of_edge = edge[own_side]
+        of_edge = edge[side[:, slot]]
         first, last = starts[of_edge], starts[of_edge + 1]
         tri, index = _ranges(first, last)
-        forward = ends[of_edge[tri], 0] == here[tri]
         step = index - first[tri]
+        forward = ends[of_edge[tri], 0] == corner[tri, slot]
         index = np.where(forward, index, last[tri] - 1 - step)
-        own = of_side[index] == own_side[tri]
+        # Only the contours of the own side of a crease lead to another band.
+        own = of_side[index] == side[tri, slot]
         passed = np.cumsum(own)
-        before_first = np.concatenate([[0], passed])[np.searchsorted(tri, tri)]
-        passed = passed - before_first
-        sign = 1 if slot < 2 else -1
+        passed -= np.append(0, passed)[np.searchsorted(tri, tri)]
+        sign = np.where(band[tri, (slot + 1) % 3] > band[tri, slot], 1, -1)
         after = band[tri, slot] + sign * passed
         position = slot * span + 2 * (step + 1)
-        none = np.full(len(tri), -1)
-        crossed = np.where(own, level[index], none)
-        rows.append([tri[own], (after - sign)[own], position[own] - 1, vertex[index][own],
-                     none[own]])  # fmt: skip
+        crossed = np.where(own, level[index], -1)
         rows.append([tri, after, position, vertex[index], crossed])
-    columns = [np.concatenate(part) for part in zip(*rows, strict=True)]
-    return columns[0], columns[1], columns[2], columns[3], columns[4]
+        before = [tri, after - sign, position - 1, vertex[index], np.full(len(tri), -1)]
+        rows.append([column[own] for column in before])
+    return tuple(np.concatenate(part) for part in zip(*rows, strict=True))
 
 
 def _polygons(

@@ -222,6 +222,20 @@ def _round(
     return count, error
 
 
+def _filled(places: Array, inside: Indices, segments: int) -> tuple[Array, Indices]:
+    """Return angles from 0 up to, but without, pi: those of contours, and others between them.
+
+    Contours that are far apart get further angles between them, which keep a surface round with so
+    many segments per turn. The contour of each angle, or -1, follows.
+    """
+    contour = np.concatenate([[-1], inside[np.argsort(places[inside], kind="stable")]])
+    ends = np.concatenate([[0.0], places[contour[1:]], [np.pi]])
+    pieces = np.maximum(np.ceil(np.diff(ends) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
+    step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    angle = np.repeat(ends[:-1], pieces) + step * np.repeat(np.diff(ends) / pieces, pieces)
+    return angle, np.where(step == 0, np.repeat(contour, pieces), -1)
+
+
 def _circles(q: Array, count: int, axis: Array, radius: float, middle: Array) -> Array:
     """Return points on circles of latitude, circle after circle."""
     first, second = axial.frame(axis)
@@ -239,27 +253,11 @@ def _bands(
     radius: float,
 ) -> Bands:  # fmt: skip
     """Return the closed surface: caps at both poles and strips between circles."""
-    q = np.concatenate([places, [0.0, 1.0]])
-    contour = np.concatenate([np.arange(len(places)), [-1, -1]])
-    inside = (q > 0) & (q < 1)
-    q, contour = q[inside], contour[inside]
-    order = np.argsort(q, kind="stable")
-    q, contour = q[order], contour[order]
-    # Additional circles between distant contours keep the surface round.
-    angle = 2 * np.arcsin(np.sqrt(np.concatenate([[0.0], q, [1.0]])))
-    turn = min(count, 400) / (2 * np.pi)
-    pieces = np.maximum(np.ceil(np.diff(angle) * turn - 1e-9), 1).astype(int)
-    extra = np.concatenate(
-        [
-            np.linspace(a, b, n + 1)[1:-1]
-            for a, b, n in zip(angle[:-1], angle[1:], pieces, strict=True)
-        ]
-    )
-    q = np.concatenate([q, np.sin(extra / 2) ** 2])
-    contour = np.concatenate([contour, np.full(len(extra), -1)])
-    order = np.argsort(q, kind="stable")
-    q, contour = q[order], contour[order]
-    rings = len(q)
+    inside = np.flatnonzero((places > 0) & (places < 1))
+    angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), inside, min(count, 400))
+    q = np.sin(angle / 2) ** 2
+    q[contour >= 0] = places[contour[contour >= 0]]
+    q, contour, rings = q[1:], contour[1:], len(q) - 1
     if radius == 0:
         rings, q, contour = 0, q[:0], contour[:0]
 
@@ -491,17 +489,8 @@ def _around(side: _Rulings, steps: Steps, segments: int) -> tuple[Array, Indices
     """Return the angles of all rulings around the axis, and the contour of each, or -1."""
     # Each contour is a pair of rulings, at plus and minus its angle from the light.
     places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
-    inside = (places > 0) & (places < np.pi)
-    contour = np.concatenate([np.flatnonzero(inside), [-1, -1]])
-    half = np.concatenate([places[inside], [0.0, np.pi]])
-    order = np.argsort(half, kind="stable")
-    half, contour = half[order], contour[order]
-    # Additional rulings between distant contours keep the side round.
-    pieces = np.maximum(np.ceil(np.diff(half) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
-    angle = np.repeat(half[:-1], pieces)
-    step = np.arange(len(angle)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    angle = angle + step * np.repeat(np.diff(half) / pieces, pieces)
-    contour = np.where(step == 0, np.repeat(contour[:-1], pieces), -1)
+    inside = np.flatnonzero((places > 0) & (places < np.pi))
+    angle, contour = _filled(places, inside, segments)
     # The angles run from the light to the far side and, mirrored, back.
     full = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
     return full, np.concatenate([contour, [-1], contour[:0:-1]])

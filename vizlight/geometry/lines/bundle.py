@@ -188,9 +188,7 @@ class Medium:
             lengths = np.minimum(lengths / self.voxel, FARTHEST).astype(np.float32)
         return Targets(np.ascontiguousarray(places), known, unit, lengths)
 
-    def depths(
-        self, places: Array, toward: VectorLike, rooms: voxels.Rooms | None = None, /
-    ) -> tuple[Array, Array]:
+    def depths(self, places: Array, toward: VectorLike, /) -> tuple[Array, Array]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
         Parameters
@@ -199,8 +197,6 @@ class Medium:
             Places of :class:`Targets`.
         toward : sequence of float, shape (3,)
             Direction toward a light at infinity, of any length.
-        rooms : voxels.Rooms, optional
-            Grids that are used again.
 
         Returns
         -------
@@ -208,7 +204,7 @@ class Medium:
             Depths, the point's own line included; diameters and depths are in voxels.
         """
         frame = _frame(toward).astype(np.float32)
-        return voxels.depths(self.middles, self.vectors, places, frame, rooms or voxels.Rooms())
+        return voxels.depths(self.middles, self.vectors, places, frame)
 
     def dimmed(
         self,
@@ -269,11 +265,11 @@ class Medium:
         """
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
         targets = targets.ordered(order)
-        ways, rooms = directions(count), voxels.Rooms()
+        ways = directions(count)
         found: dict[int, tuple[Array, Array]] = {}
 
         def work(part: slice) -> int:
-            found[part.start] = self._pair(targets, thick, ways[part.start], rooms)
+            found[part.start] = self._pair(targets, thick, ways[part.start])
             return int(part.start)
 
         # Each direction serves its opposite too: one grid, summed from either end.
@@ -309,22 +305,20 @@ class Medium:
             left = np.exp(np.minimum(-thick * (depth - own), 0))
         return left
 
-    def _pair(
-        self, targets: Targets, thick: float, toward: Array, rooms: voxels.Rooms
-    ) -> tuple[Array, Array]:
+    def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
         own = targets.own(facing)
-        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward, rooms))
+        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward))
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
     def crowded(self, targets: Targets, count: int) -> float:
         """Return the median over points of the depth per diameter, as a mean over directions."""
         total = np.zeros(targets.places.shape[1])
-        ways, rooms = directions(count), voxels.Rooms()
+        ways = directions(count)
         for way in ways:
-            forth, back = self.depths(targets.places, way, rooms)
+            forth, back = self.depths(targets.places, way)
             total += (forth + back) / 2 - targets.own(targets.facing(way.astype(np.float32)))
         return float(np.median(total[targets.known]) / len(ways)) if targets.known.any() else 0.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -77,35 +77,31 @@ def seeds(
     face, weights = np.empty(count, np.intp), np.empty((count, 3), np.float32)
     for start in range(0, count, SEED_BLOCK):
         block = slice(start, start + SEED_BLOCK)
-        place, weights[block] = seed_block(total, draw(total, start, count, seed))
+        place, weights[block] = seed_block(total, start, count, seed)
         face[block] = order[place]
     return face, weights
 
 
 def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
-    """Return the order of triangles along a Hilbert curve, and their cumulative areas in it."""
-    order = along_curve(vertices, triangles)
-    return order, areas(vertices, triangles[order])
+    """Return the order of triangles along a Hilbert curve, and their cumulative areas in it.
 
-
-def along_curve(vertices: Array, triangles: Indices) -> Indices:
-    """Return the order of triangles along a Hilbert curve through their centres."""
-    if not len(triangles):
-        return np.empty(0, np.intp)
+    An area that is not finite is 0.
+    """
+    a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
     with np.errstate(all="ignore"):
-        centre = vertices[triangles[:, 0]].astype(np.float64)
-        for corner in (1, 2):
-            centre += vertices[triangles[:, corner]]
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        centre = a + b + c
         centre[~np.all(np.isfinite(centre), axis=1)] = np.nan
         low = np.nanmin(centre, axis=0, initial=np.inf)
         side = float(np.nanmax(centre - low, initial=0))
-    if not 0 < side < np.inf:
-        return np.arange(len(triangles))
-    # Cells of a quarter of the mean distance of triangles on a flat surface.
-    # Enough for 4 cells between neighbours, and no more: sorting grows with the bits.
-    bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
-    places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
-    return np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
+    area[~np.isfinite(area)] = 0
+    order = np.arange(len(triangles))
+    if 0 < side < np.inf:
+        # Enough for 4 cells between neighbours, and no more: sorting grows with the bits.
+        bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
+        places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
+        order = np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
+    return order, np.cumsum(area[order])
 
 
 def hilbert(cell: Indices, bits: int) -> Indices:
@@ -135,73 +131,33 @@ def hilbert(cell: Indices, bits: int) -> Indices:
     return index
 
 
-def areas(vertices: Array, triangles: Indices) -> Array:
-    """Return the cumulative sum of the areas of triangles; an area that is not finite is 0."""
-    a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
-    with np.errstate(all="ignore"):
-        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return np.cumsum(np.where(np.isfinite(area), area, 0))
+def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices, Array]:
+    """Return triangles and weights of the block of seeds that begins at a multiple of SEED_BLOCK.
 
-
-class Draws(NamedTuple):
-    """Random numbers of a block of seeds.
-
-    Attributes
-    ----------
-    place : ndarray, shape (B,)
-        Areas before the seeds, in rising order.
-    number : ndarray, shape (B,)
-        Numbers of the seeds on the lattice, in turns.
-    jitter : ndarray of float32, shape (B,)
-    starts : ndarray
-        Starts of the lattice on each triangle that has a seed, and those between them.
-    first : int
-        The first of these triangles.
-    mean : float
-        Area per seed.
+    ``total`` is the cumulative area of the triangles, and ``count`` the number of all seeds.
     """
-
-    place: Array
-    number: Array
-    jitter: Array
-    starts: Array
-    first: int
-    mean: float
-
-
-def draw(total: Array, start: int, count: int, seed: int) -> Draws:
-    """Return the random numbers of the block that begins at ``start``, a multiple of SEED_BLOCK."""
     # A generator for each block: blocks can be made in any order and by any thread.
     random = np.random.default_rng([seed, start // SEED_BLOCK])
     number = np.arange(start, min(start + SEED_BLOCK, count), dtype=np.float64)
-    place = number.copy()
-    place += random.random(len(place))
-    place *= total[-1] / count
+    mean = float(total[-1] / count)
+    place = (number + random.random(len(number))) * mean
     first, last = np.minimum(np.searchsorted(total, place[[0, -1]], side="right"), len(total) - 1)
-    number *= TURN
     starts = random.random(last + 1 - first)
     jitter = random.random(len(place), dtype=np.float32)
-    return Draws(place, number, jitter, starts, int(first), float(total[-1] / count))
-
-
-def seed_block(total: Array, draws: Draws) -> tuple[Indices, Array]:
-    """Return the triangles and the weights of a block of seeds."""
-    place, first = draws.place, draws.first
-    last = first + len(draws.starts) - 1
     # Places are sorted, so a search per triangle is enough and none per place is needed.
     ends = np.searchsorted(place, total[first:last], side="left")
     counts = np.diff(ends, prepend=0, append=len(place))
     face = np.repeat(np.arange(first, last + 1), counts)
     edges = np.concatenate([[total[first - 1] if first else 0.0], total[first : last + 1]])
     area = np.diff(edges)
-    share = (place - np.repeat(edges[:-1], counts)) / np.repeat(np.where(area > 0, area, 1), counts)
+    area = np.where(area > 0, area, 1)
+    share = (place - np.repeat(edges[:-1], counts)) / np.repeat(area, counts)
     # The square root of the area before a place makes places uniform in the triangle.
     root = np.sqrt(np.clip(share, 0, 1)).astype(np.float32)
     # Each triangle has its own lattice with a random start, so that no pattern spans triangles.
-    number = draws.number + np.repeat(draws.starts, counts)
+    number = number * TURN + np.repeat(starts, counts)
     # The part of a triangle that lies in another block has the same number of places per area.
-    spread = np.minimum(draws.mean / np.where(area > 0, area, 1), 1)
-    number += np.repeat(np.sqrt(spread), counts) * draws.jitter
+    number += np.repeat(np.sqrt(np.minimum(mean / area, 1)), counts) * jitter
     weights = np.empty((len(place), 3), np.float32)
     weights[:, 0] = 1 - root
     weights[:, 2] = (number - np.floor(number)) * root
@@ -251,12 +207,7 @@ def strands(
     """
     kind = directions.dtype
     out = np.zeros((segments + 1, *directions.shape), kind)
-    # Straight fibres need two numbers each, not a walk.
     step = np.asarray(lengths, kind) / segments
-    if not (bend and toward is not None) and not curl:
-        for j in range(1, segments + 1):
-            np.multiply(directions, j * step, out=out[j])
-        return out
     if curl:
         side, up = _across(directions)
     for j in range(segments):
@@ -273,6 +224,31 @@ def strands(
         np.multiply(way, step / np.where(size > 0, size, 1), out=out[j + 1])
         out[j + 1] += out[j]
     return out
+
+
+def tangents(offsets: Array, ways: Array, /) -> Array:
+    """Return tangents, of any length, at the points of fibres.
+
+    Parameters
+    ----------
+    offsets : ndarray, shape (S + 1, 3, F)
+        Points from root to tip, as of :func:`strands`.
+    ways : ndarray, shape (3, F)
+        Directions in which the fibres would grow: the tangents of fibres of length 0.
+
+    Returns
+    -------
+    ndarray, shape (S + 1, 3, F)
+        Tangents of the parabolas through three points.
+    """
+    step = np.diff(offsets, axis=0)
+    out = np.empty_like(offsets)
+    out[0], out[-1] = step[0], step[-1]
+    if len(step) > 1:
+        out[0] = 3 * step[0] - step[1]
+        out[-1] = 3 * step[-1] - step[-2]
+        out[1:-1] = step[1:] + step[:-1]
+    return np.where(np.any(out, axis=1, keepdims=True), out, ways)
 
 
 def _across(directions: Array) -> tuple[Array, Array]:

@@ -73,32 +73,29 @@ class Cone:
         half = self.height / 2 * self.axis
         return self.center + half if self.radii[0] == 0 else self.center - half
 
-    def _parts(self, points: Array) -> tuple[Array, Array, Array, float, float]:
-        rel = points - self.center
-        along = rel @ self.axis
-        across = rel - along[:, np.newaxis] * self.axis
-        slope = (self.radii[0] - self.radii[1]) / self.height
-        return along, across, _sizes(across), slope, 1 / math.hypot(1, slope)
+    @property
+    def slope(self) -> float:
+        """Growth of the radius along the axis."""
+        return (self.radii[0] - self.radii[1]) / self.height
 
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
-        along, _, size, slope, cosine = self._parts(points)
-        return np.asarray((size - (sum(self.radii) / 2 + slope * along)) * cosine)
+        along, size, _ = _cylindrical(self.center, self.axis, points)
+        away = size - (sum(self.radii) / 2 + self.slope * along)
+        return np.asarray(away / math.hypot(1, self.slope))
 
     def normal(self, points: Array) -> Array:
         """Return outward unit normals; at the apex the normal is parallel to the axis."""
-        _, across, size, slope, cosine = self._parts(points)
-        unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
-        return np.asarray(kernels.unit_rows(cosine * (unit - slope * self.axis)))
+        _, _, unit = _cylindrical(self.center, self.axis, points)
+        return kernels.unit_rows(unit - self.slope * self.axis)
 
     def key(self, sign: float) -> tuple[float, ...]:
         """Return numbers that are equal for equal surfaces with equal normals times ``sign``."""
         up = math.copysign(1, self.axis[np.abs(self.axis).argmax()])
-        slope = (self.radii[0] - self.radii[1]) / self.height
         along = float(self.center @ self.axis)
         foot = self.center - along * self.axis
-        radius = sum(self.radii) / 2 - slope * along
-        return (2, sign, *(up * self.axis), *foot, radius, up * slope)
+        radius = sum(self.radii) / 2 - self.slope * along
+        return (2, sign, *(up * self.axis), *foot, radius, up * self.slope)
 
 
 @dataclass(frozen=True)
@@ -110,21 +107,14 @@ class Ring:
     ring: float
     tube: float
 
-    def _parts(self, points: Array) -> tuple[Array, Array, Array]:
-        rel = points - self.center
-        along = rel @ self.axis
-        across = rel - along[:, np.newaxis] * self.axis
-        return along, across, _sizes(across)
-
     def distance(self, points: Array) -> Array:
         """Return signed distances, negative inside."""
-        along, _, size = self._parts(points)
+        along, size, _ = _cylindrical(self.center, self.axis, points)
         return np.asarray(np.hypot(size - self.ring, along) - self.tube)
 
     def normal(self, points: Array) -> Array:
         """Return outward unit normals; on the axis the normal is parallel to it."""
-        along, across, size = self._parts(points)
-        unit = across / np.where(size > 0, size, 1)[:, np.newaxis]
+        along, size, unit = _cylindrical(self.center, self.axis, points)
         out = (size - self.ring)[:, np.newaxis] * unit
         return kernels.unit_rows(out + along[:, np.newaxis] * self.axis)
 
@@ -184,6 +174,15 @@ def fibonacci(count: int) -> Array:
     angle = i * np.pi * (3 - math.sqrt(5))
     r = np.sqrt(1 - z * z)
     return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+
+
+def _cylindrical(center: Array, axis: Array, points: Array) -> tuple[Array, Array, Array]:
+    """Return the height of points along an axis, their distance from it, and the way outward."""
+    rel = points - center
+    along = rel @ axis
+    across = rel - along[:, np.newaxis] * axis
+    size = _sizes(across)
+    return along, size, across / np.where(size > 0, size, 1)[:, np.newaxis]
 
 
 def _sizes(vectors: Array) -> Array:

@@ -46,8 +46,8 @@ class Solid:
         """Yield the primitives from left to right."""
         raise NotImplementedError
 
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Return which points are inside, given the same for each primitive in their order."""
+    def inside(self, points: Array) -> Bools:
+        """Return which points are inside the solid."""
         raise NotImplementedError
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Solid:
@@ -128,7 +128,7 @@ class Solid:
         places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
         if places.ndim != 2:
             raise ValueError(_check.message("points", "shape (N, 3)", places))
-        return self.combine(iter([solid.inside(places) for solid in self.primitives()]))
+        return self.inside(places)
 
 
 class Primitive(Solid):
@@ -162,10 +162,6 @@ class Primitive(Solid):
     def primitives(self) -> Iterator[Primitive]:
         """Yield the primitive itself."""
         yield self
-
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Return the next item."""
-        return next(inside)
 
     def inside(self, points: Array) -> Bools:
         """Return which points are inside all surfaces, as for a convex solid."""
@@ -216,14 +212,12 @@ class Boolean(Solid):
         yield from self.first.primitives()
         yield from self.second.primitives()
 
-    def combine(self, inside: Iterator[Bools]) -> Bools:
-        """Combine the results of both solids."""
-        first, second = self.first.combine(inside), self.second.combine(inside)
+    def inside(self, points: Array) -> Bools:
+        """Return which points are inside the combination."""
+        first, second = self.first.inside(points), self.second.inside(points)
         if self.operation == "union":
             return first | second
-        if self.operation == "intersection":
-            return first & second
-        return first & ~second
+        return first & (second if self.operation == "intersection" else ~second)
 
 
 def place(points: Array, shift: Array, scale: float, turn: Array | None) -> Array:

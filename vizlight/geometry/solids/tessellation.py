@@ -36,9 +36,8 @@ MOST = 400_000
 #: That number where finer facets are tried, which keep thin walls between surfaces: the points
 #: of a unit sphere whose facets are 5e-5 from it.
 PATIENCE = 60_000
-#: Fewest segments of a circle, and ratio of radii below which circles have equal segments: the
-#: facets of a thin wall between them are then parallel.
-FEWEST, ALIKE = 24, 1.25
+#: Fewest segments of a circle.
+FEWEST = 24
 #: Grid of coordinates before a Boolean operation, so that equal places have equal coordinates.
 GRID = 2.0**36
 #: Distance by which coordinates are rounded, with a margin for the points where surfaces cross.
@@ -162,20 +161,10 @@ class _Tree:
 
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
-        radius = np.array([part.roundness for part in self.parts])
-        order = np.argsort(radius)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            jump = radius[order][1:] > ALIKE * radius[order][:-1]
-        group = np.empty(len(radius), np.intp)
-        # Radii that differ little form a group with equal facets, which are parallel in a thin
-        # shell.
-        group[order] = np.concatenate([[0], np.cumsum(jump)])
-        largest = np.zeros(len(radius))
-        np.maximum.at(largest, group, radius)
         return [
             4 * math.ceil(max(FEWEST, math.pi / math.acos(max(1 - tolerance / (4 * r), 0))) / 4)
             if r > 0 else FEWEST
-            for r in largest[group]
+            for r in (part.roundness for part in self.parts)
         ]  # fmt: skip
 
     def allowed(self, mesh: Mesh) -> float:

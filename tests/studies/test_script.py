@@ -6,8 +6,8 @@ import numpy as np
 import oracles
 import pytest
 
+from studies import script as reference
 from vizlight import Light, Scene, View
-from vizlight.verify import reference
 
 SCENE = Scene(
     lights=[Light(position=(1, 4, 2)), Light(direction=(0, 1, 1), intensity=0.5)],
