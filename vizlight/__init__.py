@@ -98,22 +98,14 @@ _NAMES = {
     "verify.report": "report",
 }
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
-#: Places of the modules that are attributes of the package.
+#: Modules that are attributes of the package, by the folders that hold them.
+_FOLDERS = {
+    "vizlight": "accessor files filters geometry maps model pieces presets vtk",
+    "vizlight.draw": "movie paraview render testing",
+    "vizlight.shading": "engine",
+}
 _MODULES = {
-    "accessor": "accessor",
-    "engine": "shading.engine",
-    "files": "files",
-    "filters": "filters",
-    "geometry": "geometry",
-    "maps": "maps",
-    "model": "model",
-    "movie": "draw.movie",
-    "paraview": "draw.paraview",
-    "pieces": "pieces",
-    "presets": "presets",
-    "render": "draw.render",
-    "testing": "draw.testing",
-    "vtk": "vtk",
+    name: f"{folder}.{name}" for folder, names in _FOLDERS.items() for name in names.split()
 }
 
 __all__ = sorted(_HOMES.keys() - {"unlit_colors"})  # noqa: PLE0605
@@ -129,7 +121,7 @@ if not _typing.TYPE_CHECKING:  # a name that is not there is an error to a type 
             globals()[name] = value
             return value
         if name in _MODULES:
-            return _importlib.import_module(f"vizlight.{_MODULES[name]}")
+            return _importlib.import_module(_MODULES[name])
         raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
 
 

@@ -1,12 +1,11 @@
-"""A thread pool that yields the results of blocks in order and limits how many wait to be read."""
+"""Blocks of rows that threads share."""
 
 from __future__ import annotations
 
 import contextlib
 import contextvars
 import os
-from collections import deque
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -77,14 +76,4 @@ def run(work: Callable[[slice], int], parts: list[slice]) -> Iterator[int]:
         yield from map(work, parts)
         return
     with ThreadPoolExecutor(count) as pool:
-        ahead: deque[Future[int]] = deque()
-        try:
-            for part in parts:
-                ahead.append(pool.submit(work, part))
-                if len(ahead) > 4 * count:
-                    yield ahead.popleft().result()
-            while ahead:
-                yield ahead.popleft().result()
-        finally:
-            for future in ahead:
-                future.cancel()
+        yield from pool.map(work, parts)

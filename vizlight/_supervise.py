@@ -11,11 +11,9 @@ import contextlib
 import ctypes
 import json
 import os
-import select
 import shutil
 import signal
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-    from vizlight._types import Foreign
+    from vizlight._types import Keywords
 
 __all__ = ["Doing", "end_with", "read_limit", "run", "stage"]
 
@@ -33,8 +31,9 @@ Doing: TypeAlias = Literal["read", "write", "draw"]
 LACKING, BAD_INPUT = 1, 2
 #: Time that a file may take to be read, in seconds, and what each megabyte adds.
 READ_SECONDS, READ_SECONDS_PER_MB = 60.0, 1.0
-#: Seconds that a child has to end after Ctrl-C.
-PATIENCE = 5.0
+#: Seconds after Ctrl-C until it is passed on to the child, as the terminal itself does at once, and
+#: from then until the child is killed.
+PASS_ON, PATIENCE = 0.5, 4.5
 #: Environment variable that replaces READ_SECONDS.
 READ_VARIABLE = "VIZLIGHT_READ_SECONDS"
 
@@ -76,7 +75,7 @@ def stage(
     /,
     *,
     temporary: str = "",
-    seconds: float | None = None,
+    seconds: float = 0.0,
 ) -> Iterator[None]:
     """Say what the process does while this context is entered; without a parent do nothing.
 
@@ -89,19 +88,20 @@ def stage(
     temporary : str, optional
         Folder that is removed if the process is killed.
     seconds : float, optional
-        Time after which the process is killed. Default: no limit.
+        Time after which the system ends the process, also within a library. Default: no limit.
     """
     if _channel is None:
         yield
         return
     place = temporary and str(Path(temporary).absolute())
-    # The clock is that of the machine, the same for the parent.
-    until = None if seconds is None else time.monotonic() + seconds
     said = {"doing": doing, "path": os.fspath(path), "temporary": place, "seconds": seconds}
-    os.write(_channel, json.dumps(said | {"until": until}).encode() + b"\n")
+    os.write(_channel, json.dumps(said).encode() + b"\n")
+    left = signal.setitimer(signal.ITIMER_REAL, seconds)[0] if seconds else 0.0
     try:
         yield
     finally:
+        if seconds:
+            signal.setitimer(signal.ITIMER_REAL, left)
         os.write(_channel, b"{}\n")
 
 
@@ -134,13 +134,17 @@ def run(main: Callable[[], int]) -> int:
     parent, child = os.getpid(), os.fork()
     if child:
         os.close(writer)
-        return _Parent(child, reader).wait()
+        return _wait(child, reader)
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
         signal.signal(signal.SIGINT, _interrupt_once)
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
     _channel = writer
-    _mute_libraries()
+    # Standard error is left to Python; what libraries in C print beside their errors is lost.
+    sys.stderr = os.fdopen(os.dup(2), "w", buffering=1)
+    with Path(os.devnull).open("wb") as nothing:
+        os.dup2(nothing.fileno(), 2)
     end_with(parent)
     _limit_memory()
     return main()
@@ -150,14 +154,6 @@ def _interrupt_once(number: int, frame: FrameType | None) -> None:
     """Raise KeyboardInterrupt; the next Ctrl-C must not end the process while it reports this."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.default_int_handler(number, frame)
-
-
-def _mute_libraries() -> None:
-    """Leave standard error to Python; what libraries in C print beside their errors is lost."""
-    sys.stderr = os.fdopen(os.dup(2), "w", buffering=1)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
 
 
 def _open_standard_streams() -> None:
@@ -197,124 +193,71 @@ def _limit_memory() -> None:
     resource.setrlimit(resource.RLIMIT_DATA, (min(given), hard))
 
 
-class _Parent:
-    """The process that waits for a child."""
+def _wait(child: int, reader: int) -> int:
+    """Wait for a child and return the exit code; after a kill clean up and say what happened."""
+    ended_by: list[signal.Signals] = []
 
-    def __init__(self, child: int, reader: int) -> None:
-        self.child, self.reader = child, reader
-        self.stages: list[Foreign] = []
-        self.buffer = b""
-        self.ended_by: signal.Signals | None = None
-        self.interrupted: float | None = None
-        self.passed_on = False
-        self.late = False
-
-    def wait(self) -> int:
-        """Wait for the child and return the exit code."""
-        # What the caller ignores, as a shell does for jobs in the background, stays ignored.
-        heard = [name for name in _PASSED_ON if signal.getsignal(name) != signal.SIG_IGN]
-        kept = {name: signal.signal(name, self.on_signal) for name in heard}
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
-        try:
-            status = self.listen()
-        finally:
-            # The child has ended: what comes now would end the process while it reports that.
-            signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
-            for name, handler in kept.items():
-                signal.signal(name, handler)
-            os.close(self.reader)
-        return self.finish(status)
-
-    def on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Pass a signal on; the terminal sends Ctrl-C to the child as well."""
-        self.ended_by = signal.Signals(number)
+    def on_signal(number: int, _frame: FrameType | None) -> None:
+        ended_by.append(signal.Signals(number))
         if number == signal.SIGINT:
-            self.interrupted = time.monotonic()
+            signal.setitimer(signal.ITIMER_REAL, PASS_ON, PATIENCE)
         else:
-            os.kill(self.child, signal.SIGKILL)
+            os.kill(child, signal.SIGKILL)
 
-    def listen(self) -> int:
-        """Read what the child says until it ends, and return its status."""
-        is_open = True
-        while True:
-            pid, status = os.waitpid(self.child, os.WNOHANG)
-            if pid:
-                while is_open and select.select([self.reader], [], [], 0)[0]:
-                    is_open = self.read()
-                return status
-            if is_open:
-                if select.select([self.reader], [], [], 0.1)[0]:
-                    is_open = self.read()
+    hasten = iter((signal.SIGINT, signal.SIGKILL))
+    # What the caller ignores, as a shell does for jobs in the background, stays ignored.
+    for name in _PASSED_ON:
+        if signal.getsignal(name) != signal.SIG_IGN:
+            signal.signal(name, on_signal)
+    signal.signal(signal.SIGALRM, lambda *_: os.kill(child, next(hasten, signal.SIGKILL)))
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+    stages: list[Keywords] = []
+    with os.fdopen(reader, encoding="utf-8") as told:
+        for line in told:
+            if said := json.loads(line):
+                stages.append(said)
             else:
-                time.sleep(0.002)
-            self.check()
+                stages.pop()
+    _, status = os.waitpid(child, 0)
+    # The child has ended: what comes now would end the process while it reports that.
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
+    if os.WIFEXITED(status):
+        return os.WEXITSTATUS(status)
+    for one in stages:
+        if one["temporary"]:
+            shutil.rmtree(one["temporary"], ignore_errors=True)
+    text, code = _what_happened(signal.Signals(os.WTERMSIG(status)), stages, ended_by)
+    sys.stderr.write(f"vizlight: {text}\n")
+    return code
 
-    def read(self) -> bool:
-        """Take what the child has said; return whether it may say more."""
-        data = os.read(self.reader, 65536)
-        *lines, self.buffer = (self.buffer + data).split(b"\n")
-        for line in lines:
-            message = json.loads(line)
-            if message:
-                self.stages.append(message)
-            else:
-                self.stages.pop()
-        return bool(data)
 
-    def check(self) -> None:
-        """Kill a child that is late, or that does not end after Ctrl-C."""
-        ends = [stage["until"] for stage in self.stages if stage["until"] is not None]
-        if ends and min(ends) < time.monotonic():
-            self.late = True
-            os.kill(self.child, signal.SIGKILL)
-        if self.interrupted is not None:
-            waited = time.monotonic() - self.interrupted
-            if waited > PATIENCE:
-                os.kill(self.child, signal.SIGKILL)
-            elif waited > PATIENCE / 10 and not self.passed_on:
-                self.passed_on = True
-                os.kill(self.child, signal.SIGINT)
-
-    def finish(self, status: int) -> int:
-        """Return the exit code; after a kill clean up and say what happened."""
-        if os.WIFEXITED(status):
-            return os.WEXITSTATUS(status)
-        for stage in self.stages:
-            if stage["temporary"]:
-                shutil.rmtree(stage["temporary"], ignore_errors=True)
-        text, code = self.message(signal.Signals(os.WTERMSIG(status)))
-        sys.stderr.write(f"vizlight: {text}\n")
-        return code
-
-    def message(self, by: signal.Signals) -> tuple[str, int]:
-        """Return what happened to a child that was killed, and the exit code."""
-        if self.ended_by is not None:
-            ended = "interrupted" if self.ended_by == signal.SIGINT else "ended"
-            return f"{ended} by {self.ended_by.name}; no partial file is left", BAD_INPUT
-        if not self.stages:
-            return f"the process was ended by {by.name}{_reason(by)}", LACKING
-        stage = self.stages[-1]
-        what = f"'{stage['path']}'"
-        if stage["doing"] == "read":
-            why = f"not read within {stage['seconds']:.0f} s" if self.late else f"by {by.name}"
-            ends = "its reader" if self.late else "its reader was ended"
-            return (
-                f"file: expected a file that can be read, got {what} ({ends} {why}; the file "
-                f"may be damaged{'' if not self.late else f', {READ_VARIABLE}= allows more time'})",
-                BAD_INPUT,
-            )
-        if stage["doing"] == "write":
-            return (
-                f"output: expected a file that can be written, got {what} (its writer was ended "
-                f"by {by.name}; is the disk full?); no partial file is left",
-                BAD_INPUT,
-            )
+def _what_happened(
+    by: signal.Signals, stages: list[Keywords], ended_by: list[signal.Signals]
+) -> tuple[str, int]:
+    """Return what happened to a child that was killed, and the exit code."""
+    if ended_by:
+        ended = "interrupted" if ended_by[-1] == signal.SIGINT else "ended"
+        return f"{ended} by {ended_by[-1].name}; no partial file is left", BAD_INPUT
+    reason = " (out of memory?)" if by == signal.SIGKILL else ""
+    if not stages:
+        return f"the process was ended by {by.name}{reason}", LACKING
+    last = stages[-1]
+    path = f"'{last['path']}'"
+    if last["doing"] == "read":
+        why = f"its reader was ended by {by.name}; the file may be damaged"
+        if by == signal.SIGALRM:
+            why = f"not read within {last['seconds']:.0f} s; the file may be damaged"
+            why += f", {READ_VARIABLE}= allows more time"
+        return f"file: expected a file that can be read, got {path} ({why})", BAD_INPUT
+    if last["doing"] == "write":
         return (
-            f"no picture: the drawing of {what} was ended by {by.name}{_reason(by)}; "
-            "'vizlight doctor' says what draws here",
-            LACKING,
+            f"output: expected a file that can be written, got {path} (its writer was ended "
+            f"by {by.name}; is the disk full?); no partial file is left",
+            BAD_INPUT,
         )
-
-
-def _reason(by: signal.Signals) -> str:
-    return " (out of memory?)" if by == signal.SIGKILL else ""
+    return (
+        f"no picture: the drawing of {path} was ended by {by.name}{reason}; "
+        "'vizlight doctor' says what draws here",
+        LACKING,
+    )

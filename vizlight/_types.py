@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,14 +35,4 @@ Numbers: TypeAlias = NDArray[np.number]
 Vector: TypeAlias = tuple[float, ...]
 VectorLike: TypeAlias = Sequence[float] | Array
 Color: TypeAlias = tuple[float, float, float]
-
-
-class HasChannels(Protocol):
-    """Object with the channels of a colour, such as ``pyvista.Color``."""
-
-    @property
-    def float_rgb(self) -> tuple[float, float, float]:
-        """Red, green and blue channels from 0 to 1."""
-
-
-ColorLike: TypeAlias = str | VectorLike | HasChannels
+ColorLike: TypeAlias = "str | VectorLike | pv.Color"

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+import pyvista as pv
 
+import vizlight
 from vizlight import cli
+from vizlight.geometry import manifolds
 
 
 @pytest.fixture
@@ -16,3 +20,40 @@ def run(capfd):
         return (code, *capfd.readouterr())
 
     return call
+
+
+def flow():
+    """Return a volume with a distance, vectors, and vectors of its cells."""
+    grid = pv.ImageData(dimensions=(12, 12, 12))
+    x, y, z = (grid.points - 5.5).T
+    grid["r"] = np.sqrt(x * x + y * y + z * z)
+    grid["V"] = np.stack([-y - 0.1, x + 0.1, 0.2 * z + 1], axis=1).astype(np.float32)
+    grid.cell_data["C"] = np.ones((grid.n_cells, 3))
+    grid["W"] = np.cross(grid["V"], (1, 0, 0)).astype(np.float32)
+    return grid
+
+
+@pytest.fixture
+def volume(tmp_path, monkeypatch):
+    """Return the name of the one file of a folder, made the current one: a volume."""
+    monkeypatch.chdir(tmp_path)
+    flow().save("flow.vti")
+    return "flow.vti"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Return a folder, made the current one, with a volume, a terrain and a torus in 4-space."""
+    home = tmp_path / "first"
+    home.mkdir()
+    monkeypatch.chdir(home)
+    flow().save("flow.vti")
+    terrain = pv.ImageData(dimensions=(20, 16, 1))
+    terrain["height"] = 3 * np.sin(terrain.points[:, 0] / 3) * np.cos(terrain.points[:, 1] / 4)
+    terrain.save("terrain.vti")
+    tract = pv.Line((0, 0, 0), (3, 4, 0), resolution=4)
+    tract = tract + pv.Line((0, 0, 1), (2, 0, 3), resolution=3)
+    tract.cell_data["bundle"] = np.arange(float(tract.n_cells))
+    tract.save("tract.vtp")
+    vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12)).save("torus.vtp")
+    return home

@@ -13,7 +13,7 @@ import pyvista as pv
 from cyclopts import App
 
 import vizlight
-from vizlight import Scene, cli, render
+from vizlight import Scene, cli
 from vizlight.draw import backends
 
 #: Counts the reads of PyVista, runs a command, and prints the count and what is loaded.
@@ -26,18 +26,6 @@ from vizlight import cli
 assert cli.main(sys.argv[1:]) == cli.OK
 print(len(reads), *sys.modules)
 """
-
-
-@pytest.fixture
-def volume(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    grid = pv.ImageData(dimensions=(12, 12, 12))
-    x, y, z = (grid.points - 5.5).T
-    grid["r"] = np.sqrt(x * x + y * y + z * z)
-    grid["V"] = np.stack([-y - 0.1, x + 0.1, 0.2 * z + 1], axis=1).astype(np.float32)
-    grid.cell_data["C"] = np.ones((grid.n_cells, 3))
-    grid.save("flow.vti")
-    return "flow.vti"
 
 
 def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
@@ -71,22 +59,6 @@ def test_light_writes_mesh_and_picture(volume, tmp_path, run):
     assert scene.lights[0].direction == (-1.0, -2.0, 3.0)
     again = vizlight.illuminate(lit, scene, **told["options"])
     np.testing.assert_array_equal(again["luminance"], lit["luminance"])
-
-
-@pytest.mark.opengl
-def test_upper_case_endings(volume, tmp_path, run):
-    code, _, err = run("light", volume, "-o", "A.VTP", "-o", "B.PNG", "--size", "30x30")
-    assert (code, err) == (0, "")
-    assert (tmp_path / "A.VTP").stat().st_size > 0
-    assert (tmp_path / "B.PNG").stat().st_size > 0
-
-
-@pytest.mark.parametrize("suffix", [".vtp", ".vtu", ".vtk"])
-def test_outputs_by_ending(suffix, volume, tmp_path, run):
-    code, _, err = run("light", volume, "-o", f"x{suffix}", "--view", "0,-1,0", "--headlight")
-    assert (code, err) == (0, "")
-    assert "luminance" in pv.read(f"x{suffix}").point_data
-    assert not list(tmp_path.glob("*.png"))
 
 
 def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, run):
@@ -126,90 +98,6 @@ def test_script_for_paraview(volume, tmp_path, run):
     assert not list(tmp_path.glob("b*"))
 
 
-def test_all_points_of_a_volume(volume, run):
-    code, _, err = run("light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
-    assert (code, err) == (0, "")
-    assert pv.read("x.vti").n_points == 12**3
-
-
-@pytest.mark.opengl
-def test_more_options(volume, run):
-    code, out, err = run(
-        "light",
-        volume,
-        "--tangents C --light-position 9,9,-9 --color tomato --depth-cue --parallel --model blinn",
-        "--specular 0.2 --explain --precision float64 --progress --exponent 1 --up 0,1,0",
-        "-o c.png --size 60x60 --background black --zoom 1.2",
-    )
-    assert code == 0
-    assert "compute  specular: blinn" in out
-    assert "depth cue: linear" in out
-    assert "float64" in out
-    assert "100%" in err
-
-
-def test_terrain_is_warped(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    grid = pv.ImageData(dimensions=(9, 9, 1))
-    grid["elevation"] = np.sin(grid.points[:, 0])
-    grid.save("t.vti")
-    code, _, err = run(
-        "light", "t.vti", "--warp", "elevation", "--exaggeration", "2", "-o", "t.vtp"
-    )
-    assert (code, err) == (0, "")
-    assert pv.read("t.vtp").bounds.z_max > 1.5
-    assert np.ptp(pv.read("t.vtp")["luminance"]) > 0.1
-
-
-def test_what_may_have_been_meant_is_told(volume, tmp_path, run):
-    pv.ImageData(dimensions=(4, 5, 1)).save("bare.vti")
-    flat = pv.ImageData(dimensions=(4, 5, 1))
-    flat["height"] = np.arange(20.0)
-    flat["number"] = np.arange(20)
-    flat["constant"] = np.ones(20)
-    flat["NodeId"] = np.arange(20.0)
-    order = ("NodeId", "constant", "number", "height")
-    kept = {name: flat[name].copy() for name in order}
-    flat.clear_data()
-    flat.point_data.update(kept)
-    flat.save("flat.vti")
-    colors = pv.ImageData(dimensions=(4, 5, 1))
-    colors["rgb"] = np.full((20, 3), 200, np.uint8)
-    colors.save("colors.vti")
-    cells = pv.ImageData(dimensions=(4, 5, 1))
-    cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
-    cells.save("cells.vti")
-    for options, words in (
-        ((volume,), "hull of a volume is lit; --contour r"),
-        (("flat.vti",), "flat; --scalars height colours it, --warp height raises it"),
-        (("flat.vti", "--scalars", "height"), "mesh is flat; --warp height"),
-        (("colors.vti",), "mesh is flat; --scalars rgb"),
-        (("colors.vti", "--scalars", "rgb"), ""),
-        (("cells.vti",), "mesh is flat; --scalars temperature"),
-        ((volume, "--no-surface"), ""),
-        ((volume, "--contour", "r", "--scalars", "r"), "r is the same all over its isosurface"),
-        (("flat.vti", "--warp", "height"), "heights are taken 0.1 times"),
-        (("flat.vti", "--warp", "height", "--exaggeration", "1"), ""),
-        (("bare.vti",), ""),
-    ):
-        code, out, _ = run("light", *options, "-o", "a.vtk")
-        assert code == 0
-        assert words in out if words else "note" not in out
-
-
-def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    nibabel = pytest.importorskip("nibabel")
-    ball = pv.Sphere()
-    ball.save("ball.ply")
-    nibabel.freesurfer.write_morph_data("lh.curv", ball.points[:, 2])
-    shows = ("--overlay", "lh.curv", "-o", "a.vtp")
-    code, out, _ = run("light", "ball.ply", *shows)
-    assert code == 0
-    assert "note     --scalars lh.curv shows the values over the surface" in out
-    assert "note" not in run("light", "ball.ply", "--scalars", "lh.curv", *shows)[1]
-
-
 @pytest.mark.opengl
 def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, run):
     pictures = []
@@ -230,74 +118,6 @@ def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, run):
     assert "white in the picture" in run("light", "ball.vtp", "--diffuse", "9", "-o", "a.png")[2]
 
 
-def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run):
-    grid = pv.read(volume)
-    grid["V"][:3] = 0
-    grid.save("flow.vti")
-    code, _, err = run("light", volume, "--no-surface", "--tangents", "V", "-o", "x.vti")
-    assert code == 0
-    assert err.startswith("vizlight: 3 of 1728 points could not be lit")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ("light no.vtp", "file: expected a file, got 'no.vtp' (no such file)"),
-        ("light .", "file: expected a file, got '.' (a folder)"),
-        ("light flow.vti -o flow.vti --no-surface", "another file than the input"),
-        ("light flow.vti --level 3", "--level: expected --contour with it"),
-        ("light flow.vti --exaggeration 3", "--exaggeration: expected --warp with it"),
-        ("light flow.vti --background nocolor", "background: expected a colour's name"),
-        ("light flow.vti --line-width -1", "--line-width: expected a number from 0.1"),
-        ("light flow.vti --size 9000x100", "size: expected at most 8192 pixels per side"),
-        ("light flow.vti --view 0,0,1 --up 0,0,2", "up: expected a direction across"),
-        ("light bad.vtp", "file: expected a mesh that PyVista reads"),
-        ("light", "requires an argument"),
-        ("light flow.vti --tangents U", "tangents: expected the name of a point array"),
-        ("light flow.vti --tangents r", "tangents: expected vectors"),
-        ("light flow.vti --no-surface -o x.vti --normals C", "got the cell array 'C'"),
-        ("light flow.vti --contour V", "contour: expected an array of one"),
-        ("light flow.vti --contour r --level 99", "level: expected a value between"),
-        ("light flow.vti -o x.gif", "output: expected a name that ends in"),
-        ("light flow.vti -o none/x.vtp", "output: expected a folder that exists"),
-        ("light flow.vti -o x.vti", "output: expected a name that ends in .vtp"),
-        ("light flow.vti --light 1", "--light: expected three numbers x,y,z"),
-        ("light flow.vti --light 0,0,0", "--light: expected a direction x,y,z, not all zero"),
-        ("light flow.vti --color nothing", "color: expected a colour's name"),
-        ("light flow.vti --size big", "--size: expected WIDTHxHEIGHT"),
-        ("light flow.vti --size 0x5", "size: expected an integer of at least 1"),
-        ("light flow.vti --shininess -1", "shininess: expected"),
-        ("light flow.vti --shininess x", "--shininess"),
-        ("light flow.vti --model x", "--model"),
-        ("light flow.vti --bogus", "--bogus"),
-        ("demo --out bad.vtp", "out: expected a folder that can be made"),
-        ("nothing", "nothing"),
-    ],
-)
-def test_bad_input_is_one_line_and_exit_code_2(arguments, words, volume, tmp_path, run):
-    (tmp_path / "bad.vtp").write_text("garbage")
-    before = sorted(tmp_path.iterdir())
-    code, out, err = run(arguments)
-    assert code == 2
-    assert out == ""
-    assert err.startswith("vizlight: ")
-    assert words in err
-    assert err.count("\n") == 1
-    assert sorted(tmp_path.iterdir()) == before
-
-
-@pytest.mark.opengl
-def test_demo(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    code, out, _ = run("demo", "--size", "200x100")
-    assert code == 0
-    for part in ("points", "terms", "time", "error", "by the key", "compute  diffuse: |wi_N|"):
-        assert part in out
-    assert {p.name for p in (tmp_path / "vizlight-demo").iterdir()} == {"flow.vtp", "flow.png"}
-    lit = pv.read("vizlight-demo/flow.vtp")
-    assert {"luminance", "rgb", "wind"} <= set(lit.point_data)
-
-
 def test_paths_of_the_plugin_for_paraview(run):
     code, out, _ = run("paraview")
     assert code == 0
@@ -308,13 +128,6 @@ def test_paths_of_the_plugin_for_paraview(run):
     for path in paths:
         compile(path.read_text(encoding="utf-8"), path, "exec")
         assert start == f"PYTHONPATH={path.parent} paraview"
-
-
-def test_doctor(run):
-    code, out, _ = run("doctor")
-    assert code == (0 if render.probe("egl").works or render.probe("osmesa").works else 1)
-    for part in ("python", "vtk", "pyvista", "egl", "osmesa", "rotating_disk.vtu"):
-        assert part in out
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="backends are chosen on Linux")
@@ -337,35 +150,6 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     assert {p.name for p in tmp_path.iterdir()} == {"flow.vti", "flow-lit.vtp"}
     assert doctor[0] == 1
     assert "apt-get install -y" in doctor[2]
-
-
-def test_help_and_version(run):
-    code, out, _ = run("--help")
-    assert code == 0
-    assert "demo" in out
-    code, out, _ = run("--version")
-    assert out.strip() == vizlight.__version__
-
-
-def test_another_name_where_the_file_has_its_own(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    mesh = pv.Sphere()
-    mesh["luminance"] = np.arange(mesh.n_points)
-    mesh.save("own.vtp")
-    code, _, err = run("light", "own.vtp", "-o", "lit.vtp")
-    assert code != 0
-    assert "--name" in err
-    code, _, err = run("light", "own.vtp", "--name", "light", "-o", "lit.vtp")
-    assert (code, err) == (0, "")
-    np.testing.assert_array_equal(pv.read("lit.vtp")["luminance"], mesh["luminance"])
-
-
-def test_explain_tells_of_averaged_tangents(volume, run):
-    options = ("--tangents", "C", "--no-surface", "--explain", "-o", "lit.vti")
-    code, out, err = run("light", volume, *options)
-    assert code == 0
-    assert err.count("the cell array 'C' is averaged to the points") == 1
-    assert "1 orthonormal tangent" in out
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
@@ -398,65 +182,6 @@ def test_a_reader_that_crashes_is_one_line(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["ball.ply"]
 
 
-def test_a_mesh_is_refined_and_the_script_does_the_same(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    pv.Sphere().save("ball.vtp")
-    for arguments in (("light", "ball.vtp"), ("light", "ball.vtp", "--no-surface")):
-        code, out, _ = run(*arguments, "-o", "fine.vtp", "--refine", "1/255", "--report")
-        assert code == 0
-        assert "error between points" in out
-        assert "would do" not in out
-        fine = pv.read("fine.vtp")
-        assert fine.n_points > 842
-        assert fine.field_data["luminance_error"][0] <= 1 / 255
-    code, script, _ = run("light", "ball.vtp", "-o", "again.vtp", "--refine", "1/255", "--script")
-    assert code == 0
-    exec(compile(script, "script", "exec"), {})
-    assert pv.read("again.vtp").n_points == fine.n_points
-    code, _, error = run("light", "ball.vtp", "-o", "no.vtp", "--refine", "1e-9")
-    assert code == 2
-    assert error.startswith("vizlight: --refine: expected a number of at least 1e-05")
-    code, _, error = run("light", "ball.vtp", "-o", "no.pvtp", "--refine", "0.01")
-    assert code == 2
-    assert error.startswith("vizlight: --refine: expected one mesh, got pieces; refine their union")
-
-
-def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
-    pv.Sphere(theta_resolution=12, phi_resolution=12).extract_all_edges().save("edges.vtp")
-    code, out, _ = run("light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
-    assert code == 0
-    assert "transmittance: a share of each light" in out
-    assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
-    pv.Sphere().save("ball.vtp")
-    code, _, error = run("light", "ball.vtp", "-o", "no.vtp", "--bundle")
-    assert code == 2
-    assert error.startswith("vizlight: bundle: expected a mesh with lines")
-
-
-@pytest.mark.opengl
-def test_legibility_is_printed_and_the_script_does_the_same(tmp_path, monkeypatch, capfd, run):
-    monkeypatch.chdir(tmp_path)
-    ball = pv.Sphere()
-    ball["v"] = np.cross([0.2, 0, 1], ball.points)
-    ball["height"] = ball.points[:, 2]
-    ball.save("ball.vtp")
-    arguments = ("light", "ball.vtp", "-o", "lit.vtp", "--tangents", "v", "--scalars", "height")
-    code, out, _ = run(*arguments, "--legibility")
-    assert code == 0
-    for text in ("within 10 degrees", "median error of the normal", "nearest colour"):
-        assert text in out
-    code, script, _ = run(*arguments, "--legibility", "--script")
-    assert code == 0
-    exec(compile(script, "script", "exec"), {})
-    table = capfd.readouterr().out.strip()
-    assert table.startswith("question")
-    assert table in out
-    code, _, error = run("light", "ball.vtp", "-o", "lit.pvtp", "--legibility")
-    assert code == 2
-    assert "--legibility: expected one mesh, lit as a whole" in error
-
-
 @pytest.mark.filterwarnings("default")
 def test_a_file_that_vtk_warns_of_is_refused_in_one_line(tmp_path, capfd):
     path = tmp_path / "a.vtk"
@@ -474,27 +199,6 @@ def counted(folder, *words):
     return int(reads), set(modules)
 
 
-@pytest.fixture
-def ball(tmp_path):
-    pv.Sphere().save(tmp_path / "ball.vtp")
-    return tmp_path
-
-
-def test_a_lit_mesh_is_read_once_and_nothing_that_draws_is_loaded(ball):
-    reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.vtp")
-    assert reads == 1
-    drawing = {"vizlight.draw.component", "vizlight.pieces.run", "vizlight.pieces.sources"}
-    assert not modules & {*drawing, "numba", "scipy.optimize", "scipy.spatial"}
-
-
-@pytest.mark.opengl
-def test_a_picture_reads_its_file_once(ball):
-    reads, modules = counted(ball, "light", "ball.vtp", "-o", "lit.png", "--size", "60x40")
-    assert reads == 1
-    assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
-    assert "vizlight.draw.component" in modules
-
-
 def test_help_reads_the_arguments_of_its_command_once(monkeypatch, run):
     asked = []
     assemble = App.assemble_argument_collection
@@ -507,3 +211,141 @@ def test_help_reads_the_arguments_of_its_command_once(monkeypatch, run):
     code, out, _ = run("fur --help")
     assert (code, "--density" in out) == (0, True)
     assert asked == [("fur",)]
+
+
+@pytest.mark.parametrize("name", ["x.vtp", "X.VTU", "x.vtk", "x.vti"])
+def test_outputs_by_ending(name, volume, tmp_path, run):
+    more = "--no-surface --tangents V" if name == "x.vti" else "--view 0,-1,0 --headlight"
+    code, _, err = run("light", volume, "-o", name, more)
+    assert (code, err) == (0, "")
+    lit = pv.read(name)
+    assert "luminance" in lit.point_data
+    assert (lit.n_points == 12**3) == (name == "x.vti")
+    assert not list(tmp_path.glob("*.png"))
+
+
+@pytest.mark.opengl
+def test_what_is_computed_is_told(volume, run):
+    code, out, err = run(
+        "light", volume, "--tangents C --model blinn --specular 0.2 --explain --precision float64",
+        "--depth-cue --progress -o c.png --size 60x60",
+    )  # fmt: skip
+    assert code == 0
+    for text in ("specular: blinn", "depth cue: linear", "float64", "1 orthonormal tangent"):
+        assert text in out
+    assert "100%" in err
+    assert err.count("the cell array 'C' is averaged to the points") == 1
+
+
+def flat(**arrays):
+    """Return a flat grid with arrays."""
+    grid = pv.ImageData(dimensions=(4, 5, 1))
+    for name, values in arrays.items():
+        grid[name] = values
+    return grid
+
+
+def test_what_may_have_been_meant_is_told(volume, run):
+    number, rising = np.arange(20), np.arange(20.0)
+    flat().save("bare.vti")
+    flat(NodeId=rising, constant=np.ones(20), number=number, height=rising).save("flat.vti")
+    flat(rgb=np.full((20, 3), 200, np.uint8)).save("colors.vti")
+    cells = flat()
+    cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
+    cells.save("cells.vti")
+    for words, told in (
+        ("flow.vti", "hull of a volume is lit; --contour r"),
+        ("flat.vti", "flat; --scalars height colours it, --warp height raises it"),
+        ("flat.vti --scalars height", "mesh is flat; --warp height"),
+        ("colors.vti", "mesh is flat; --scalars rgb"),
+        ("colors.vti --scalars rgb", ""),
+        ("cells.vti", "mesh is flat; --scalars temperature"),
+        ("flow.vti --no-surface", ""),
+        ("flow.vti --contour r --scalars r", "r is the same all over its isosurface"),
+        ("flat.vti --warp height", "heights are taken 0.1 times"),
+        ("flat.vti --warp height --exaggeration 1", ""),
+        ("bare.vti", ""),
+    ):
+        code, out, _ = run("light", words, "-o", "a.vtk")
+        assert code == 0
+        assert told in out if told else "note" not in out
+    run("light flat.vti --warp height --exaggeration 2 -o a.vtp")
+    assert pv.read("a.vtp").bounds.z_max == 38
+
+
+def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, run):
+    monkeypatch.chdir(tmp_path)
+    nibabel = pytest.importorskip("nibabel")
+    ball = pv.Sphere()
+    ball.save("ball.ply")
+    nibabel.freesurfer.write_morph_data("lh.curv", ball.points[:, 2])
+    for more, told in (("", True), ("--scalars lh.curv", False)):
+        code, out, _ = run("light ball.ply --overlay lh.curv -o a.vtp", more)
+        assert code == 0
+        assert ("note     --scalars lh.curv shows the values over the surface" in out) == told
+
+
+def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run):
+    grid = pv.read(volume)
+    grid["V"][:3] = 0
+    grid["luminance"] = np.arange(grid.n_points)
+    grid.save("flow.vti")
+    asked = "light flow.vti --no-surface --tangents V -o x.vti"
+    code, _, err = run(asked)
+    assert (code, "--name" in err) == (2, True)
+    code, _, err = run(asked, "--name light")
+    assert code == 0
+    assert err.startswith("vizlight: 3 of 1728 points could not be lit")
+    np.testing.assert_array_equal(pv.read("x.vti")["luminance"], grid["luminance"])
+
+
+@pytest.fixture
+def ball(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = pv.Sphere()
+    made["v"] = np.cross([0.2, 0, 1], made.points)
+    made["height"] = made.points[:, 2]
+    made.save("ball.vtp")
+    return tmp_path
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("name", ["lit.vtp", "lit.png"])
+def test_a_mesh_is_read_once_and_what_draws_is_loaded_for_a_picture(name, ball):
+    reads, modules = counted(ball, "light", "ball.vtp", "-o", name, "--size", "60x40")
+    assert reads == 1
+    assert ("vizlight.draw.component" in modules) == (name == "lit.png")
+    assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
+
+
+def test_a_mesh_is_refined_and_the_script_does_the_same(ball, run):
+    for more in ("", "--no-surface"):
+        code, out, _ = run("light ball.vtp -o fine.vtp --refine 1/255 --report", more)
+        assert (code, "error between points" in out, "would do" in out) == (0, True, False)
+        fine = pv.read("fine.vtp")
+        assert fine.n_points > 842
+        assert fine.field_data["luminance_error"][0] <= 1 / 255
+    _, script, _ = run("light ball.vtp -o again.vtp --refine 1/255 --script")
+    exec(compile(script, "script", "exec"), {})
+    assert pv.read("again.vtp").n_points == fine.n_points
+
+
+def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, run):
+    monkeypatch.chdir(tmp_path)
+    pv.Sphere(theta_resolution=12, phi_resolution=12).extract_all_edges().save("edges.vtp")
+    code, out, _ = run("light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
+    assert (code, "transmittance: a share of each light" in out) == (0, True)
+    assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
+
+
+@pytest.mark.opengl
+def test_legibility_is_printed_and_the_script_does_the_same(ball, capfd, run):
+    asked = "light ball.vtp -o lit.vtp --tangents v --scalars height --legibility"
+    code, out, _ = run(asked)
+    assert code == 0
+    for text in ("within 10 degrees", "median error of the normal", "nearest colour"):
+        assert text in out
+    exec(compile(run(asked, "--script")[1], "script", "exec"), {})
+    table = capfd.readouterr().out.strip()
+    assert table.startswith("question")
+    assert table in out

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import shutil
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 
@@ -14,37 +11,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
-from rich.console import Console
 
 import vizlight
-from vizlight import cli
-from vizlight.cli import options
-from vizlight.geometry import manifolds
 
 SMALL = ("--size", "90x60")
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """Return a folder, made the current one, with a volume, a terrain and a torus in 4-space."""
-    home = tmp_path / "first"
-    home.mkdir()
-    monkeypatch.chdir(home)
-    grid = pv.ImageData(dimensions=(12, 12, 12))
-    x, y, z = (grid.points - 5.5).T
-    grid["r"] = np.sqrt(x * x + y * y + z * z)
-    grid["V"] = np.stack([-y - 0.1, x + 0.1, 0.2 * z + 1], axis=1).astype(np.float32)
-    grid["W"] = np.cross(grid["V"], (1, 0, 0)).astype(np.float32)
-    grid.save("flow.vti")
-    terrain = pv.ImageData(dimensions=(20, 16, 1))
-    terrain["height"] = 3 * np.sin(terrain.points[:, 0] / 3) * np.cos(terrain.points[:, 1] / 4)
-    terrain.save("terrain.vti")
-    tract = pv.Line((0, 0, 0), (3, 4, 0), resolution=4)
-    tract = tract + pv.Line((0, 0, 1), (2, 0, 3), resolution=3)
-    tract.cell_data["bundle"] = np.arange(float(tract.n_cells))
-    tract.save("tract.vtp")
-    vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12)).save("torus.vtp")
-    return home
 
 
 def same_arrays(one, other):
@@ -114,31 +84,6 @@ def test_the_only_vectors_are_traced_for_a_question(question, folder, run):
 
 
 @pytest.mark.opengl
-@pytest.mark.parametrize("missing", [False, True])
-def test_the_key_of_colours_names_what_they_are(missing, folder, run, monkeypatch):
-    terrain = pv.read("terrain.vti")
-    if missing:
-        terrain["height"][3] = np.nan
-    terrain["paint"] = np.zeros((terrain.n_points, 3), np.uint8)
-    terrain.save("terrain.vti")
-    made = []
-    key = vizlight.presets.key
-    monkeypatch.setattr(
-        vizlight.presets,
-        "key",
-        lambda *args, **options: made.append(key(*args, **options)) or made[-1],
-    )
-    for name in ("height", "paint"):
-        code, _, err = run(*f"light terrain.vti --scalars {name} -o a.png".split(), *SMALL)
-        assert code == 0, err
-    (mesh,) = made
-    low, title, high = mesh.field_data["words"]
-    assert title == ("height (grey: no data)" if missing else "height")
-    ends = np.nanmin(terrain["height"]), np.nanmax(terrain["height"])
-    assert (float(low), float(high)) == pytest.approx(ends, rel=1e-2)
-
-
-@pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run):
     # Code that is compiled between the two runs would round the second otherwise.
@@ -172,83 +117,6 @@ def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, r
             same_arrays(pv.read(name), pv.read(folder / name))
 
 
-FILTERS = {
-    "light": vizlight.illuminate,
-    "streamlines": vizlight.streamlines,
-    "relief": vizlight.relief_shadow,
-    "fur": vizlight.fur,
-    "contours": vizlight.isoluminance,
-    "project": vizlight.project,
-}
-#: Options that no text on the command line can give, or that a file has none of.
-IN_SCRIPTS = {
-    "light": {"positions", "occlusion"},
-    "streamlines": {
-        "positions",
-        "tangents",
-        "surface",
-    },
-    "relief": {"occluders", "sun"},
-    "fur": set(),
-    "contours": {"tolerance"},
-    "project": set(),
-}
-
-
-def shown(name, run, monkeypatch):
-    # The command line keeps its console, whatever the terminal of the first test was.
-    monkeypatch.setattr(cli.app, "console", Console(width=100))
-    code, out, _ = run(name, "--help")
-    assert code == 0
-    return out
-
-
-@pytest.mark.parametrize("name", FILTERS)
-def test_every_option_of_a_filter_is_one_of_its_command(name, run, monkeypatch):
-    out = shown(name, run, monkeypatch)
-    parameters = inspect.signature(FILTERS[name]).parameters.values()
-    own = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {*options.NOT_OPTIONS}
-    given = set(inspect.signature(options.arguments_of(FILTERS[name].__name__)).parameters)
-    assert own - given <= IN_SCRIPTS[name]
-    for option in own - IN_SCRIPTS[name]:
-        text = {"light": "when"}.get(option, option) if name == "project" else option
-        assert f"--{text.replace('_', '-')} " in out
-
-
-@pytest.mark.parametrize("name", FILTERS)
-def test_help_has_groups_and_an_example_and_fits_a_screen(name, run, monkeypatch):
-    out = shown(name, run, monkeypatch)
-    groups = ["Arguments", "Light", "Material", "Camera", "Output"]
-    assert [out.index(f"─ {group} ─") for group in groups] == sorted(
-        out.index(f"─ {group} ─") for group in groups
-    )
-    assert f"Example: vizlight {name} " in out
-    assert len(out.splitlines()) <= 92
-
-
-def test_the_first_clause_of_an_option():
-    assert options.first_clause("Highlight, R . E or N . H. More.") == "Highlight, R . E or N . H."
-    long = (
-        "Whether it has the exponent p(k, n: the one), which gives lines the contrast of a surface."
-    )
-    assert options.first_clause(long) == "Whether it has the exponent p(k, n: the one)."
-
-
-def test_azimuth_and_altitude(folder, run):
-    for text, direction in (
-        ("90,0", (1, 0, 0)),
-        ("0,0", (0, 1, 0)),
-        ("315,30", (-(0.375**0.5), 0.375**0.5, 0.5)),
-        ("12,90", (0, 0, 1)),
-        ("-1,2,3", (-1, 2, 3)),
-        ("-y", (0, -1, 0)),
-    ):
-        code, _, err = run("light", "flow.vti", "--light", text, "-o", "lit.vtp")
-        assert (code, err) == (0, "")
-        (light,) = vizlight.provenance(pv.read("lit.vtp"))["scene"]["lights"]
-        np.testing.assert_allclose(light["direction"], direction, atol=1e-15)
-
-
 def test_a_scene_of_a_file_lights_as_in_a_script(folder, run):
     Path("view.json").write_text(json.dumps(SCENE | {"view": VIEW}))
     arguments = ("light", "flow.vti", "--contour", "r", "--scene", "view.json")
@@ -261,58 +129,6 @@ def test_a_scene_of_a_file_lights_as_in_a_script(folder, run):
     made = vizlight.provenance(pv.read("lit.vtp"))["scene"]
     assert made["material"] == {**vizlight.provenance(lit)["scene"]["material"], "diffuse": 0.3}
     assert [light["direction"] for light in made["lights"]] == [[0.0, 0.0, 1.0]]
-
-
-def test_planes_and_ranges_keep_what_they_say(folder, run):
-    for option, low, high in (
-        ("--clip=z:5", 0, 5),
-        ("--clip=-z:-5", 5, 11),
-        ("--clip=0,0,-2:-5", 5, 11),
-        ("--slice=0,0,3:4", 4, 4),
-    ):
-        code, _, err = run("light", "flow.vti", option, "-o", "lit.vtp")
-        assert (code, err) == (0, ""), option
-        bounds = pv.read("lit.vtp").bounds
-        assert (bounds.z_min, bounds.z_max) == pytest.approx((low, high), abs=1e-5)
-    sizes = []
-    for text in ("r:2:4", "r:2:", "r::4"):
-        arguments = ("light", "flow.vti", "--threshold", text, "-o", "lit.vtu", "--no-surface")
-        code, _, err = run(*arguments, "--tangents", "V")
-        assert (code, err) == (0, ""), text
-        sizes.append(pv.read("lit.vtu").n_cells)
-    assert sizes[0] < min(sizes[1:])
-    assert max(sizes) < 11**3
-
-
-def test_several_files_are_lit_each_by_itself(folder, run):
-    shutil.copy("flow.vti", "again.vti")
-    (folder / "made").mkdir()
-    arguments = ("--contour", "r", "-o", "made", *SMALL)
-    code, _, err = run("light", "flow.vti", "again.vti", *arguments)
-    assert (code, err) == (0, "")
-    assert {p.name for p in Path("made").iterdir()} == {
-        f"{name}-lit.{suffix}" for name in ("flow", "again") for suffix in ("vtp", "png")
-    }
-    same_arrays(pv.read("made/flow-lit.vtp"), pv.read("made/again-lit.vtp"))
-
-
-def test_an_error_in_one_file_leaves_the_others(folder, run):
-    code, _, err = run("light", "none.vti", "torus.vtp", "flow.vti", "--contour", "r")
-    assert code == 2
-    assert err.count("\n") == 2
-    assert err.startswith("vizlight: none.vti: file: expected a file")
-    assert "vizlight: torus.vtp: contour: expected" in err
-    assert Path("flow-lit.vtp").exists()
-    assert not list(folder.glob("torus-lit*"))
-
-
-def test_no_input_is_overwritten(folder, run):
-    shutil.copy("torus.vtp", "flow-lit.vtp")
-    before = Path("flow-lit.vtp").read_bytes()
-    code, _, err = run("light", "flow.vti", "flow-lit.vtp")
-    assert code == 2
-    assert "flow.vti: output: expected another file than the input, got 'flow-lit.vtp'" in err
-    assert Path("flow-lit.vtp").read_bytes() == before
 
 
 @pytest.mark.opengl
@@ -384,177 +200,6 @@ def test_components_of_vectors_are_joined(folder, run):
     code, _, _ = run("streamlines", "parts.vti", "--vectors", "u,v", "-o", "lines.vtp")
     assert code == 0
     assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("streamlines flow.vti --vectors U", "vectors: expected the name of an array of 3"),
-        ("streamlines flow.vti --step 0", "step: expected"),
-        ("streamlines flow.vti --seeds x", "--seeds"),
-        ("streamlines flow.vti --vectors V --confined", "surface: expected a surface"),
-        (
-            "streamlines flow.vti --vectors V -o a.vti",
-            "ends in .vtp, .vtk, .vtu, .stl for PolyData",
-        ),
-        (
-            "relief flow.vti --contour r --exaggeration 3",
-            "--exaggeration: expected --warp",
-        ),
-        ("relief torus.vtp --depth -1", "depth: expected"),
-        ("relief terrain.vti --elevation none", "expected"),
-        ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk, .stl for ImageData"),
-        ("fur flow.vti --contour r --density 0.1 --absorption 0.2", "absorption, density: exp"),
-        ("fur flow.vti --contour r --density 2", "density: expected a number from 0 to 1"),
-        ("fur flow.vti --contour r --density 0.1 --toward up --bend 1", "toward: expected"),
-        ("contours flow.vti --levels much", "--levels: expected a number"),
-        ("contours flow.vti --levels 0", "levels: expected"),
-        ("project flow.vti", "expected"),
-        ("project torus.vtp --rotation xw", "--rotation: expected PLANE:ANGLE"),
-        ("project torus.vtp --rotation xq:1", "expected"),
-        ("project torus.vtp --hyperplane 1,2", "--hyperplane: expected NORMAL:OFFSET"),
-        ("project torus.vtp --light 1,2,3,4,5", "--light: expected three numbers x,y,z or 4"),
-        ("project torus.vtp --view 1,2,3,4,5", "--view: expected three numbers x,y,z or 4"),
-        ("project torus.vtp --distance 0.1", "expected"),
-        ("light flow.vti --light 10,95", "altitude: expected a number from -90 to 90"),
-        ("light flow.vti --light nan,1,2", "--light: expected three numbers"),
-        ("light flow.vti --slice 1,2", "--slice: expected NORMAL:OFFSET"),
-        ("light flow.vti --slice x:1 --contour r", "--slice: expected no --contour beside it"),
-        ("light flow.vti --clip 0,0,0:1", "--clip: expected NORMAL:OFFSET"),
-        ("light flow.vti --clip x:-9", "--clip: expected a value that leaves points"),
-        ("light flow.vti --slice x:99", "--slice: expected a value that leaves points"),
-        ("light flow.vti --threshold r", "--threshold: expected NAME:LOW:HIGH"),
-        ("light flow.vti --threshold r:3:1", "--threshold: expected NAME:LOW:HIGH"),
-        ("light flow.vti --threshold q:3:4", "--threshold: expected the name of an array, one of"),
-        ("light flow.vti --threshold r:99:", "--threshold: expected a value that leaves"),
-        ("light flow.vti --scalars U", "--scalars: expected an array, one"),
-        ("light flow.vti --scalars r --cmap no", "--cmap: expected the name of a colour map"),
-        ("light flow.vti --scene no.json", "--scene: expected a JSON file, got 'no.json' (No such"),
-        ("light flow.vti --scene flow.vti", "--scene: expected a JSON file"),
-        ("light flow.vti --scene list.json", "--scene 'list.json': values: expected a dict of"),
-        (
-            "light flow.vti --for shape --headlight",
-            "--for: expected lights of its own, got --headl",
-        ),
-        ("light flow.vti --view 0,0,0", "--view: expected a direction x,y,z, not all zero"),
-        (
-            "light flow.vti --contour r --for direction",
-            "--for direction: expected --tangents with it where there are no lines",
-        ),
-        ("light flow.vti --for value", "--for value: expected --scalars with it, one of ['r', 'V'"),
-        (
-            "light flow.vti --contour r --scalars r --for shape",
-            "--for shape: expected no --scalars beside it",
-        ),
-        ("light flow.vti --view list.json", "--view: expected a JSON list of the camera's"),
-        ("light flow.vti --view no.json", "--view: expected a JSON file"),
-        ("light flow.vti --view up", "--view: expected three numbers x,y,z"),
-        ("light flow.vti flow.vti", "file: expected files of different names"),
-        ("light flow.vti torus.vtp -o a.png", "output: expected a folder that exists"),
-        ("light flow.vti -o none/a.png", "output: expected a folder that exists, got 'none'"),
-        ("light flow.vti -o a.vtm", "it is one mesh, which has no blocks"),
-        ("light flow.vti --tangents r,q", "names U,V of components, one of ['r', 'V'"),
-        ("light terrain.vti --for slope", "for a surface without a flow, such as terrain, take --"),
-        ("streamlines flow.vti --vectors U", "'U'; pass --vectors V"),
-        ("fur scan.vtp", "mesh: expected a surface with faces, got a PolyData mesh without"),
-    ],
-)
-def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, run):
-    Path("list.json").write_text("[1, 2]")
-    pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
-    before = sorted(folder.iterdir())
-    code, out, err = run(*line.split())
-    assert (code, out) == (2, ""), err
-    assert err.startswith("vizlight: ")
-    assert words in err
-    assert err.count("\n") == 1
-    assert sorted(folder.iterdir()) == before
-
-
-def test_completion_knows_commands_and_options():
-    script = cli.app.generate_completion(shell="bash")
-    for word in ("streamlines", "--rotation", "--tangents", "--threshold", "cylinder"):
-        assert word in script
-    assert "--install-completion" in script
-
-
-def test_help_of_the_whole_loads_no_pyvista():
-    code = (
-        "import sys\nfrom vizlight import cli\ncli.main(['--help'])\n"
-        "assert 'pyvista' not in sys.modules\n"
-    )
-    # As bytes: the output need not have the encoding of this process.
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
-    assert (run.returncode, run.stderr) == (0, b"")
-
-
-@pytest.mark.parametrize(
-    ("line", "file", "name", "expected"),
-    [
-        (
-            "streamlines flow.vti --vectors V --contour r --confined --seeds 9 --model blinn",
-            "lit.vtp",
-            "luminance",
-            {"vectors": "V", "confined": True, "seeds": 9, "model": "blinn", "seed": 0},
-        ),
-        (
-            "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",
-            "lit.vti",
-            "shade",
-            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01},
-        ),
-        (
-            "fur flow.vti --contour r --density 0.3 --length r --toward -1,0,2 --bend 0.5 "
-            "--fibres 8",
-            "lit-fibres.vtp",
-            "luminance",
-            {"density": 0.3, "length": "r", "toward": [-1, 0, 2], "bend": 0.5}
-            | {"conditioned": True},
-        ),
-        (
-            "contours flow.vti --contour r --levels 1/50 --model blinn",
-            "lit-bands.vtp",
-            "luminance",
-            {"levels": 0.02, "model": "blinn"},
-        ),
-        (
-            "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --components",
-            "lit.vtk",
-            "luminance",
-            {"rotation": [["xw", 0.5], ["yz", -0.25]], "distance": 4.0, "components": True},
-        ),
-    ],
-)
-def test_options_reach_the_filter(line, file, name, expected, folder, run):
-    suffix = Path(file).suffix
-    code, _, err = run(*line.split(), "-o", f"lit{suffix}")
-    assert code == 0, err
-    options = vizlight.provenance(pv.read(file), name)["options"]
-    assert {key: options[key] for key in expected} == expected
-
-
-def test_a_saved_camera_is_the_view(folder, run):
-    Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
-    arguments = ("light", "flow.vti", "--contour", "r", "--view", "camera.json", "-o", "lit.vtp")
-    for parallel in ((), ("--parallel",)):
-        assert run(*arguments, *parallel)[0] == 0
-        view = vizlight.provenance(pv.read("lit.vtp"))["scene"]["view"]
-        assert view["position"] == [30, -10, 20]
-        direction = np.array([25, -15, 15]) / np.linalg.norm([25, -15, 15])
-        np.testing.assert_allclose(view["direction"], direction, atol=1e-12)
-        assert view["parallel"] is bool(parallel)
-
-
-def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, run):
-    arguments = ("project", "torus.vtp", "--view", "0,-1,2", "-o", "lit.vtk")
-    assert run(*arguments, "--light", "90,0", "--light-position", "1,2,3,4")[0] == 0
-    scene = vizlight.provenance(pv.read("lit.vtk"))["scene"]
-    assert scene["view"]["direction"] == [0, -1, 2, 0]
-    assert scene["lights"][0]["direction"] == [1, 0, 0, 0]
-    assert scene["lights"][1]["position"] == [1, 2, 3, 4]
-    assert run(*arguments)[0] == 0
-    lights = vizlight.provenance(pv.read("lit.vtk"))["scene"]["lights"]
-    assert lights == json.loads(json.dumps(vizlight.Scene().to_dict()["lights"]))
 
 
 @pytest.mark.opengl
@@ -640,3 +285,141 @@ def test_the_picture_of_a_share_is_not_white_on_white(tmp_path, monkeypatch, run
         assert code == 0, error
         corner = pv.read("sky.png")["PNGImage"][0]
         assert (np.abs(corner.astype(int) - 128).max() < 3) == gray
+
+
+def lit(run, words, path="lit.vtp", name="luminance"):
+    """Return the mesh that a command writes, and the record of its light."""
+    code, _, err = run(words, "-o", path)
+    assert code == 0, err
+    made = pv.read(path)
+    return made, vizlight.provenance(made, name)
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("missing", [False, True])
+def test_the_key_of_colours_names_what_they_are(missing, folder, run, monkeypatch):
+    terrain = pv.read("terrain.vti")
+    if missing:
+        terrain["height"][3] = np.nan
+    terrain["paint"] = np.zeros((terrain.n_points, 3), np.uint8)
+    terrain.save("terrain.vti")
+    made, key = [], vizlight.presets.key
+    monkeypatch.setattr(vizlight.presets, "key", lambda *a, **k: made.append(key(*a, **k)))
+    for name in ("height", "paint"):
+        run(f"light terrain.vti --scalars {name} -o a.png", *SMALL)
+    (mesh,) = made
+    low, title, high = mesh.field_data["words"]
+    assert title == ("height (grey: no data)" if missing else "height")
+    ends = np.nanmin(terrain["height"]), np.nanmax(terrain["height"])
+    assert (float(low), float(high)) == pytest.approx(ends, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("text", "direction"),
+    [
+        ("90,0", (1, 0, 0)),
+        ("0,0", (0, 1, 0)),
+        ("315,30", (-(0.375**0.5), 0.375**0.5, 0.5)),
+        ("12,90", (0, 0, 1)),
+        ("-1,2,3", (-1, 2, 3)),
+        ("-y", (0, -1, 0)),
+    ],
+)
+def test_azimuth_and_altitude(text, direction, folder, run):
+    _, record = lit(run, f"light flow.vti --light {text}")
+    np.testing.assert_allclose(record["scene"]["lights"][0]["direction"], direction, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("option", "low", "high"),
+    [("clip=z:5", 0, 5), ("clip=-z:-5", 5, 11), ("clip=0,0,-2:-5", 5, 11), ("slice=0,0,3:4", 4, 4)],
+)
+def test_planes_keep_what_they_say(option, low, high, folder, run):
+    bounds = lit(run, f"light flow.vti --{option}")[0].bounds
+    assert (bounds.z_min, bounds.z_max) == pytest.approx((low, high), abs=1e-5)
+
+
+def test_ranges_keep_what_they_say(folder, run):
+    asked = "light flow.vti --no-surface --tangents V --threshold"
+    both, above, below = (
+        lit(run, f"{asked} {text}", "lit.vtu")[0].n_cells for text in ("r:2:4", "r:2:", "r::4")
+    )
+    assert both < min(above, below)
+    assert max(above, below) < 11**3
+
+
+def test_several_files_are_lit_each_by_itself(folder, run):
+    """An error in one leaves the others, and no input is overwritten."""
+    shutil.copy("flow.vti", "again.vti")
+    (folder / "made").mkdir()
+    assert run("light flow.vti again.vti --contour r -o made", *SMALL)[::2] == (0, "")
+    assert {p.name for p in Path("made").iterdir()} == {
+        f"{name}-lit.{suffix}" for name in ("flow", "again") for suffix in ("vtp", "png")
+    }
+    same_arrays(pv.read("made/flow-lit.vtp"), pv.read("made/again-lit.vtp"))
+    shutil.copy("torus.vtp", "again-lit.vtp")
+    before = Path("again-lit.vtp").read_bytes()
+    code, _, err = run("light none.vti torus.vtp again.vti flow.vti again-lit.vtp --contour r")
+    assert (code, err.count("\n")) == (2, 4)
+    assert err.startswith("vizlight: none.vti: file: expected a file")
+    assert "vizlight: torus.vtp: contour: expected" in err
+    assert "again.vti: output: expected another file than the input, got 'again-lit.vtp'" in err
+    assert Path("flow-lit.vtp").exists()
+    assert not list(folder.glob("torus-lit*"))
+    assert Path("again-lit.vtp").read_bytes() == before
+
+
+TURNED = "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --components"
+
+
+@pytest.mark.parametrize(
+    ("line", "path", "name", "expected"),
+    [
+        (
+            COMMANDS["streamlines on a surface"], "lit.vtp", "luminance",
+            {"vectors": "V", "confined": True, "seeds": 9, "seed": 0},
+        ),
+        (
+            "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",
+            "lit.vti", "shade",
+            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01, "method": "fast"},
+        ),
+        (
+            "fur flow.vti --contour r --length r --toward -1,0,2 --bend 0.5 --fibres 8",
+            "lit.vtm", "luminance",
+            {"length": "r", "toward": [-1, 0, 2], "bend": 0.5, "conditioned": True},
+        ),
+        (
+            "contours flow.vti --contour r --levels 1/50 --model blinn", "lit.vtm", "luminance",
+            {"levels": 0.02, "model": "blinn"},
+        ),
+        (
+            TURNED, "lit.vtk", "luminance",
+            {"rotation": [["xw", 0.5], ["yz", -0.25]], "distance": 4.0, "components": True},
+        ),
+    ],
+)  # fmt: skip
+def test_options_reach_the_filter(line, path, name, expected, folder, run):
+    options = lit(run, line, path, name)[1]["options"]
+    assert {key: options[key] for key in expected} == expected
+
+
+def test_a_saved_camera_is_the_view(folder, run):
+    Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
+    for parallel in ("", "--parallel"):
+        _, record = lit(run, f"light flow.vti --contour r --view camera.json {parallel}")
+        view = record["scene"]["view"]
+        assert view["position"] == [30, -10, 20]
+        direction = np.array([25, -15, 15]) / np.linalg.norm([25, -15, 15])
+        np.testing.assert_allclose(view["direction"], direction, atol=1e-12)
+        assert view["parallel"] is bool(parallel)
+
+
+def test_lights_and_eye_of_n_space_are_filled_up_with_zeros(folder, run):
+    asked = "project torus.vtp --view 0,-1,2"
+    scene = lit(run, f"{asked} --light 90,0 --light-position 1,2,3,4", "lit.vtk")[1]["scene"]
+    assert scene["view"]["direction"] == [0, -1, 2, 0]
+    assert scene["lights"][0]["direction"] == [1, 0, 0, 0]
+    assert scene["lights"][1]["position"] == [1, 2, 3, 4]
+    lights = lit(run, asked, "lit.vtk")[1]["scene"]["lights"]
+    assert lights == json.loads(json.dumps(vizlight.Scene().to_dict()["lights"]))

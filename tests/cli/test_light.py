@@ -123,29 +123,6 @@ def test_pieces_are_split_at_creases_as_one_file(tmp_path, monkeypatch, run):
     np.testing.assert_allclose(own, other, atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("-o", "a.vtp", "--workers", "2"), "an output that ends in .pvtp"),
-        (("-o", "a.html", "--workers", "2"), "of pieces, beside --workers, got a.html"),
-        (("-o", "a.pvtp", "-o", "a.html"), "by 'vizlight light a.pvtp -o a.html'"),
-        (("-o", "a.pvtp", "-o", "b.pvtp"), "one index of pieces"),
-        (("-o", "a.pvtp", "--workers", "0"), "--workers: expected an integer of at least 1"),
-        (("-o", "a.pvtp", "--workers", "2", "--scheduler", "x"), "--workers or --scheduler"),
-        (("-o", "a.pvtp", "--clip", "x:2"), "--clip: expected no such option for pieces"),
-        (("-o", "a.pvtp", "--contour", "s"), "contour: expected a point array of one component"),
-        (("-o", "a.pvtp", "--contour", "r", "--level", "99"), "level: expected a value between"),
-        (("-o", "a.pvtp", "--up", "1,1,1"), "up: expected a direction across the view"),
-    ],
-    ids=str,
-)
-def test_what_pieces_cannot_is_one_line_and_exit_code_2(parts, run, arguments, message, tmp_path):
-    code, out, err = run("light", *parts, *arguments)
-    assert (code, out, len(err.splitlines())) == (2, "", 1)
-    assert message in err
-    assert {path.suffix for path in tmp_path.iterdir()} == {".vtu"}
-
-
 @pytest.fixture
 def shell(tmp_path, monkeypatch):
     """Work in a folder with a ball, note what the browser opens, and keep temporary files here."""
@@ -184,6 +161,8 @@ def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, run):
     )
     assert (code, err, shell) == (0, "", [])
     assert "page     kept.html" in out
+    code, script, _ = run("view ball.vtp --script")
+    assert (code, shell, 'live_html(lit, None, "ball.html"' in script) == (0, [], True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
 
 
@@ -208,22 +187,3 @@ def test_without_a_browser_the_path_is_told(shell, run, monkeypatch):
     code, _, err = run("view", "ball.vtp", "-o", "kept.html")
     assert code == 0
     assert err == "vizlight: no browser was found; open 'kept.html' in one\n"
-
-
-@pytest.mark.opengl
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["none.vtp"], "no such file"),
-        (["ball.vtp", "-o", "page.png"], "ends in .html"),
-        (["ball.vtp", "--tangents", "W"], "tangents"),
-        (["ball.vtp", "--port", "80"], "--port"),
-    ],
-)
-def test_what_cannot_be_shown_leaves_nothing(arguments, words, shell, run, tmp_path):
-    code, _, err = run("view", *arguments)
-    assert code == 2
-    assert words in err
-    assert err.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["ball.vtp"]
-    assert not shell

@@ -9,30 +9,13 @@ import typing
 from dataclasses import fields
 
 import pytest
+from rich.console import Console
 
 import vizlight
-from vizlight import _words
+from vizlight import _words, cli
 from vizlight.cli import options
 from vizlight.geometry.relief.height_field import Border
 from vizlight.shading.options import Model
-
-FILTERS = (
-    "fur", "illuminate", "isoluminance", "pathlines", "project", "refine", "relief_day",
-    "relief_shadow", "satin", "streamlines",
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("name", FILTERS)
-def test_options_are_those_of_the_signature(name):
-    parameters = inspect.signature(getattr(vizlight, name)).parameters
-    found = {one.name: one.default for one in fields(options.arguments_of(name))}
-    assert found == {key: parameters[key].default for key in found}
-    plain = {
-        key
-        for key, one in parameters.items()
-        if one.kind is one.KEYWORD_ONLY and one.annotation.partition(" | ")[0] in options.TYPES
-    }
-    assert plain - {*options.NOT_OPTIONS} <= found.keys()
 
 
 def test_choices_are_those_of_the_type():
@@ -72,3 +55,53 @@ def test_the_help_of_an_option_is_its_own_description():
         words = " ".join(text.partition("\n")[2].split()).replace("``", "")
         if name not in options.READ and ":" not in words:
             assert options._text(name, texts) == words
+
+
+#: Filter of each command, and its options that no text can give, or that a file has none of.
+COMMANDS = {
+    "light": ("illuminate", {"positions", "occlusion"}),
+    "streamlines": ("streamlines", {"surface"}),
+    "relief": ("relief_shadow", {"occluders", "sun"}),
+    "sky": ("sky", set()),
+    "fur": ("fur", set()),
+    "contours": ("isoluminance", {"tolerance"}),
+    "project": ("project", set()),
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_of_a_filter_is_one_of_its_command(name, run, monkeypatch):
+    """Its default is the filter's, and the help, which fits a screen, has it."""
+    filter_, in_scripts = COMMANDS[name]
+    parameters = inspect.signature(getattr(vizlight, filter_)).parameters
+    found = {one.name: one.default for one in fields(options.arguments_of(filter_))}
+    assert found == {key: parameters[key].default for key in found}
+    own = {key for key, one in parameters.items() if one.kind is one.KEYWORD_ONLY}
+    assert own - {*options.NOT_OPTIONS} - found.keys() <= in_scripts
+    # The command line keeps its console, whatever the terminal of the first test was.
+    monkeypatch.setattr(cli.app, "console", Console(width=100))
+    code, out, _ = run(name, "--help")
+    assert code == 0
+    renamed = {"project": {"light": "when"}, "sky": {"up": "sky_up"}}.get(name, {})
+    for option in found.keys() - in_scripts - {"exaggeration", "lit"}:
+        assert f"--{renamed.get(option, option).replace('_', '-')} " in out
+    groups = ["Arguments", "Light", "Material", "Camera", "Output"]
+    places = [out.index(f"─ {group} ─") for group in groups]
+    assert places == sorted(places)
+    assert f"Example: vizlight {name} " in out
+    assert len(out.splitlines()) <= 92
+
+
+def test_the_first_clause_of_an_option():
+    assert options.first_clause("Highlight, R . E or N . H. More.") == "Highlight, R . E or N . H."
+    long = (
+        "Whether it has the exponent p(k, n: the one), which gives lines the contrast of a surface."
+    )
+    assert options.first_clause(long) == "Whether it has the exponent p(k, n: the one)."
+
+
+def test_completion_knows_commands_and_options():
+    script = cli.app.generate_completion(shell="bash")
+    for word in ("streamlines", "--rotation", "--tangents", "--threshold", "cylinder"):
+        assert word in script
+    assert "--install-completion" in script

@@ -77,6 +77,15 @@ def assert_as_whole(lit, whole, limit=1e-6):
     assert cells == whole.n_cells == lit.cells
 
 
+def assert_alike(folder, whole, labels, view, **options):
+    """Assert that a mesh in pieces by labels of its cells is lit as the whole."""
+    scene = Scene(lights=SCENE.lights, view=view)
+    suffix = "vtp" if isinstance(whole, pv.PolyData) else "vtu"
+    files = cut(whole, folder, labels, suffix)
+    lit = pieces.light(files, scene, out=folder / f"lit.p{suffix}", **options)
+    assert_as_whole(lit, vizlight.illuminate(whole, scene, **options))
+
+
 @pytest.mark.parametrize(
     ("kind", "options"),
     [
@@ -103,15 +112,6 @@ def sheet(z):
     """Return a wavy height field about a height, small beside a ball."""
     x, y = np.meshgrid(np.linspace(-1, 1, 24), np.linspace(-1, 1, 20))
     return pv.StructuredGrid(x, y, z + 0.3 * np.sin(3 * x) * np.cos(2 * y))
-
-
-def test_points_of_borders_count_once_where_a_sheet_is_seen_from_the_edge(tmp_path):
-    whole = sheet(0)
-    whole.save(tmp_path / "sheet.vts")
-    for steep in np.linspace(-0.03, 0.03, 7):
-        scene = Scene(view=View(direction=(1, 0.3, steep)))
-        lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.002, out=tmp_path / "lit.pvts")
-        assert_as_whole(lit, vizlight.illuminate(whole, scene))
 
 
 def hollow():
@@ -150,37 +150,46 @@ def surface(kind):
 @pytest.mark.parametrize("view", [SCENE.view, View(direction=(0.2, 0.1, -1)), None], ids=str)
 def test_a_surface_in_pieces_has_the_sides_of_the_whole(tmp_path, kind, view):
     whole = surface(kind)
-    scene = Scene(lights=SCENE.lights, view=view)
-    suffix = "vtp" if isinstance(whole, pv.PolyData) else "vtu"
     label = {"sheet": "sectors", "several": "sectors", "hollow": "blocks"}.get(kind, "random cells")
-    files = cut(whole, tmp_path, cuts(whole, 5)[label], suffix)
-    lit = pieces.light(files, scene, out=tmp_path / f"lit.p{suffix}")
-    assert_as_whole(lit, vizlight.illuminate(whole, scene))
+    assert_alike(tmp_path, whole, cuts(whole, 5)[label], view)
 
 
-@pytest.mark.parametrize("below", [False, True])
-def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, below):
-    scene = Scene(view=View(direction=(0.2, 0.1, -1 if below else 1)))
-    for i, whole in enumerate((surface("ball"), surface("sheet"))):
-        inward = whole.compute_normals(flip_normals=True, split_vertices=False, cell_normals=False)
-        whole["N"] = inward.point_data["Normals"]
-        files = cut(whole, tmp_path / str(i), cuts(whole, 5)["sectors"], "vtp")
-        lit = pieces.light(files, scene, normals="N", out=tmp_path / f"lit{i}.pvtp")
-        assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
+def normals(mesh, sign=1):
+    """Give a mesh normals that may look inward, by name; return their option."""
+    made = mesh.compute_normals(split_vertices=False, cell_normals=False)
+    mesh["N"] = sign * np.asarray(made.point_data["Normals"])
+    return {"normals": "N"}
 
 
-def test_what_lies_in_one_piece_is_a_height_field_as_in_the_whole(tmp_path):
-    scene = Scene(view=View(direction=(0.9, 0.3, -0.2)))
-    ball = pv.Sphere(theta_resolution=30, phi_resolution=25).rotate_vector((1, 2, 3), 40)
-    for i, place in enumerate((0.075, 0.1)):
-        part = ball.clip((0.3, 0.5, 0.8), origin=(0, 0, place), invert=False).triangulate()
-        whole = pv.merge([surface("ball").translate((4, 0, 0)), part])
-        whole = whole.extract_surface(algorithm="geometry")
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("kind", ["ball", "sheet", "apart"])
+def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, kind, sign):
+    whole = surface("sheet" if kind == "apart" else kind)
+    labels = cuts(whole, 5)["sectors"]
+    if kind == "apart":
+        whole = pv.merge([whole, surface("ball").translate((6, 0, 0))])
+        labels = whole.cell_centers().points[:, 0] > 3
+    options = normals(whole, sign)
+    assert_alike(tmp_path, whole, labels, View(direction=(0.3, 0.2, sign)), **options)
+
+
+@pytest.mark.parametrize("axis", ["z", "y", "oblique"])
+def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, axis):
+    """Also where it lies in one piece, beside another with a ball."""
+    ball = pv.Sphere(theta_resolution=30, phi_resolution=25)
+    for i, place in enumerate((-0.04, 0.02, 0.06, 0.075, 0.1)):
+        if axis == "oblique":
+            turned = ball.rotate_vector((1, 2, 3), 40)
+            part = turned.clip((0.3, 0.5, 0.8), origin=(0, 0, place), invert=False)
+            part = pv.merge([surface("ball").translate((4, 0, 0)), part.triangulate()])
+        else:
+            part = ball.clip(axis, origin=(place,) * 3, invert=False).triangulate()
+        whole = part.extract_surface(algorithm="geometry")
         whole.clear_data()
-        labels = whole.cell_centers().points[:, 0] > 2
-        files = cut(whole, tmp_path / str(i), labels, "vtp")
-        lit = pieces.light(files, scene, out=tmp_path / f"lit{i}.pvtp")
-        assert_as_whole(lit, vizlight.illuminate(whole, scene))
+        labels = np.arange(whole.n_cells) % 7 == 0
+        if axis == "oblique":
+            labels = whole.cell_centers().points[:, 0] > 2
+        assert_alike(tmp_path / str(i), whole, labels, View(direction=(0.9, 0.3, -0.2)))
 
 
 def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path):
@@ -192,31 +201,6 @@ def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path):
         pieces.light(str(tmp_path / "*.vtp"), SCENE, out=tmp_path / "lit.pvtp")
     lit = pieces.light(str(tmp_path / "*.vtp"), SCENE, tangents="V", out=tmp_path / "lit.pvtp")
     assert len(lit.files) == 2
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_given_normals_of_pieces_that_do_not_touch_have_one_side(tmp_path, sign):
-    scene = Scene(view=View(direction=(0.3, 0.2, 1)))
-    whole = pv.merge([surface("sheet"), surface("ball").translate((6, 0, 0))])
-    normals = whole.compute_normals(cell_normals=False, split_vertices=False)
-    whole["N"] = sign * np.asarray(normals.point_data["Normals"])
-    labels = whole.cell_centers().points[:, 0] > 3
-    files = cut(whole, tmp_path, labels, "vtp")
-    lit = pieces.light(files, scene, normals="N", out=tmp_path / "lit.pvtp")
-    assert_as_whole(lit, vizlight.illuminate(whole, scene, normals="N"))
-
-
-@pytest.mark.parametrize("axis", ["z", "y"])
-def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, axis):
-    scene = Scene(view=View(direction=(0.9, 0.3, -0.2)))
-    for i, place in enumerate((-0.04, 0.02, 0.06, 0.1)):
-        ball = pv.Sphere(theta_resolution=30, phi_resolution=25)
-        part = ball.clip(axis, origin=(place,) * 3, invert=False).triangulate()
-        whole = part.extract_surface(algorithm="geometry")
-        whole.clear_data()
-        files = cut(whole, tmp_path / str(i), np.arange(whole.n_cells) % 7 == 0, "vtp")
-        lit = pieces.light(files, scene, out=tmp_path / f"lit{i}.pvtp")
-        assert_as_whole(lit, vizlight.illuminate(whole, scene))
 
 
 def test_points_at_no_place_are_no_neighbours_of_any(tmp_path):
@@ -237,14 +221,19 @@ def test_points_at_no_place_are_no_neighbours_of_any(tmp_path):
         np.testing.assert_allclose(light, lit_whole["luminance"][at], atol=1e-6)
 
 
-@pytest.mark.parametrize("below", [False, True])
-def test_a_sheet_in_slabs_is_lit_as_the_whole(tmp_path, below):
-    scene = Scene(view=View(direction=(0.2, 0.1, -1 if below else 1)))
+def test_a_sheet_in_slabs_is_lit_as_the_whole(tmp_path):
+    """Points of borders count once, also where it is seen from the edge."""
     whole = sheet(0)
     whole.save(tmp_path / "sheet.vts")
-    lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.004, out=tmp_path / "lit.pvts")
-    assert len(lit.files) > 2
-    assert_as_whole(lit, vizlight.illuminate(whole, scene))
+    for view in (
+        (0.2, 0.1, 1),
+        (0.2, 0.1, -1),
+        *((1, 0.3, z) for z in np.linspace(-0.03, 0.03, 7)),
+    ):
+        scene = Scene(view=View(direction=view))
+        lit = pieces.light(tmp_path / "sheet.vts", scene, slab=0.002, out=tmp_path / "lit.pvts")
+        assert len(lit.files) > 2
+        assert_as_whole(lit, vizlight.illuminate(whole, scene))
 
 
 def corners(mesh):

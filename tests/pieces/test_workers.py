@@ -137,6 +137,9 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
 
 
 def test_processes_and_their_threads_have_ended_with_the_object():
+    for count in (0, "two"):
+        with pytest.raises((ValueError, TypeError), match="count: expected an integer"):
+            pieces.Processes(count)
     before = {*threading.enumerate(), *multiprocessing.active_children()}
     work = pieces.Processes(2)
     assert list(work(abs, [-1, 2])) == [1, 2]
@@ -211,9 +214,3 @@ def test_errors_of_the_system_are_tried_again():
         with pytest.raises(pieces.PieceError, match="not read"):
             repeated(work, retries, (cause,))
         assert len(calls) == (2 if cause else 1)
-
-
-@pytest.mark.parametrize(("count", "error"), [(0, ValueError), ("two", TypeError)])
-def test_bad_numbers_of_processes(count, error):
-    with pytest.raises(error, match="count: expected an integer"):
-        pieces.Processes(count)

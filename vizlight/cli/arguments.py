@@ -294,20 +294,12 @@ def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple
         expected += ", or azimuth,altitude in degrees" * by_angles
         raise ValueError(message(f"--{name}", expected, repr(text)))
     if len(values) == 2:
-        values = toward(*values)
+        from vizlight.geometry.relief import sun
+
+        values = tuple(sun.toward(*values).round(15).tolist())
     if direction and not any(values):
         raise ValueError(message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
     return values + (0.0,) * (n - len(values))
-
-
-def toward(azimuth: float, altitude: float) -> tuple[float, float, float]:
-    """Return a unit direction from degrees clockwise from y (north) and above the horizon."""
-    from vizlight import _check
-
-    a = math.radians(azimuth)
-    e = math.radians(_check.number("altitude", altitude, low=-90, high=90))
-    x, y, z = math.sin(a) * math.cos(e), math.cos(a) * math.cos(e), math.sin(e)
-    return round(x, 15), round(y, 15), round(z, 15)
 
 
 def plane(

@@ -11,7 +11,6 @@ from vizlight.cli import scenes
 from vizlight.cli.arguments import GROUPS, Color, Common, Flag, Part, Shape
 from vizlight.cli.job import Job, carry_out
 from vizlight.cli.options import keywords, takes
-from vizlight.cli.output import say
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
@@ -20,11 +19,10 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Keywords
-    from vizlight.filters.fur import FurOptions
     from vizlight.scene import Light
 
 
-@takes("streamlines", "Streamlines")
+@takes("streamlines", "Streamlines", example="flow.vtu --vectors V --model cylinder --diffuse 0.8")
 def streamlines(
     files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
 ) -> int:
@@ -38,26 +36,23 @@ def streamlines(
     files
         Mesh with vectors; of several each is lit by itself.
     """
-    from vizlight.filters.streamlines import StreamlineOptions
-
     look = scenes.Look(common, part, color)
     given = keywords(how)
     if given.get("line_field") and "," in given.get("vectors", ""):
         given["vectors"] = tuple(given["vectors"].split(","))
-    asked = StreamlineOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
-        mesh = scenes.joined(scenes.data(path, part, time), asked.vectors)
-        scenes.check_flow(path, mesh.run(), asked.vectors)
+        mesh = scenes.joined(scenes.data(path, part, time), given.get("vectors"))
+        scenes.check_flow(path, mesh.run(), given.get("vectors"))
         # The lines that are traced are the tangents that light for a question needs.
         scenes.check_answers(common.lights.question, mesh, color, "lines")
         if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
             # Lines have the arrays of points alone.
             mesh = Step("averaged", ".cell_data_to_point_data", mesh)
         on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
-        camera = look.camera(on.get("surface", mesh) if asked.confined else mesh)
+        camera = look.camera(on.get("surface", mesh) if given.get("confined") else mesh)
         lit = look.step("lit", "streamlines", mesh, look.scene(camera), **given, **on)
-        made = Job(lit, asked.name, look, camera)
+        made = Job(lit, look, camera)
         made.tint(mesh, color)
         return made
 
@@ -65,7 +60,12 @@ def streamlines(
 
 
 # Heights are exaggerated, and lit, as they are shown.
-@takes("relief_shadow", "Relief", without=("exaggeration", "lit"))
+@takes(
+    "relief_shadow",
+    "Relief",
+    example="terrain.dem --depth 60 --light 315,20",
+    without=("exaggeration", "lit"),
+)
 def relief(
     files: list[Path],
     /,
@@ -87,15 +87,12 @@ def relief(
     sky
         Take the ambient light from an even sky.
     """
-    from vizlight.filters.relief_shadow import ReliefOptions
-
     # The shadow is cast by one light.
     look = scenes.Look(common, shape, raised=True, fill=False)
     # A shadow alone answers no question.
     given: Keywords = {"lit": lit or common.lights.question is not None}
     given |= keywords(how)
     given |= {"lit": True, "occlusion": "sky"} if sky else {}
-    asked = ReliefOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.data(path, shape, time)
@@ -105,30 +102,34 @@ def relief(
             found = None
             scenes.check_target(shape)
         on: dict[str, object] = {}
-        if found is None and asked.raster is None:
+        if found is None and "raster" not in given:
             on["feature_angle"] = "auto"
-        raised = None if found is None else _raised(mesh, asked.elevation, shape.exaggeration)
+        raised = None
+        if found is not None:
+            raised = _raised(mesh, given.get("elevation"), shape.exaggeration)
         if raised is not None and raised.arguments[2] != 1:
             on["exaggeration"] = raised.arguments[2]
         camera = look.camera(raised or mesh, is_map=found is not None)
         scene = look.scene(camera)
         shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
         shown = _raised_like(raised, shaded)
-        made = Job(shaded, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
+        made = Job(shaded, look, camera, shown=shown, kind=mesh)
         made.suffix = ".vtp" if found is None else _suffix(found)
-        if asked.lit:
+        made.scalars = made.name
+        if given["lit"]:
             made.scalars = "rgb" if look.colored else "luminance"
         elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
             made.clim = (0.0, round(white, 3))
-            made.explain = lambda _: say(
+            text = (
                 f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
             )
+            made.tell.append(lambda _: text)
         return made
 
     return carry_out(files, job, common.out, "relief", shape)
 
 
-@takes("sky", "Sky", up="sky_up")
+@takes("sky", "Sky", example="terrain.dem --error 0.01 -o sky.png", up="sky_up")
 def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the share of a uniform sky that each point sees.
 
@@ -137,11 +138,8 @@ def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
     files
         Height field, surface or lines; of several each is taken by itself.
     """
-    from vizlight.filters.sky import SkyOptions
-
     look = scenes.Look(common, shape)
     given = keywords(how)
-    asked = SkyOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.data(path, shape, time)
@@ -154,7 +152,8 @@ def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
         camera = look.camera(raised or mesh, is_map=field)
         lit = look.step("skylit", "sky", mesh, **given)
         shown = _raised_like(raised, lit)
-        made = Job(lit, asked.name, look, camera, shown=shown, scalars=asked.name, kind=mesh)
+        made = Job(lit, look, camera, shown=shown, kind=mesh)
+        made.scalars = made.name
         made.suffix = _suffix(found) if field else ""
         return made
 
@@ -191,7 +190,7 @@ def _level_light(lights: Sequence[Light]) -> float:
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-@takes("fur", "Fur")
+@takes("fur", "Fur", example="bunny.ply --absorption 0.7 --fibres 200000")
 def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
@@ -200,25 +199,26 @@ def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
     files
         Surface, or a mesh with one; of several each is lit by itself.
     """
-    from vizlight.filters.fur import MATERIAL, FurOptions
+    from vizlight.filters.fur import MATERIAL
 
     names = ("ambient", "diffuse", "specular")
     look = scenes.Look(common, shape, material={name: getattr(MATERIAL, name) for name in names})
     given: Keywords = {"feature_angle": "auto"}
     given |= keywords(how)
-    asked = FurOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
-        camera = look.camera(_tips(mesh, asked))
+        camera = look.camera(_tips(mesh, given.get("length")))
         lit = look.step("furry", "fur", mesh, look.scene(camera), **given)
-        return Job(lit, asked.name, look, camera, parts=("fibres", "skin"))
+        return Job(lit, look, camera, parts=("fibres", "skin"))
 
     return carry_out(files, job, common.out, "fur", shape)
 
 
 # The tolerance is for solids, which no file holds.
-@takes("isoluminance", "Contours", without=("tolerance",))
+@takes(
+    "isoluminance", "Contours", example="part.stl --levels 8 --specular 0", without=("tolerance",)
+)
 def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
@@ -227,25 +227,28 @@ def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common)
     files
         Surface, or a mesh with one; of several each is lit by itself.
     """
-    from vizlight.filters.isoluminance import ContourOptions
-
     look = scenes.Look(common, shape)
     # In a picture a crease is seen as one.
     given: Keywords = {"feature_angle": "auto"}
     given |= keywords(how)
-    asked = ContourOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.surface(scenes.data(path, shape, time), shape)
         camera = look.camera(mesh)
         lit = look.step("found", "isoluminance", mesh, look.scene(camera), **given)
         bands = Step("", "[]", lit, "bands")
-        return Job(lit, asked.name, look, camera, shown=bands, parts=("bands", "contours"))
+        return Job(
+            lit,
+            look,
+            camera,
+            shown=bands,
+            parts=("bands", "contours"),
+        )
 
     return carry_out(files, job, common.out, "contours", shape)
 
 
-@takes("project", "Projection", light="when")
+@takes("project", "Projection", example="torus.vtp --rotation xw:0.5 --distance 3", light="when")
 def project(files: list[Path], /, *, how: object, common: Common) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
@@ -257,30 +260,29 @@ def project(files: list[Path], /, *, how: object, common: Common) -> int:
     files
         Mesh with positions and tangents in n-space; of several each is lit by itself.
     """
-    from vizlight.filters.project import ProjectOptions
+    from vizlight.mesh.nspace import POSITION
 
     look = scenes.Look(common)
     given = keywords(how)
-    asked = ProjectOptions(**given)
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.data(path, Part(), time)
         found = mesh.run()
-        rows = found.point_data.get(asked.positions or "")
-        n = 3 if asked.light == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
+        rows = found.point_data.get(given.get("positions", POSITION))
+        n = 3 if given.get("light") == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
         lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
-        return Job(lit, asked.name, look, look.camera(lit), kind="", suffix=".vtk")
+        return Job(lit, look, look.camera(lit), kind=None, suffix=".vtk")
 
     return carry_out(files, job, common.out, "projected", Part())
 
 
-def _tips(mesh: Step, asked: FurOptions) -> Step:
+def _tips(mesh: Step, length: float | str | None) -> Step:
     """Return the step that moves the points of a surface to where straight fur ends."""
     from vizlight.filters.fur import LENGTH
     from vizlight.mesh import blocks
 
     found: pv.PolyData = blocks.surface(mesh.run(), "mesh")
-    length = LENGTH * found.length if asked.length is None else asked.length
+    length = LENGTH * found.length if length is None else length
     if isinstance(length, str):
         known = length in found.point_data and found.n_points
         length = float(found.point_data[length].max()) if known else 0.0

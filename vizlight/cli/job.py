@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import inspect
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +14,7 @@ import vizlight
 from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, one_line, say
-from vizlight.cli.scenes import TINT, known, times, tinted, title_of
+from vizlight.cli.scenes import TINT, known, times, tinted
 from vizlight.cli.script import Step, in_order, source
 
 if TYPE_CHECKING:
@@ -46,8 +47,6 @@ class Job:
     ----------
     lit
         Step that lights.
-    name
-        Name of the array that it makes.
     look, camera
         How the picture is seen.
     shown
@@ -55,7 +54,7 @@ class Job:
     scalars
         Name of the array that is shown. Default: the light, or its colour.
     kind
-        Kind of the result, empty where it is not known, or the step whose mesh has it.
+        Step whose mesh is of the type of the result, None where no mesh is yet.
     parts
         Names of the blocks that are written to files of their own.
     suffix
@@ -66,10 +65,8 @@ class Job:
         What its colours stand for, which a key tells; empty where they are colours already.
     clim
         Values that are black and white in the picture. Default: 0 and 1.
-    hint
-        Message about what else may have been meant.
-    explain
-        Function that prints how the result was made.
+    tell
+        Functions that return what a reader should know of the lit mesh, or an empty text.
     read
         Step that measures what a reader can read back from the picture.
     source
@@ -77,39 +74,39 @@ class Job:
     """
 
     lit: Step
-    name: str
     look: Look
     camera: Step
     shown: Step | None = None
     scalars: str | None = None
-    kind: Step | str = "PolyData"
+    kind: Step | None = field(default_factory=lambda: Step("", "pyvista.PolyData"))
     parts: Sequence[str] = ()
     suffix: str = ".vtp"
     color: Color | None = None
     title: str = ""
     clim: tuple[float, float] | None = None
-    hint: Callable[[], str] = lambda: ""
-    explain: Callable[[pv.DataSet], None] | None = None
+    tell: list[Callable[[pv.DataSet], str]] = field(default_factory=list)
     read: Step | None = None
     source: Sequence[str] = ()
-    meshes: list[tuple[Step, Path]] = field(default_factory=list)
-    pictures: list[Path] = field(default_factory=list)
 
     def tint(self, data: Step, color: Color) -> None:
         """Show the colours of an array of the data, lit, if one is asked for."""
-        shown = tinted(self.lit, self.name, data, color)
-        if shown is not None and color.scalars is not None:
-            self.shown, self.scalars, self.color = shown, TINT, color
-            self.title = title_of(data, color.scalars)
+        if color.scalars is not None:
+            self.shown, self.title = tinted(self.lit, self.name, data, color)
+            self.scalars, self.color = TINT, color
 
-    def of_parts(self, path: Path) -> list[tuple[Step, Path]]:
-        """Return what is written for the path of a mesh: the mesh, or each part beside it."""
-        if not self.parts or path.suffix.lower() in TOGETHER:
-            return [(self.lit, path)]
-        return [
-            (Step("", "[]", self.lit, part), path.with_stem(f"{path.stem}-{part}"))
-            for part in self.parts
-        ]
+    @property
+    def name(self) -> str:
+        """Name of the array that the filter makes."""
+        filter_ = getattr(vizlight, self.lit.path.removeprefix("vizlight."))
+        default = inspect.signature(filter_).parameters["name"].default
+        return str(self.lit.keywords.get("name", default))
+
+    @property
+    def light(self) -> str:
+        """Name of the light that a picture shows; a file may have an own "rgb"."""
+        from vizlight.shading.results import part_name
+
+        return part_name(self.name, "rgb") if self.look.colored else self.name
 
 
 def carry_out(
@@ -129,25 +126,25 @@ def carry_out(
     for twice in (name for name in stems if stems.count(name) > 1):
         expected = "files of different names, after which the outputs are named"
         raise ValueError(message("file", expected, f"{twice!r} twice"))
-    jobs, codes = [], [OK]
+    scripts: list[list[Step]] = []
+    codes = [OK]
     for path in files_:
         try:
             for i, time in enumerate(times(path, part)):
                 job = build(path, time)
-                _set_outputs(job, path, out, stem if part.times is None else f"{stem}-{i:04d}")
-                _check_paths(job, files_)
+                own = f"{path.stem}-{stem if part.times is None else f'{stem}-{i:04d}'}"
+                last = _outputs(job, own, out, files_)
                 if out.script:
-                    jobs.append(job)
+                    scripts.append([job.lit, *last])
                 else:
-                    codes.append(_run(job, out))
+                    codes.append(_run(job, last, out))
         except (TypeError, ValueError, OSError) as error:
             if len(files_) == 1:
                 raise
             complain(f"{path}: {one_line(error)}")
             codes.append(BAD_INPUT)
-    if jobs:
-        lit = [job.lit for job in jobs] if out.report else []
-        say(source([_last_steps(job, out) for job in jobs], reported=lit))
+    if scripts:
+        say(source(scripts, reported=[steps[0] for steps in scripts] if out.report else []))
     return max(codes)
 
 
@@ -158,72 +155,61 @@ def _check_output(out: Output, *, several: bool) -> None:
     _check.color("background", out.background)
     _check.number("line_width", out.line_width, low=0.1, high=1000.0)
     for path in out.output or ():
-        if path.is_dir():
-            continue
-        if several:
+        if several and not path.is_dir():
             expected = "a folder that exists, for several files or steps"
             raise files.FileError(message("output", expected, f"'{path}'"))
-        files.check_output(path, (".png", GLTF, HTML, *files.SUFFIXES))
+        if not path.is_dir():
+            files.check_output(path, (".png", GLTF, HTML, *files.SUFFIXES))
     if out.paraview and several:
         raise ValueError(message("paraview", "one file to light", "several"))
     if out.paraview:
         files.check_output(out.paraview, (".py",))
 
 
-def _set_outputs(job: Job, file: Path, out: Output, stem: str) -> None:
-    """Set the files of meshes and of pictures."""
+def _outputs(job: Job, stem: str, out: Output, inputs: Sequence[Path]) -> list[Step]:
+    """Return the steps that leave something behind; no input is among what they write."""
+    from vizlight import files
+
     paths: list[Path] = []
     for path in out.output or ([] if out.paraview else [Path()]):
         endings = (job.suffix, ".png") if job.suffix else (".png",)
-        folder = path.is_dir()
-        paths += [path / f"{file.stem}-{stem}{end}" for end in endings] if folder else [path]
+        paths += [path / f"{stem}{end}" for end in endings] if path.is_dir() else [path]
+    paths += [out.paraview] if out.paraview else []
+    written, pictures = [], []
     for path in paths:
-        if path.suffix.lower() == ".png":
-            job.pictures.append(path)
+        suffix = path.suffix.lower()
+        if suffix == ".png":
+            pictures.append(_picture(job, path, out))
+        elif not job.parts or suffix in TOGETHER:
+            written.append(_written(job, job.lit, path, out))
         else:
-            job.meshes += job.of_parts(path)
-    if out.paraview:
-        job.meshes += job.of_parts(out.paraview)
-
-
-def _check_paths(job: Job, inputs: Sequence[Path]) -> None:
-    """Check that the outputs can be written, and that no input is among them."""
-    from vizlight import files
-
-    for path in (*job.pictures, *(path for _, path in job.meshes)):
+            for part in job.parts:
+                mesh = Step("", "[]", job.lit, part)
+                written.append(_written(job, mesh, path.with_stem(f"{path.stem}-{part}"), out))
+    for step in (*written, *pictures):
+        path = Path(str(step.arguments[-1]))
         files.check_output(path, (".png", *SHOWN, *files.SUFFIXES))
         if path.suffix.lower() == ".py":
             from vizlight.draw.paraview import beside
 
             path = beside(path)
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
-            expected = "another file than the input"
-            raise files.FileError(message("output", expected, f"'{path}'"))
-    formats = files.FORMATS.get(str(job.kind), files.SUFFIXES)
-    formats += files.FORMATS["MultiBlock"] if job.parts else ()
-    for _, path in job.meshes:
-        if path.suffix.lower() not in (*SHOWN, *formats):
-            expected = f"a name that ends in {', '.join(formats)} for {job.kind}"
-            raise files.FileError(message("output", expected, f"'{path.name}'"))
-
-
-def _of_light(job: Job) -> str:
-    """Return the name of the array of light that a picture shows; a file may have an own "rgb"."""
-    from vizlight.shading.results import part_name
-
-    return part_name(job.name, "rgb") if job.look.colored else job.name
+            raise files.FileError(message("output", "another file than the input", f"'{path}'"))
+        whole = step.path == "files.write_mesh" and not (job.parts and step.arguments[0] is job.lit)
+        if whole and job.kind is not None:
+            files.check_format(job.kind.run(), path)
+    read = [] if job.read is None else [Step("", "print", job.read)]
+    return [*read, *written, *pictures]
 
 
 def _picture(job: Job, path: Path, out: Output) -> Step:
     """Return the step that draws the picture."""
-    scalars = job.scalars or _of_light(job)
     # A share that is 1 at most points is white, as paper is.
     plain = "gray" if job.scalars == job.name else None
     options = known(background=plain) | drawing(out) | known(clim=job.clim, key=_key(job))
-    panel = Step("", "render.Panel", job.shown or job.lit, scalars)
-    return Step(
-        "", "render.save_png", panel, path, camera=job.camera, size=job.look.size, **options
-    )
+    panel = Step("", "render.Panel", job.shown or job.lit, job.scalars or job.light)
+    seen: Keywords = {"camera": job.camera, "size": job.look.size}
+    return Step("", "render.save_png", panel, path, **seen, **options)
 
 
 def drawing(out: Output) -> Keywords:
@@ -264,37 +250,30 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
     return Step("", writer, mesh, None, path, **chosen)
 
 
-def _last_steps(job: Job, out: Output) -> list[Step]:
-    """Return the steps that leave something behind."""
-    written = [_written(job, mesh, path, out) for mesh, path in job.meshes]
-    read = [] if job.read is None else [Step("", "print", job.read)]
-    return [job.lit, *read, *written, *(_picture(job, path, out) for path in job.pictures)]
-
-
-def _run(job: Job, out: Output) -> int:
+def _run(job: Job, last: Sequence[Step], out: Output) -> int:
+    """Light, then write, draw and print; return the exit code."""
     from vizlight import files
 
-    if isinstance(job.kind, Step):
-        mesh = job.kind.run()
-        for _, path in job.meshes:
-            if path.suffix.lower() not in SHOWN:
-                files.check_format(mesh, path)
     lit = _light(job, out)
-    for step, path in job.meshes:
-        if path.suffix.lower() not in SHOWN:
-            files.check_format(step.run(), path)
-    if job.pictures:
-        _count_white(lit, _of_light(job))
-    if job.explain is not None:
-        job.explain(lit)
-    if job.read is not None:
-        say(str(job.read.run()))
-    for step, path in job.meshes:
-        what = "page" if path.suffix.lower() == HTML else "mesh"
-        with _window(out) if what == "page" else contextlib.nullcontext():
-            made = _written(job, step, path, out).run()
-        say(f"{what}     {made}")
-    return max((draw(_picture(job, path, out).run) for path in job.pictures), default=OK)
+    for step in last:
+        if step.path == "files.write_mesh":
+            mesh, path = step.arguments
+            assert isinstance(mesh, Step)
+            files.check_format(mesh.run(), str(path))
+    if any(step.path == "render.save_png" for step in last):
+        _count_white(lit, job.light)
+    codes = [OK]
+    for step in last:
+        if step.path == "render.save_png":
+            codes.append(draw(step.run))
+        elif step is last[0] and job.read is not None:
+            say(str(job.read.run()))
+        elif step.path == SHOWN[HTML]:
+            with _window(out):
+                say(f"page     {step.run()}")
+        else:
+            say(f"mesh     {step.run()}")
+    return max(codes)
 
 
 def _window(out: Output) -> contextlib.AbstractContextManager[None]:
@@ -320,10 +299,10 @@ def _light(job: Job, out: Output) -> pv.DataSet:
         warnings.simplefilter("always", UserWarning)
         lit: pv.DataSet = job.lit.run()
     seconds = perf_counter() - start
-    notes = [step.note for step in in_order([job.shown or job.lit])]
-    for note in dict.fromkeys([*notes, job.hint()]):
+    notes = [f"note     {step.note}" for step in in_order([job.shown or job.lit]) if step.note]
+    for note in dict.fromkeys([*notes, *(tell(lit) for tell in job.tell)]):
         if note:
-            say(f"note     {note}")
+            say(note)
     for warning in caught:
         complain(one_line(warning.message))
     record = vizlight.provenance(lit, job.name)

@@ -7,7 +7,7 @@ import inspect
 import shlex
 import tempfile
 import webbrowser
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,10 +20,7 @@ from vizlight.cli.arguments import (
     GROUPS,
     Color,
     Common,
-    Eye,
-    Finish,
     Flag,
-    Lights,
     Output,
     Pieces,
     Target,
@@ -47,7 +44,12 @@ CONDITIONED = ("shape", "value")
 
 
 # Places in n-space need lights and an eye in n-space, which scripts have; --sky is an occlusion.
-@takes("illuminate", "Shading", without=("positions", "occlusion"))
+@takes(
+    "illuminate",
+    "Shading",
+    example="flow.vtu --contour Temp --tangents V --conditioned",
+    without=("positions", "occlusion"),
+)
 def light(
     files: list[Path],
     /,
@@ -91,44 +93,21 @@ def light(
     return carry_out(files, build, common.out, "lit", target)
 
 
-@Parameter(name="*", group=GROUPS["Output"])
-@dataclass(frozen=True, kw_only=True)
-class Window:
-    """Page that is written and opened.
-
-    Parameters
-    ----------
-    output
-        File .html of the page. Default: one in a private temporary folder.
-    browser
-        Open the page in the browser.
-    background
-        Colour behind the mesh. Default: white, or black behind lines and points.
-    line_width
-        Width of lines in pixels.
-    progress
-        Show a progress bar.
-    """
-
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None
-    browser: bool = True
-    background: str | None = None
-    line_width: float = 1.0
-    progress: Flag = False
-
-
-@takes("illuminate", "Shading", without=("positions",))
+@takes(
+    "illuminate",
+    "Shading",
+    example="flow.vtu --contour Temp --tangents V --conditioned",
+    without=("positions",),
+)
 def view(
     file: Path,
     /,
     *,
     target: Target,
     how: object,
-    lights: Lights,
-    finish: Finish,
-    eye: Eye,
+    common: Common,
     color: Color,
-    window: Window,
+    browser: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
 ) -> int:
     """Light a mesh as the command light does, and open a page whose light follows the reader's eye.
 
@@ -136,34 +115,33 @@ def view(
     ----------
     file
         Mesh to show.
+    browser
+        Open the page in the browser. Without --output it is in a private temporary folder.
     """
     from vizlight.files import FileError
 
-    page = window.output
-    if page is not None and page.suffix.lower() != HTML:
-        raise FileError(message("output", f"a name that ends in {HTML}", f"'{page}'"))
+    pages = list(common.out.output or ())
+    if wrong := [path for path in pages if path.suffix.lower() != HTML]:
+        raise FileError(message("output", f"a name that ends in {HTML}", f"'{wrong[0]}'"))
     folder = None
-    if page is None:
+    if not pages and common.out.script:
+        pages = [Path(f"{file.stem}{HTML}")]
+    elif not pages:
         # Only this user may look into the folder.
         folder = Path(tempfile.mkdtemp(prefix="vizlight-"))
-        page = folder / f"{file.stem}{HTML}"
+        pages = [folder / f"{file.stem}{HTML}"]
     try:
-        out = Output(
-            output=[page],
-            background=window.background,
-            line_width=window.line_width,
-            progress=window.progress,
-        )
-        common = Common(lights=lights, finish=finish, eye=eye, out=out)
+        common = replace(common, out=replace(common.out, output=pages))
         build = _builder(target, keywords(how), common, color, words(target, how))
-        code = carry_out([file], build, out, "view", target)
+        code = carry_out([file], build, common.out, "view", target)
         if folder is not None:
-            page.chmod(0o600)
+            pages[0].chmod(0o600)
     finally:
-        if folder is not None and not page.exists():
+        if folder is not None and not pages[0].exists():
             folder.rmdir()
-    if code == OK and window.browser and not webbrowser.open(page.resolve().as_uri()):
-        complain(f"no browser was found; open '{page}' in one")
+    opens = browser and code == OK and not common.out.script
+    if opens and not webbrowser.open(pages[0].resolve().as_uri()):
+        complain(f"no browser was found; open '{pages[0]}' in one")
     return code
 
 
@@ -201,18 +179,13 @@ def _builder(
         # The lit mesh shares the arrays of the file; a refined one is new.
         source = mesh if refine else Step("", ".copy", mesh, deep=False)
         lit = look.step("lit", lights, source, scene, **given, **place)
-        made = Job(lit, asked.name, look, camera, suffix=".vtp" if taken or refine else "")
-        made.kind = "PolyData" if refine else mesh
+        made = Job(lit, look, camera, suffix=".vtp" if taken or refine else "")
+        made.kind = made.kind if refine else mesh
         made.source = [str(path), *recipe]
         made.tint(data, color)
-        if not (target.contour or target.warp or target.slice):
-            made.hint = lambda: _hint(data.run(), target, color.scalars)
-        elif color.scalars is not None and color.scalars == target.contour:
-            made.hint = lambda: (
-                f"{color.scalars} is the same all over its isosurface; name another --scalars"
-            )
+        made.tell.append(lambda _: _hint(data.run(), target, color.scalars))
         if explain:
-            made.explain = lambda mesh: _explain(mesh, asked)
+            made.tell.append(lambda lit: _explain(lit, asked))
         if legibility:
             made.read = _read(made, scene, given)
         return made
@@ -243,55 +216,58 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
     """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
-    from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
 
+    if scalars is not None and scalars == target.contour:
+        return f"note     {scalars} is the same all over its isosurface; name another --scalars"
     parts = [block for block in all_blocks(mesh) if block.n_cells]
-    arrays = dict(parts[0].point_data.items()) if parts else {}
+    if target.contour or target.warp or target.slice or not parts:
+        return ""
+    arrays = parts[0].point_data
     if target.overlay and scalars is None:
-        return f"--scalars {shlex.quote(list(arrays)[-1])} shows the values over the surface"
+        name = shlex.quote(list(arrays.keys())[-1])
+        return f"note     --scalars {name} shows the values over the surface"
+    raises, colors = _varying(arrays), [*_varying(arrays), *_colors(arrays)]
+    if any(block.GetMaxSpatialDimension() == 3 for block in parts):
+        shows = f"; --contour {raises[0]} lights an isosurface of it" if raises else ""
+        return f"note     the hull of a volume is lit{shows}" if target.surface and shows else ""
+    colors += _varying(parts[0].cell_data)
+    ways = [f"--scalars {colors[0]} colours it"] if colors and scalars is None else []
+    ways += [f"--warp {raises[0]} raises it"] if raises else []
     flat = all(
         block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
     )
-    whole = _varying(arrays)
-    if not whole:
-        cells = _varying(dict(parts[0].cell_data.items()) if parts else {})
-        colors = [name for name, values in arrays.items() if are_colors(values)]
-        colors += sorted(cells, key=lambda name: cells[name])
-        shown = flat and colors and scalars is None
-        return (
-            f"the mesh is flat; --scalars {shlex.quote(colors[0])} shows colours" if shown else ""
-        )
-    name = shlex.quote(min(whole, key=lambda name: whole[name]))
-    if any(block.GetMaxSpatialDimension() == 3 for block in parts):
-        hull = f"the hull of a volume is lit; --contour {name} lights an isosurface of it"
-        return hull if target.surface else ""
-    if flat:
-        colored = f"--scalars {name} colours it, " if scalars is None else ""
-        return f"the mesh is flat; {colored}--warp {name} raises it"
-    return ""
+    return f"note     the mesh is flat; {', '.join(ways)}" if flat and ways else ""
 
 
-def _varying(arrays: Keywords) -> dict[str, bool]:
-    """Return the arrays of one number that varies, and whether it is an integer.
+def _colors(arrays: pv.DataSetAttributes) -> list[str]:
+    """Return the names of arrays of colours, as a shell takes them."""
+    from vizlight.filters.tint import are_colors
 
-    Integers may number the nodes, as names with "Id" do.
+    return [shlex.quote(name) for name, values in arrays.items() if are_colors(values)]
+
+
+def _varying(arrays: pv.DataSetAttributes) -> list[str]:
+    """Return the names of arrays of one number that varies, as a shell takes them.
+
+    Integers, which may number the nodes as names with "Id" do, come last.
     """
     import numpy as np
 
-    return {
-        name: values.dtype.kind != "f"
-        for name, values in arrays.items()
+    found = [
+        (values.dtype.kind != "f", i, shlex.quote(name))
+        for i, (name, values) in enumerate(arrays.items())
         if values.dtype.kind in "iuf"
         and values.ndim == 1
         and not name.endswith(("Id", "Ids"))
         and (kept := values[np.isfinite(values)]).size
         and kept.min() < kept.max()
-    }
+    ]
+    return [name for *_, name in sorted(found)]
 
 
-def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
-    """Print the plan by which a mesh was lit."""
+def _explain(lit: pv.DataSet, asked: LightOptions) -> str:
+    """Return the plan by which a mesh was lit, in words."""
     from vizlight.mesh.batches import inputs_of
     from vizlight.mesh.blocks import all_blocks
     from vizlight.shading.plan import decide
@@ -300,7 +276,7 @@ def _explain(lit: pv.DataSet, asked: LightOptions) -> None:
     scene = vizlight.Scene.from_dict(record["scene"])
     inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
     layout = inputs.layout._replace(dimmed=bool(asked.bundle))
-    say(decide(scene, layout, asked, record["precision"]).explain())
+    return decide(scene, layout, asked, record["precision"]).explain()
 
 
 def _indices(out: Output, pieces: Pieces) -> list[Path]:

@@ -10,29 +10,16 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from cyclopts import App, CycloptsError
+from cyclopts import CycloptsError
 
 from vizlight._supervise import BAD_INPUT, LACKING
-from vizlight._version import __version__
-from vizlight.cli import arguments
+from vizlight.cli import arguments, filters, light  # noqa: F401 - their commands are in app
 from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
+from vizlight.cli.options import HELP, app
 from vizlight.cli.output import OK, complain, console, draw, one_line, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-#: Words that ask for help.
-HELP = frozenset({"--help", "-h"})
-app = App(
-    name="vizlight",
-    help="Light that makes scientific data legible.",
-    # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
-    help_format="plaintext",
-    help_flags=sorted(HELP),
-    version=__version__,
-    result_action="return_value",
-    suppress_keyboard_interrupt=False,
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -117,10 +104,10 @@ def demo(
     table = Table(title="The winds of July, lit by their direction")
     for heading in ("light", "points", "terms", "time, ms", "error", "within 10°", "by the key"):
         table.add_column(heading, justify="left" if heading in ("light", "terms") else "right")
-    for light, terms, milliseconds, error, read in made.rows:
+    for lamp, terms, milliseconds, error, read in made.rows:
         by_key = "" if read.legend_median is None else f"{read.legend_median:.1f}°"
         table.add_row(
-            light, f"{made.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
+            lamp, f"{made.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
             f"{read.within_10:.0%}", by_key,
         )  # fmt: skip
     shown = console()
@@ -136,58 +123,6 @@ def demo(
     return draw(picture)
 
 
-#: Commands that light files: module, what they do, and an example.
-LIGHTING = {
-    "light": (
-        "light",
-        "Light a mesh, and write the lit mesh and a picture.",
-        "flow.vtu --contour Temp --tangents V --conditioned",
-    ),
-    "view": (
-        "light",
-        "Light a mesh, and open a page whose light follows the eye.",
-        "flow.vtu --contour Temp --tangents V --conditioned",
-    ),
-    "streamlines": (
-        "filters",
-        "Trace streamlines, free or on a surface, and light them.",
-        "flow.vtu --vectors V --model cylinder --diffuse 0.8",
-    ),
-    "relief": (
-        "filters",
-        "Cast shadows on a height field or a closed surface.",
-        "terrain.dem --depth 60 --light 315,20",
-    ),
-    "sky": (
-        "filters",
-        "Find the share of a uniform sky that each point sees.",
-        "terrain.dem --error 0.01 -o sky.png",
-    ),
-    "fur": (
-        "filters",
-        "Cover a surface with fibres, and light them and the skin.",
-        "bunny.ply --absorption 0.7 --fibres 200000",
-    ),
-    "contours": (
-        "filters",
-        "Find contours of equal luminance and the bands between.",
-        "part.stl --levels 8 --specular 0",
-    ),
-    "project": (
-        "filters",
-        "Turn a mesh of n-space, project it to 3-space and light it.",
-        "torus.vtp --rotation xw:0.5 --distance 3",
-    ),
-}
-for _name, (_module, _help, _example) in LIGHTING.items():
-    # By their path, so that PyVista is loaded for the command that is called alone.
-    app.command(
-        f"vizlight.cli.{_module}:{_name}",
-        name=_name,
-        help=_help,
-        usage=f"Usage: vizlight {_name} FILES [OPTIONS]",
-        help_epilogue=f"Example: vizlight {_name} {_example}",
-    )
 app.register_install_completion_command(help="Install shell completion.")
 
 

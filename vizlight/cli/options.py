@@ -14,24 +14,33 @@ from dataclasses import field, fields, make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Union, get_type_hints
 
-from cyclopts import Group, Parameter
+from cyclopts import App, Group, Parameter
 
 from vizlight import _words
+from vizlight._version import __version__
 from vizlight._words import message
 from vizlight.cli.arguments import fraction, numbers, plane
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from typing import ParamSpec
 
     from vizlight._types import Foreign, Keywords
 
-    P = ParamSpec("P")
+    #: What a name of a module stands for: a function, a value, or a module and a name there.
+    Meaning = ast.AST | tuple[str, str]
 
-    #: What a name of a module stands for: the source of a function, the node of a value, or a
-    #: module and a name there.
-    Meaning = str | ast.expr | tuple[str, str]
-
+#: Words that ask for help.
+HELP = frozenset({"--help", "-h"})
+app = App(
+    name="vizlight",
+    help="Light that makes scientific data legible.",
+    # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
+    help_format="plaintext",
+    help_flags=sorted(HELP),
+    version=__version__,
+    result_action="return_value",
+    suppress_keyboard_interrupt=False,
+)
 ROOT = Path(__file__).parents[1]
 #: Types that text can be read as, by their names in annotations, beside those that are choices. A
 #: filter's option that has none of them is left to scripts.
@@ -142,8 +151,8 @@ def words(*parts: Foreign) -> list[str]:
 
 
 def takes(
-    filter_: str, group: str, *, without: tuple[str, ...] = (), **renamed: str
-) -> Callable[[Callable[P, int]], Callable[P, int]]:
+    filter_: str, group: str, *, example: str, without: tuple[str, ...] = (), **renamed: str
+) -> Callable[[Callable[..., int]], Callable[..., int]]:
     """Let a command take the options of a filter as ``how``, and groups of others by their class.
 
     Parameters
@@ -152,13 +161,15 @@ def takes(
         Name of a public filter, whose signature and documentation list its options.
     group : str
         Heading of the filter's options in the help.
+    example : str
+        Words of a call that the help ends with.
     without : tuple of str
         Options that are left to scripts.
     **renamed : str
         Other names of options on the command line.
     """
 
-    def decorate(command: Callable[P, int]) -> Callable[P, int]:
+    def decorate(command: Callable[..., int]) -> Callable[..., int]:
         own = arguments_of(filter_, without=without, renamed=renamed)
         Parameter(name="*", group=Group(group, sort_key=1))(own)
         command.__annotations__["how"] = own
@@ -168,7 +179,12 @@ def takes(
             for name, one in signature.parameters.items()
             if one.kind is one.KEYWORD_ONLY
         }
-        return command
+        name = command.__name__
+        return app.command(
+            command,
+            usage=f"Usage: vizlight {name} FILES [OPTIONS]",
+            help_epilogue=f"Example: vizlight {name} {example}",
+        )
 
     return decorate
 
@@ -177,7 +193,8 @@ def arguments_of(
     filter_: str, *, without: tuple[str, ...] = (), renamed: Mapping[str, str] | None = None
 ) -> type:
     """Return a class of the options of a filter, each with the first clause on it; see takes."""
-    node, texts, module = _function(f"vizlight.filters.{filter_}", filter_)
+    module = f"vizlight.filters.{filter_}"
+    node, texts = _function(module, filter_)
     made: list[tuple[str, object, object]] = []
     for argument, value in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True):
         name = argument.arg
@@ -200,57 +217,45 @@ def arguments_of(
 
 
 @functools.cache
-def _meanings(module: str) -> dict[str, Meaning]:
+def _names(module: str) -> dict[str, Meaning]:
     """Return what the names of a module stand for, none for a module of another package."""
     path = ROOT.joinpath(*module.split(".")[1:])
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     found: dict[str, Meaning] = {}
     if not (module.startswith("vizlight.") and path.is_file()):
         return found
-    for part in path.read_text(encoding="utf-8").split("\n\n\n"):
-        # Functions and classes, which are most of a module, are parsed where they are asked for.
-        if own := re.search(r"^(?:def|class) (\w+)", part, re.M):
-            found[own[1]] = part
-            continue
-        for outer in ast.parse(part).body:
-            # What stands below ``if`` is for types alone.
-            for node in outer.body if isinstance(outer, ast.If) else [outer]:
-                if isinstance(node, ast.ImportFrom):
-                    for alias in node.names:
-                        found[alias.asname or alias.name] = (node.module or "", alias.name)
-                elif isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-                    target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
-                    names, values = [target], [node.value]
-                    if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
-                        names, values = target.elts, node.value.elts
-                    found |= {ast.unparse(name): v for name, v in zip(names, values, strict=True)}
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    # What stands below ``if`` is for types alone.
+    for node in (
+        *body,
+        *(one for outer in body if isinstance(outer, ast.If) for one in outer.body),
+    ):
+        if isinstance(node, ast.FunctionDef):
+            found.setdefault(node.name, node)
+        elif isinstance(node, ast.Assign):
+            found.setdefault(ast.unparse(node.targets[0]), node.value)
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                found.setdefault(alias.asname or alias.name, (str(node.module), alias.name))
     return found
 
 
-def _find(module: str, name: str) -> tuple[str | ast.expr, str]:
-    """Return what a name stands for, and the module in which that is."""
-    found = _meanings(module)[name]
-    return _find(*found) if isinstance(found, tuple) else (found, module)
+def _find(module: str, name: str) -> ast.AST | None:
+    """Return what a name of a module, which may import it from another, stands for."""
+    found = _names(module).get(name)
+    return _find(*found) if isinstance(found, tuple) else found
 
 
-def _function(module: str, name: str) -> tuple[ast.FunctionDef, dict[str, str], str]:
-    """Return a function, the description of its parameters, and its module."""
-    text, home = _find(module, name)
-    assert isinstance(text, str)
-    node = ast.parse(text).body[-1]
+def _function(module: str, name: str) -> tuple[ast.FunctionDef, dict[str, str]]:
+    """Return a function, and the description of its parameters."""
+    node = _find(module, name)
     assert isinstance(node, ast.FunctionDef)
-    return node, _words.parameters(ast.get_docstring(node)), home
+    return node, _words.parameters(ast.get_docstring(node))
 
 
-def _value(node: ast.expr, module: str) -> object:
-    """Return the value of an expression of constants and of names that stand for constants."""
-    known: dict[str, object] = {}
-    for inner in ast.walk(node):
-        if isinstance(inner, ast.Name):
-            found, home = _find(module, inner.id)
-            assert isinstance(found, ast.expr)
-            known[inner.id] = _value(found, home)
-    return eval(ast.unparse(node), {"__builtins__": {}}, known)
+def _value(node: ast.AST | None, module: str) -> object:
+    """Return a constant, or what a name stands for that is one."""
+    return ast.literal_eval(_find(module, node.id) if isinstance(node, ast.Name) else node)  # type: ignore[arg-type]
 
 
 def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
@@ -269,10 +274,7 @@ def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
 
 def _choices(name: str, module: str) -> object | None:
     """Return the type ``Literal`` that a name in an annotation stands for, or None."""
-    try:
-        found, _ = _find(module, name)
-    except KeyError:
-        return None
+    found = _find(module, name)
     if isinstance(found, ast.Subscript) and ast.unparse(found.value) == "Literal":
         return Literal[ast.literal_eval(found.slice)]
     return None
@@ -289,7 +291,7 @@ def _text(name: str, texts: Mapping[str, str]) -> str:
     elsewhere = re.search(r"[Aa]s for\s:\w+:`~?vizlight\.([\w.]+)`", entry)
     if elsewhere:
         module, _, function = elsewhere[1].rpartition(".")
-        _, there, _ = _function(f"vizlight.{module or f'filters.{function}'}", function)
+        _, there = _function(f"vizlight.{module or f'filters.{function}'}", function)
         entry = there.get(name, "") or entry
     text = " ".join(entry.partition("\n")[2].split()).replace("``", "")
     return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", text)

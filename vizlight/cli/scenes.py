@@ -51,17 +51,6 @@ def check_target(target: Part, *, raised: bool = False) -> None:
             raise ValueError(message(f"--{option}", f"--{needs} with it", "it alone"))
 
 
-def _check_map(cmap: str) -> None:
-    """Check the name of a colour map."""
-    from vizlight.filters.tint import color_table
-
-    try:
-        color_table([], cmap=cmap)
-    except ValueError as error:
-        expected = "the name of a colour map"
-        raise ValueError(message("--cmap", expected, repr(cmap))) from error
-
-
 def times(file: Path, target: Part) -> list[float | str | None]:
     """Return the times of the steps of a file that are lit one by one.
 
@@ -223,37 +212,30 @@ def known(**options: object) -> Keywords:
     return {name: value for name, value in options.items() if value is not None}
 
 
-def tinted(lit: Step, name: str, data: Step, color: Color) -> Step | None:
-    """Return the step that colours a lit mesh by an array, the colour times the light."""
-    if color.scalars is None:
-        return None
-    found = data.run()
-    there = [*found.point_data, *found.cell_data]
-    if color.scalars in there:
-        named = known(cmap=color.cmap) | {"light": name, "name": TINT}
-        return Step("shown", "vizlight.tint", lit, color.scalars, **named)
-    if color.scalars != DIRECTION:
-        expected = f"an array, {one_of(there)}, or {DIRECTION!r} for lines"
-        raise ValueError(message("--scalars", expected, repr(color.scalars)))
-    rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
-    return Step("shown", "vizlight.tint", lit, Step("", "numpy.uint8", rgb), light=name, name=TINT)
+def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
+    """Return the step that colours a lit mesh by an array, and the words of the key of its colours.
 
-
-def title_of(data: Step, scalars: str) -> str:
-    """Return the words of the key of an array that colours a picture, none where it is colours."""
+    The colour is multiplied by the light. There are no words where the values are colours.
+    """
     from numpy import isfinite
 
     from vizlight.filters.tint import are_colors
     from vizlight.shading.display import titled
 
     found = data.run()
-    arrays = found.point_data if scalars in found.point_data else found.cell_data
-    if scalars not in arrays:
-        return ""
-    values = arrays[scalars]
-    if are_colors(values):
-        return ""
-    return titled(scalars, lacking=values.dtype.kind == "f" and not isfinite(values).all())
+    arrays = {**found.cell_data, **found.point_data}
+    if color.scalars is not None and color.scalars in arrays:
+        named = known(cmap=color.cmap) | {"light": name, "name": TINT}
+        shown = Step("shown", "vizlight.tint", lit, color.scalars, **named)
+        values = arrays[color.scalars]
+        lacking = values.dtype.kind == "f" and not isfinite(values).all()
+        return shown, "" if are_colors(values) else titled(color.scalars, lacking=lacking)
+    if color.scalars != DIRECTION:
+        expected = f"an array, {one_of([*arrays])}, or {DIRECTION!r} for lines"
+        raise ValueError(message("--scalars", expected, repr(color.scalars)))
+    rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
+    bytes_ = Step("", "numpy.uint8", rgb)
+    return Step("shown", "vizlight.tint", lit, bytes_, light=name, name=TINT), ""
 
 
 class Look:
@@ -272,7 +254,9 @@ class Look:
         if target is not None:
             check_target(target, raised=raised)
         if color is not None and color.cmap is not None:
-            _check_map(color.cmap)
+            from vizlight.filters.tint import color_table
+
+            color_table([], cmap=color.cmap)
         self._fill, self._progress = fill, common.out.progress
         self.lights, self._eye = common.lights, common.eye
         _check_question(self.lights)

@@ -100,18 +100,18 @@ def camera_on(
 
 
 def outermost(
-    points: ArrayLike,
+    mesh: Mesh,
     direction: Sequence[float] = (1.0, 1.0, 1.0),
     *,
     up: Sequence[float] | None = None,
     aspect: float = 1.0,
 ) -> Array:
-    """Return the few points of many on which the camera of :func:`camera_on` depends.
+    """Return the few points of a mesh on which the camera of :func:`camera_on` depends.
 
     Parameters
     ----------
-    points : array_like, shape (n, 3)
-        Points; any that are not finite are ignored.
+    mesh : mesh
+        Mesh; points that are not finite are ignored.
     direction, up, aspect
         As for :func:`camera_on`, which gives the same camera for a mesh of all points and for one
         of the points that are returned, also if these come from several parts.
@@ -119,16 +119,16 @@ def outermost(
     Returns
     -------
     ndarray, shape (m, 3)
-        At most 18 points.
+        At most 18 points of each 65,536.
 
     Raises
     ------
     TypeError, ValueError
         If a value does not fit.
     """
-    axes = _axes(*_directions(direction, up))
-    aspect = _check.number("aspect", aspect, low=1e-3)
-    return _outermost(np.asarray(points).reshape(-1, 3), axes, aspect)
+    view = _axes(*_directions(direction, up)), _check.number("aspect", aspect, low=1e-3)
+    found = [_outermost(some, *view) for some in _coordinates(mesh)]
+    return np.concatenate([np.empty((0, 3)), *found])
 
 
 def _outermost(points: Array, axes: Array, aspect: float) -> Array:

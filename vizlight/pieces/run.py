@@ -249,8 +249,7 @@ def camera_on(
     Parameters
     ----------
     sources, contour, level, map, slab, progress_bar
-        As for :func:`light`. Without ``contour`` only the corners of an image are taken; an
-        isosurface costs a first reading and contouring.
+        As for :func:`light`. All pieces are read, and contoured, once more for it.
     direction, up, parallel, zoom, aspect
         As for :func:`vizlight.draw.render.camera_on`.
 
@@ -373,6 +372,7 @@ def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
     """Return the result, and warn once of what the workers warned of."""
     full = [one for one in done if one.file]
     points, invalid = sum(one.points for one in full), sum(one.invalid for one in full)
+    names = sorted({name for one in full for name in one.ranges})
     if invalid:
         _check.warn(f"{unlit(invalid, points)}; the point array '{job.name}_valid' marks them")
     for note, count in Counter(note for one in full for note in set(one.notes)).items():
@@ -382,23 +382,15 @@ def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
     sharp = sum((one.sharp or 0.0) * one.cells for one in full)
     sharp /= max(sum(one.cells for one in full), 1)
     normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
-    ranges: dict[str, list[tuple[float, float]]] = {}
-    for one in full:
-        for name, ends in one.ranges.items():
-            ranges.setdefault(name, []).append(ends)
+    boxes = np.array([one.bounds for one in full])
+    ends = {name: [one.ranges[name] for one in full if name in one.ranges] for name in names}
     return Lit(
         path=path,
         files=tuple(folder / one.file for one in full),
         points=points,
         cells=sum(one.cells for one in full),
-        bounds=tuple(
-            max(ends) if i % 2 else min(ends)
-            for i, ends in enumerate(zip(*(one.bounds for one in full), strict=True))
-        ),
-        ranges={
-            name: (min(low for low, _ in ends), max(high for _, high in ends))
-            for name, ends in sorted(ranges.items())
-        },
+        bounds=tuple(np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0)).tolist()),
+        ranges={name: (min(ends[name])[0], max(high for _, high in ends[name])) for name in ends},
         scene=job.scene,
         level=job.level,
         empty=len(done) - len(full),

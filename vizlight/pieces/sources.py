@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
-from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
 from vtkmodules.vtkImagingCore import vtkExtractVOI
@@ -27,7 +26,7 @@ from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight._types import Array, Foreign, VectorLike
+    from vizlight._types import Foreign, VectorLike
 
     Extent = tuple[int, ...]
 
@@ -107,10 +106,6 @@ class FilePiece:
         """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
         return own_cells(mesh)
 
-    def places(self) -> Array:
-        """Return points with the hull of the piece, from no more of the data than it needs."""
-        return _hull(self.load())
-
 
 @dataclass(frozen=True)
 class GridPiece:
@@ -170,29 +165,8 @@ class GridPiece:
         mesh.cell_data.pop(GHOST, None)
         return mesh  # type: ignore[no-any-return]
 
-    def places(self) -> Array:
-        """See :class:`FilePiece`."""
-        if isinstance(self.source, Slabs):
-            return _hull(self.source.empty(self.extent))
-        info = _grid_reader(self.source).GetOutputInformation(0)
-        if not info.Has(vtkDataObject.SPACING()):  # its places are coordinates in the file
-            return _hull(self.read(0))
-        grid = pv.ImageData()
-        grid.CopyInformationFromPipeline(info)
-        grid.SetExtent(*self.extent)
-        return _hull(grid)
-
 
 Piece: TypeAlias = FilePiece | GridPiece
-
-
-def _hull(mesh: pv.DataSet) -> Array:
-    """Return the corners of a grid with straight axes, the points of any other mesh."""
-    if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or not mesh.n_points:
-        return np.asarray(mesh.points)
-    nx, ny, nz = mesh.dimensions
-    ends = itertools.product((0, nz - 1), (0, ny - 1), (0, nx - 1))
-    return np.array([mesh.GetPoint(x + nx * (y + ny * z)) for z, y, x in ends])
 
 
 class Slabs:
@@ -261,7 +235,8 @@ class Slabs:
 
     def nodes(self, extent: Extent) -> pv.ImageData:
         """Return a box of nodes with their arrays."""
-        mesh = self.empty(extent)
+        mesh = pv.ImageData(spacing=self.spacing, origin=self.origin)
+        mesh.extent = extent
         slices, rows = slice(extent[4], extent[5] + 1), slice(extent[2], extent[3] + 1)
         for name, array in self.arrays.items():
             is_mapped = isinstance(array, functools.partial)
@@ -275,12 +250,6 @@ class Slabs:
                 part = part.compute(scheduler=dask.get)
             box = np.array(part) if is_mapped else np.asarray(part)
             mesh.point_data[name] = box.reshape(-1, *found.shape[3:])
-        return mesh
-
-    def empty(self, extent: Extent) -> pv.ImageData:
-        """Return a box of nodes without arrays."""
-        mesh = pv.ImageData(spacing=self.spacing, origin=self.origin)
-        mesh.extent = extent
         return mesh
 
 

@@ -155,13 +155,8 @@ def _described(mesh: Foreign, ranged: list[str | None] | None = None) -> Found:
 
 def outermost(piece: Piece, job: Job, *view: Foreign) -> Array:
     """Return the points of a piece, or of its isosurface, on which a camera depends."""
-    if job.contour is None:
-        places = _tried(piece, piece.places)
-    else:
-        places = np.asarray(_target(piece, job, 0).points)
     direction, up, aspect = view
-    places = np.empty((0, 3)) if places is None else places
-    return cameras.outermost(places, direction, up=up, aspect=aspect)
+    return cameras.outermost(_target(piece, job, 0), direction, up=up, aspect=aspect)
 
 
 def depths(piece: Piece, job: Job) -> tuple[float, float]:

@@ -17,7 +17,6 @@ from vizlight.pieces.sources import PieceError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
-    from concurrent.futures import Future
 
     from vizlight._types import Foreign
 
@@ -155,15 +154,13 @@ class Processes:
         """
         left, lost = list(calls), 0
         while left:
-            futures: list[Future[T]] = []
             try:
                 if self._pool is None:
                     spawn = multiprocessing.get_context("spawn")
                     self._pool = ProcessPoolExecutor(self.count, spawn, _begin, (os.getpid(),))
                 with _main_apart():
-                    futures = [self._pool.submit(function, one) for one in left]
-                for future in futures:
-                    value = future.result()
+                    found = self._pool.map(function, left)
+                for value in found:
                     left.pop(0)
                     lost = 0
                     yield value
@@ -172,9 +169,6 @@ class Processes:
                 lost += 1
                 if lost == LOST:
                     raise
-            finally:
-                for future in futures:
-                    future.cancel()
 
     def _end(self) -> None:
         """End the processes, and wait for that.
