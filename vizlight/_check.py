@@ -6,9 +6,11 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import numbers
 import os
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -41,6 +43,22 @@ FARTHEST = 1e100
 #: Largest number of elements of an array, 2 TiB in float64; and largest integer, from which float64
 #: skips some.
 MOST, LARGEST_INTEGER = 2**38, 2**53
+
+
+#: Names that VTK's table lacks or spells otherwise.
+_OTHERS = {
+    "gray": "808080", "rebeccapurple": "663399",
+    "paraviewbackground": "54596d", "paraviewbackgroundwarm": "625d5a",
+    "deepcadmiumred": "e3170d", "deepcobaltviolet": "91219e", "deepnaplesyellow": "ffa812",
+    "lightcadmiumred": "ff030d", "lightcadmiumyellow": "ffb00f", "lightslateblue": "8470ff",
+    "lightviridian": "6eff70",
+    "tab:blue": "1f77b4", "tab:orange": "ff7f0e", "tab:green": "2ca02c", "tab:red": "d62728",
+    "tab:purple": "9467bd", "tab:brown": "8c564b", "tab:pink": "e377c2", "tab:gray": "7f7f7f",
+    "tab:olive": "bcbd22", "tab:cyan": "17becf",
+    "b": "0000ff", "g": "008000", "r": "ff0000", "c": "00ffff", "m": "ff00ff", "y": "ffff00",
+    "k": "000000", "w": "ffffff",
+    "pv": "54596d", "paraview": "54596d", "paraviewwarm": "625d5a", "lightgoldenrod": "fafad2",
+}  # fmt: skip
 
 
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
@@ -329,15 +347,13 @@ def optional_vector(name: str, value: object, *, direction: bool = False) -> Vec
 def color(name: str, value: object) -> Color | None:
     """Return the three channels of a colour, or None for None.
 
-    A colour is three numbers, a name of PyVista, a hexadecimal string or a ``pyvista.Color``.
+    A colour is three numbers, a name, a hexadecimal string or a ``pyvista.Color``.
     """
     if value is None:
         return None
     if isinstance(value, str):
         try:
-            import pyvista as pv
-
-            value = pv.Color(value)
+            value = _named(value)
         except ValueError as error:
             expected = "a colour's name, '#rrggbb' or (r, g, b)"
             raise ValueError(message(name, expected, describe(value))) from error
@@ -389,3 +405,34 @@ def _range(low: float, high: float) -> str:
     if high == math.inf:
         return f"a finite number of at least {low:g}"
     return f"a number from {low:g} to {high:g}"
+
+
+def _named(text: str) -> Color:
+    """Return the channels of a colour, from 0 to 1, by PyVista's name or by hexadecimal digits.
+
+    Case, underscores, hyphens and spaces of a name are ignored. Digits are ``#rrggbb``, without
+    the ``#``, with ``0x`` in its place, or followed by two of an opacity, which is ignored.
+    """
+    name = _plain(text)
+    digits = _OTHERS.get(name, name.lstrip("#").removeprefix("0x"))
+    if name not in _OTHERS and (spelled := _names().get(name)) is not None:
+        from vtkmodules.vtkCommonColor import vtkNamedColors
+
+        red, green, blue = vtkNamedColors().GetColor3d(spelled)
+        return float(red), float(green), float(blue)
+    if not re.fullmatch(r"[0-9a-f]{6}([0-9a-f]{2})?", digits):
+        raise ValueError(f"no colour {text!r}")
+    red, green, blue = (int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
+    return red, green, blue
+
+
+def _plain(name: str) -> str:
+    return re.sub("[-_ ]", "", name.lower()).replace("grey", "gray")
+
+
+@functools.cache
+def _names() -> dict[str, str]:
+    """Return VTK's spelling of each of its names."""
+    from vtkmodules.vtkCommonColor import vtkNamedColors
+
+    return {_plain(name): name for name in vtkNamedColors().GetColorNames().split("\n")}

@@ -382,7 +382,7 @@ TURNED = "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --
         (
             "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",
             "lit.vti", "shade",
-            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01, "method": "fast"},
+            {"depth": 0.5, "border": "wall", "angular_diameter": 0.01},
         ),
         (
             "fur flow.vti --contour r --length r --toward -1,0,2 --bend 0.5 --fibres 8",

@@ -57,7 +57,7 @@ def test_points_are_split_as_by_vtk(name, monkeypatch):
     )  # fmt: skip
     monkeypatch.setattr(corners, "EDGES", 200)
     ids, ends = cells.connectivity(mesh.GetPolys())
-    split, origin = corners.split_faces(mesh.points, ids, ends, 25)
+    split, origin, turned = corners.split_faces(mesh.points, ids, ends, 25)
     np.testing.assert_array_equal(origin[split], ids)
     np.testing.assert_array_equal(origin[: mesh.n_points], np.arange(mesh.n_points))
     face = np.repeat(np.arange(mesh.n_cells), np.diff(ends))
@@ -69,6 +69,8 @@ def test_points_are_split_as_by_vtk(name, monkeypatch):
         for f, place, i in zip(face, whole.points[theirs].tolist(), theirs.tolist(), strict=True)
     }
     assert len(pairs) == len(origin) == whole.n_points > mesh.n_points
+    over = np.add.reduceat(np.any(whole.points[theirs] != mesh.points[ids], axis=1), ends[:-1]) > 0
+    np.testing.assert_array_equal(turned, over)
 
 
 @pytest.mark.parametrize("name", SURFACES)

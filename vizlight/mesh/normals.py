@@ -212,8 +212,15 @@ def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
     """
     ids, ends = _corners(mesh)
     twins = first_twins(blocks.cell_array(ids, ends))
-    corners, origin = split_faces(places(mesh), ids, ends, angle, twins)
-    return mesh if len(origin) == mesh.n_points else _at(mesh, corners, ends, origin)
+    corners, origin, turned = split_faces(places(mesh), ids, ends, angle, twins)
+    if len(origin) == mesh.n_points:
+        return mesh
+    # Pieces that are taken apart would not know that they had a side in common.
+    size = np.diff(ends)
+    last = np.repeat(ends[:-1] + ends[1:] - 1, size)
+    at = np.arange(len(ids))
+    corners = corners[np.where(np.repeat(turned, size), last - at, at)]
+    return _at(mesh, corners, ends, origin)
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:

@@ -276,7 +276,7 @@ def _between(
     good = seen.valid[places.corners].all(axis=1)
     places = between.Places(places.corners[good], places.weights[good])
     at = between.interpolated(shape.points, places)
-    ways = sky_rays.facing(shape.points, places.corners, np.asarray(shape.places.ways))
+    ways = sky_rays.across(shape.points, places.corners)
     axis = None if up is None else np.array(up, np.float64)
     # The light between the points is interpolated; rays from there tell what that misses.
     true = hidden.seen(sky_rays.Places(at, ways), error=VOXELS / 4, up=axis)
@@ -353,8 +353,9 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     view = None if up is None else View(direction=up)
     ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
     outward = np.where((ids >= 0)[:, np.newaxis], ways[ids], 0.0)
+    faces = sky_rays.turned(points, faces, outward)
     # A ray must not meet the faces around its own start.
-    beside = sky_rays.beside(points, faces, outward)
+    beside = sky_rays.beside(points, faces)
     return _Shape(points, faces, sky_rays.Places(points, outward, beside=beside), ids)
 
 

@@ -91,7 +91,10 @@ class Seen(NamedTuple):
 
 
 class Occluders:
-    """Triangles that hide the sky, scaled to size 1 about 0 so that float32 loses nothing."""
+    """Triangles that hide the sky, scaled to size 1 about 0 so that float32 loses nothing.
+
+    Their winding tells the outer side from the inner one.
+    """
 
     def __init__(self, points: Array, triangles: Indices) -> None:
         used = points[triangles]
@@ -268,7 +271,7 @@ def _frames(ways: Array) -> Array:
     return np.stack(rows, axis=1).reshape(-1, 3, 3).astype(np.float32)
 
 
-def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array]:
+def beside(points: Array, triangles: Indices) -> tuple[Array, Array]:
     """Return places close to points, each on the largest triangle of its point, and their normals.
 
     Where faces meet inward a point is on the wrong side of one of them by rounding, or its mean
@@ -276,9 +279,10 @@ def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array
 
     Parameters
     ----------
-    points, ways : ndarray, shape (N, 3)
-        Points of a surface, and their normals, which tell the side.
+    points : ndarray, shape (N, 3)
+        Points of a surface.
     triangles : ndarray of int, shape (M, 3)
+        Wound so that their outer side looks at the sky.
 
     Returns
     -------
@@ -286,7 +290,7 @@ def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array
     ndarray, shape (N, 3)
         0 where a point has no triangle.
     """
-    normals = facing(points, triangles, ways)
+    normals = across(points, triangles)
     area = np.nan_to_num(np.einsum("ij,ij->i", normals, normals), posinf=0.0)
     largest = np.full(len(points), -1)
     # Of equal indices the last value stays.
@@ -300,13 +304,18 @@ def beside(points: Array, triangles: Indices, ways: Array) -> tuple[Array, Array
     return near, out
 
 
-def facing(points: Array, triangles: Indices, ways: Array) -> Array:
-    """Return normals of triangles, as long as twice their areas, on the side of their points'."""
+def turned(points: Array, triangles: Indices, ways: Array) -> Indices:
+    """Return triangles wound so that the normals of their points are on their outer side."""
+    with np.errstate(all="ignore"):
+        inward = np.einsum("ij,ikj->i", across(points, triangles), ways[triangles]) < 0
+    return np.where(inward[:, np.newaxis], triangles[:, ::-1], triangles)
+
+
+def across(points: Array, triangles: Indices) -> Array:
+    """Return the normals of triangles, as long as twice their areas."""
     a, b, c = points[triangles].transpose(1, 0, 2)
     with np.errstate(all="ignore"):
-        normals = np.cross(b - a, c - a)
-        side = np.einsum("ij,ikj->i", normals, ways[triangles])
-    return np.asarray(normals * np.where(side < 0, -1.0, 1.0)[:, np.newaxis])
+        return np.cross(b - a, c - a)
 
 
 def tubes(points: Array, ids: Indices, offsets: Indices, radius: float) -> tuple[Array, Indices]:

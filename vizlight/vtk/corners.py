@@ -147,11 +147,12 @@ def split_faces(
     ends: Indices,
     angle: float,
     twins: Indices | None = None,
-) -> tuple[Indices, Indices]:
+) -> tuple[Indices, Indices, Bools]:
     """Return the corners of faces at points that are split, and the point that each point was.
 
     Around a point the faces that edges join which are not sharp have one point. An edge of more
-    than two faces joins none of them. Faces need not be wound alike.
+    than two faces joins none of them. Faces need not be wound alike; the last result tells which
+    to turn over so that they are wound as the first of their piece, where that has two sides.
 
     Parameters
     ----------
@@ -168,7 +169,10 @@ def split_faces(
     """
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
+    count = len(ends) - 1
     root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
+    edges: list[tuple[Indices, Indices]] = []
+    alike = True
     # By ranges of points: a sort of all edges at once would take more memory.
     for block in _pool.blocks(len(points), EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
@@ -188,9 +192,15 @@ def split_faces(
         new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
         pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
         one, other = rows[pair] % len(own), rows[pair + 1] % len(own)
-        cosine = np.einsum("ij,ij->i", unit[face[one]], unit[face[other]])
+        a, b = face[one], face[other]
+        cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         # Faces that are wound alike run along their common edge against each other.
         against = (rows[pair] < len(own)) != (rows[pair + 1] < len(own))
+        alike = alike and bool(against.all())
+        # The other side of a face has its number beyond those of all faces.
+        once = at[rows[pair]] < toward[rows[pair]]
+        b = np.where(against, b, b + count)
+        edges.append((a[once].astype(root.dtype), b[once].astype(root.dtype)))
         smooth = np.where(against, cosine, -cosine) > least
         joins = np.sort([one[smooth], other[smooth]], axis=0)
         root[own] = own[components(joins[0], joins[1], len(own))]
@@ -198,7 +208,13 @@ def split_faces(
         corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
         _, first, number = np.unique(corner, return_index=True, return_inverse=True)
         root = root[first[number.reshape(-1)]]
-    return numbered(root, ids, len(points))
+    turned = np.zeros(count, dtype=np.bool_)
+    if not alike:
+        one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
+        one, other = np.append(one, one + count), np.append(other, (other + count) % (2 * count))
+        side = components(np.minimum(one, other), np.maximum(one, other), 2 * count)
+        turned = side[:count] > side[count:]
+    return *numbered(root, ids, len(points)), turned
 
 
 def _face_normals(points: NDArray[np.generic], ids: Indices, ends: Indices) -> Array:
