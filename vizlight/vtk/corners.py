@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
 
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
