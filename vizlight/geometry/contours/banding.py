@@ -484,8 +484,12 @@ def _rooted(
         x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
         x1, f1 = x, f
         width = np.abs(x2 - x1)
-        done = (f1 == 0) | (width <= np.where(np.abs(f2 - f1) > jump, NARROW, WIDTH))
-        share[which[done]] = np.where(np.abs(f1) <= np.abs(f2), x1, x2)[done]
+        jumps = np.abs(f2 - f1) > jump
+        done = (f1 == 0) | (width <= np.where(jumps, NARROW, WIDTH))
+        # A jump as near to a corner as it is searched is at the corner.
+        end = np.where(np.minimum(x1, x2) == 0, 0, np.where(np.maximum(x1, x2) == 1, 1, x1))
+        found = np.where(jumps & (width <= NARROW), end, np.where(np.abs(f1) <= np.abs(f2), x1, x2))
+        share[which[done]] = found[done]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
             smooth = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)

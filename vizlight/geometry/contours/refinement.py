@@ -116,12 +116,12 @@ def refine(
         Bands with the measured error.
     """
     steps = _settled(surface, levels, low)
-    limit = _allowed(levels, steps)
     error, pieces = np.empty(0), np.empty(0, np.intp)
     for turn in range(ROUNDS + 1):
+        limit = _allowed(levels, steps)
         # Triangles that stay as they were come first, with the error that they have.
         count, known = len(surface.triangles), len(error)
-        bands, triangle = surface.cut(steps, np.arange(known, count) if turn else None)
+        bands, triangle = surface.cut(steps, np.arange(known, count) if known else None)
         pieces = np.append(pieces, np.bincount(triangle, minlength=count)[known:])
         error = np.append(error, np.zeros(count - known))
         np.maximum.at(error, triangle, surface.measure(bands, triangle, limit))
@@ -132,7 +132,11 @@ def refine(
             break
         same = surface.split(chosen)
         error, pieces = error[same], pieces[same]
-    if turn:
+        if _moved(steps, _steps(surface, levels, low)):
+            # New points are brighter than all before: other steps, by which nothing is known.
+            steps = _settled(surface, levels, low)
+            error, pieces = error[:0], pieces[:0]
+    if known:
         bands, _ = surface.cut(steps, None)
     worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
     if bound is not None and worst > bound:
@@ -148,6 +152,20 @@ def _allowed(levels: Levels, steps: Steps) -> float:
     return steps.error + KEPT * (bound - steps.error)
 
 
+def _steps(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
+    """Return the steps between the lowest and the highest luminance at the points."""
+    values = surface.values
+    bottom = float(values.min()) if low is None else low
+    return spacing.steps(levels, bottom, float(values.max()))
+
+
+def _moved(steps: Steps, found: Steps) -> bool:
+    """Return whether the steps have changed by more than a negligible share of a step."""
+    if len(steps.edges) != len(found.edges):
+        return True
+    return float(np.abs(steps.edges - found.edges).max()) > STILL * steps.error
+
+
 def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
     """Split the triangles with a highlight inside that their corners miss; return the steps.
 
@@ -161,7 +179,7 @@ def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
         for start in range(0, count, BLOCK):
             block = slice(start, start + BLOCK)
             top[block] = banding.at_corners(values, surface.triangles, block).max(axis=1)
-        steps = spacing.steps(levels, float(values.min()) if low is None else low, top.max())
+        steps = _steps(surface, levels, low)
         allowed = _allowed(levels, steps)
         ceiling = top.max() + STILL * allowed
         few = count <= ASKED
