@@ -24,9 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import ParamSpec, TypeVar
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Color, Foreign, Indices, Vector
+    from vizlight._types import Array, Color, Foreign, Indices, Raw, Vector
 
     P = ParamSpec("P")
     R = TypeVar("R")
@@ -105,7 +103,7 @@ def array_name(name: str, value: object) -> str:
     return str(value)
 
 
-def reals(name: str, value: object) -> NDArray[np.generic]:
+def reals(name: str, value: object) -> Raw:
     """Return ``value`` as an array of real numbers of any type; masked elements become NaN."""
     try:
         array = np.asarray(unmasked(value))

@@ -16,6 +16,8 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from vizlight._types import Slice
+
 #: Size in bytes of a piece of memory that is freed before the first blocks run.
 PIECE = (1 << 25) - (1 << 20)
 _SETTING: contextvars.ContextVar[str] = contextvars.ContextVar("threads", default="")
@@ -31,7 +33,7 @@ def _keep_memory() -> None:
     np.empty(PIECE, np.uint8)
 
 
-def blocks(count: int, size: int) -> list[slice]:
+def blocks(count: int, size: int) -> list[Slice]:
     """Return slices of at most ``size`` rows that together cover ``count`` rows."""
     return [slice(i, min(i + size, count)) for i in range(0, count, size)]
 
@@ -68,7 +70,7 @@ def threads(count: int) -> Iterator[None]:
         _SETTING.reset(token)
 
 
-def run(work: Callable[[slice], int], parts: list[slice]) -> Iterator[int]:
+def run(work: Callable[[Slice], int], parts: list[Slice]) -> Iterator[int]:
     """Yield the result of ``work`` for each part, in the order of the parts."""
     _keep_memory()
     count = min(workers(), len(parts))

@@ -11,6 +11,7 @@ import contextlib
 import ctypes
 import json
 import os
+import select
 import shutil
 import signal
 import sys
@@ -210,14 +211,12 @@ def _wait(child: int, reader: int) -> int:
         if signal.getsignal(name) != signal.SIG_IGN:
             signal.signal(name, on_signal)
     signal.signal(signal.SIGALRM, lambda *_: os.kill(child, next(hasten, signal.SIGKILL)))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     stages: list[Keywords] = []
-    with os.fdopen(reader, encoding="utf-8") as told:
-        for line in told:
-            if said := json.loads(line):
-                stages.append(said)
-            else:
-                stages.pop()
+    for line in _lines(reader):
+        if said := json.loads(line):
+            stages.append(said)
+        else:
+            stages.pop()
     _, status = os.waitpid(child, 0)
     # The child has ended: what comes now would end the process while it reports that.
     signal.setitimer(signal.ITIMER_REAL, 0)
@@ -230,6 +229,28 @@ def _wait(child: int, reader: int) -> int:
     text, code = _what_happened(signal.Signals(os.WTERMSIG(status)), stages, ended_by)
     sys.stderr.write(f"vizlight: {text}\n")
     return code
+
+
+def _lines(reader: int) -> Iterator[bytes]:
+    """Yield the lines that a child writes until it ends; signals are let through meanwhile.
+
+    A signal just before a read that waits would be handled only when that returns: it wakes the
+    wait by a pipe of its own.
+    """
+    wake, woken = os.pipe()
+    os.set_blocking(woken, False)
+    signal.set_wakeup_fd(woken)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+    begun = b""
+    while True:
+        ready, _, _ = select.select([reader, wake], [], [])
+        if wake in ready:
+            os.read(wake, 1)
+        if reader in ready:
+            if not (text := os.read(reader, 1 << 16)):
+                return
+            *lines, begun = (begun + text).split(b"\n")
+            yield from lines
 
 
 def _what_happened(

@@ -17,7 +17,7 @@ import vizlight
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Foreign
+    from vizlight._types import Foreign, Function
 
 __all__ = ["Accessor"]
 
@@ -54,7 +54,7 @@ class _Method(Generic[Options, Result]):
         return made
 
 
-def _plot() -> Callable[..., object]:
+def _plot() -> Function:
     from vizlight.draw.show import plot
 
     return plot

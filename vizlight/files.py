@@ -49,9 +49,7 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Foreign
+    from vizlight._types import Foreign, Raw
 
 __all__ = [
     "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
@@ -541,7 +539,7 @@ def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
     return blocks.moved(georeference.in_metres(mesh), np.zeros(3), np.array([1.0, 1.0, factor]))
 
 
-def _scalars(mesh: pv.DataSet, argument: str, name: str) -> NDArray[np.generic]:
+def _scalars(mesh: pv.DataSet, argument: str, name: str) -> Raw:
     """Return a point array of one component, or raise an error that names the argument."""
     data = mesh.point_data
     _check.text(argument, name, expected="the name of a point array")

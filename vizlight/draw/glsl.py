@@ -19,7 +19,7 @@ from vizlight.shading.terms import light
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from vizlight.model.manifolds import Value
+    from vizlight._types import Value
     from vizlight.shading.plan import Plan
 
 _INPUTS = {

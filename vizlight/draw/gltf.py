@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Given, Indices
+    from vizlight._types import Array, Given, Indices, Raw
     from vizlight.filters.relight import Source
     from vizlight.filters.tint import ColorMap
 
@@ -206,9 +206,7 @@ class _File:
         self.nodes.append({"name": name, "mesh": len(self.meshes), "translation": centre.tolist()})
         self.meshes.append({"name": name, "primitives": primitives})
 
-    def put(
-        self, rows: NDArray[np.generic], kind: str, shape: str, target: int, **extra: object
-    ) -> int:
+    def put(self, rows: Raw, kind: str, shape: str, target: int, **extra: object) -> int:
         """Append an array to the buffer and return the index of its accessor."""
         data = np.ascontiguousarray(rows, kind)
         self.views.append(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Keywords
+    from vizlight._types import Keywords, Raw
     from vizlight.scene import Scene
 
 #: Options of light that a live light takes; an actor has a name of its own.
@@ -175,7 +175,7 @@ def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywor
     return {"clim": (float(known.min()), float(known.max()))}
 
 
-def _array(mesh: pv.DataSet, name: str, *, of_cells: bool) -> NDArray[np.generic] | None:
+def _array(mesh: pv.DataSet, name: str, *, of_cells: bool) -> Raw | None:
     """Return an array of a mesh, of its points or of its cells."""
     places = (mesh.cell_data, mesh.point_data) if of_cells else (mesh.point_data, mesh.cell_data)
     return next((np.asarray(data[name]) for data in places if name in data), None)
@@ -198,7 +198,7 @@ def _attached(
     return copy
 
 
-def as_bytes(colors: NDArray[np.generic]) -> NDArray[np.uint8]:
+def as_bytes(colors: Raw) -> NDArray[np.uint8]:
     """Return colours as bytes: those given as bytes as they are, others from 0 to 1 as shares.
 
     Raises

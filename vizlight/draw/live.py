@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
@@ -26,17 +26,15 @@ from vizlight.vtk.arrays import is_of_cells
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Bools, Foreign, Indices, Keywords
+    from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
     from vizlight.shading.display import Bytes
     from vizlight.shading.inputs import Layout, ShadingInputs
     from vizlight.shading.options import ShadingOptions
 
-Number = TypeVar("Number", bound=np.generic)
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]
 #: Names of the arrays that the drawn copy of a mesh has beside the mesh's own.
@@ -114,7 +112,7 @@ class Live:
             mesh, self._shown = blocks.outer_surface(mesh)
         self.drawn.shallow_copy(mesh)
 
-    def picked(self, rows: NDArray[Number]) -> NDArray[Number]:
+    def picked(self, rows: AnyArray) -> AnyArray:
         """Return the rows of the points that are drawn, from one for each point of the mesh."""
         if self._shown is None:
             return rows
@@ -142,7 +140,7 @@ class Live:
             _check.warn(f"the colours of {scalars!r} are averaged from cells to points")
         self._color(self._values())
 
-    def _values(self) -> NDArray[np.generic] | None:
+    def _values(self) -> Raw | None:
         """Return the values that are coloured; None for an array of the mesh as it is."""
         mesh, name = self.source.mesh, self.given
         if name is None or (is_of_cells(mesh, name) and not self._averaged):
@@ -150,13 +148,13 @@ class Live:
         values = values_of(mesh, name, self._component)
         return values if self._averaged or mesh.point_data[name].ndim > 1 else None
 
-    def _color(self, values: NDArray[np.generic] | None) -> None:
+    def _color(self, values: Raw | None) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
         if values is not None:
             self.scalars = VALUES
             records.attach_rows(self.drawn, VALUES, self.picked(values))
 
-    def shown_values(self) -> NDArray[np.generic]:
+    def shown_values(self) -> Raw:
         """Return the values or colours that are drawn, one row per point or per cell."""
         name, points = self.scalars or "", self.drawn.point_data
         return np.asarray(points[name] if name in points else self.drawn.cell_data[name])
@@ -385,7 +383,7 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     return Scene(lights=lights, material=material, view=view)
 
 
-def _write(mesh: pv.DataSet, name: str, values: NDArray[np.generic]) -> None:
+def _write(mesh: pv.DataSet, name: str, values: Raw) -> None:
     """Write values to an array of a mesh, in place where they fit."""
     array = mesh.point_data[name]
     if array.shape != values.shape or array.dtype != values.dtype:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Foreign, Given
+    from vizlight._types import Foreign, Given, Raw
     from vizlight.scene import Scene
 
     Picture = NDArray[np.uint8]
@@ -288,7 +288,7 @@ def _draw_active(mesh: Mesh, drawing: render.PlotterKeywords) -> None:
         drawing["clim"] = ends
 
 
-def _range(arrays: Iterable[NDArray[np.generic]]) -> tuple[float, float] | None:
+def _range(arrays: Iterable[Raw]) -> tuple[float, float] | None:
     """Return the minimum and the maximum of the finite numbers in arrays of one component."""
     numbers = [x for x in arrays if x.ndim == 1 and x.dtype.kind in "biuf"]
     finite = np.concatenate([[], *(x[np.isfinite(x)] for x in numbers)])

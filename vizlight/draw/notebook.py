@@ -13,12 +13,10 @@ import pyvista as pv
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Foreign
+    from vizlight._types import Foreign, Function
 
     #: Takes a plotter and the options of the backend, returns what the notebook displays.
-    Handler = Callable[..., object]
+    Handler = Function
 
 #: Backends that draw in the browser, or may: there nothing computes the light.
 DRAWN_BY_THE_BROWSER = ("client", "html", "trame")
@@ -120,7 +118,7 @@ def guard() -> None:
             pv.jupyter.register_jupyter_backend(registered.name, guarded, override=True)
 
 
-def _refusing(plotter: pv.BasePlotter, owner: Foreign, name: str) -> Callable[..., object]:
+def _refusing(plotter: pv.BasePlotter, owner: Foreign, name: str) -> Function:
     """Return a method that writes the scene, unless there is live light in it."""
     # The owner has this as an attribute, and is to be released with its last reference.
     weak = weakref.ref(plotter), weakref.ref(owner)

@@ -27,10 +27,9 @@ from vizlight.shading.plan import decide
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Raw
     from vizlight.draw.live import Live
     from vizlight.filters.relight import Source
     from vizlight.shading.plan import Plan
@@ -407,12 +406,12 @@ def _hex(color: Sequence[float]) -> str:
     return "#" + bytes(round(255 * c) for c in color[:3]).hex()
 
 
-def _numbers_of(live: Live) -> dict[str, NDArray[np.generic]]:
+def _numbers_of(live: Live) -> dict[str, Raw]:
     """Return the arrays of a drawn mesh that can be coloured, one number per point or cell."""
     of_cells = live.scalars is not None and live.scalars not in live.drawn.point_data
     data = live.drawn.cell_data if of_cells else live.drawn.point_data
     made = records.all_made(live.source.mesh)
-    found: dict[str, NDArray[np.generic]] = {}
+    found: dict[str, Raw] = {}
     for name in data:
         array = np.asarray(data[name])
         own = name.startswith("vizlight ") or name in made or name == "Normals"
@@ -425,7 +424,7 @@ def _numbers_of(live: Live) -> dict[str, NDArray[np.generic]]:
     return found
 
 
-def _ends(rows: Sequence[NDArray[np.generic]]) -> tuple[float, float] | None:
+def _ends(rows: Sequence[Raw]) -> tuple[float, float] | None:
     """Return the least and the largest finite value, None if there are not two."""
     values = [np.asarray(row, dtype=np.float64) for row in rows]
     finite = [row[np.isfinite(row)] for row in values]
@@ -434,7 +433,7 @@ def _ends(rows: Sequence[NDArray[np.generic]]) -> tuple[float, float] | None:
     return (low, high) if low < high and np.isfinite(high - low) else None
 
 
-def _codes(values: NDArray[np.generic], ends: tuple[float, float]) -> dict[str, object]:
+def _codes(values: Raw, ends: tuple[float, float]) -> dict[str, object]:
     """Return values in 16 bits between the ends of a range."""
     rows = np.asarray(values, dtype=np.float64)
     known = np.isfinite(rows)
@@ -458,7 +457,7 @@ def _ended(cue: DepthCue | None) -> DepthCue | None:
     return dataclasses.replace(cue, front=0.0, back=1.0)
 
 
-def _packed(values: NDArray[np.generic], kind: str) -> dict[str, object]:
+def _packed(values: Raw, kind: str) -> dict[str, object]:
     """Return whole numbers, compressed and as text.
 
     Numbers of several bytes are kept as differences from row to row, signed numbers as differences

@@ -14,11 +14,9 @@ from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Given, Keywords
+    from vizlight._types import Foreign, Function, Given, Keywords
     from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
@@ -133,7 +131,7 @@ def _size(window_size: object) -> tuple[int, int]:
     return int(sides[0]), int(sides[1])
 
 
-def _taken(given: Keywords, function: Callable[..., object]) -> Keywords:
+def _taken(given: Keywords, function: Function) -> Keywords:
     """Take from keywords those of a function."""
     known = inspect.signature(function).parameters
     return {name: given.pop(name) for name in [*given] if name in known}

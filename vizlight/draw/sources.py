@@ -28,7 +28,7 @@ from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:
-    from vizlight._types import Indices, Keywords
+    from vizlight._types import Indices, Keywords, Rows
     from vizlight.filters.relight import Source
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import FeatureAngle
@@ -179,7 +179,7 @@ def _side(size: Indices, axis: int, end: int) -> Indices:
 
 
 def fixed_colors(
-    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
+    source: Source, scene: Scene, colors: Bytes | None, ids: Rows = EVERY
 ) -> tuple[Bytes, str]:
     """Return colours in light that stays as it is when the eye moves.
 
@@ -220,9 +220,7 @@ def fixed_colors(
     return lit_colors(_on_one_side(source, bare.view), bare, colors, ids), " and ".join(seen)
 
 
-def lit_colors(
-    source: Source, scene: Scene, colors: Bytes | None, ids: Indices | slice = EVERY
-) -> Bytes:
+def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Rows = EVERY) -> Bytes:
     """Return colours of data, or of the material, in light, as bytes of shape (M, 4)."""
     if colors is not None:
         light, valid = light_on_colors([source], scene)[0]

@@ -26,7 +26,7 @@ from vizlight.vtk.arrays import vectors_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Indices, VectorLike
+    from vizlight._types import Array, Indices, Slice, VectorLike
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
@@ -359,7 +359,7 @@ class _Coat:
             normals = tangents if upright else np.empty((count, 3), single)
         heights: Array | None = np.empty((count, m), single) if options.lost else None
 
-        def work(block: slice) -> int:
+        def work(block: Slice) -> int:
             face, weights = geometry.seed_block(self.total, block.start, count, options.seed)
             phases = self._phases(block.start, len(face))
             reversed_ = 0

@@ -18,9 +18,9 @@ from vizlight.shading.results import VALID, plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, Raw
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import FeatureAngle
@@ -118,7 +118,7 @@ def relief_day(
     t = np.zeros((found.n_points, len(toward)))
     for seen, hour in enumerate(np.flatnonzero(toward[:, 2] > 0)):
         t[:, hour] = found.point_data[f"{name}_{seen}"]
-    arrays: dict[str, NDArray[np.generic]] = {name: t, mean: t.mean(axis=1)}
+    arrays: dict[str, Raw] = {name: t, mean: t.mean(axis=1)}
     if name + VALID in found.point_data:
         arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
     record = records.provenance(found, name)

@@ -31,9 +31,7 @@ from vizlight.vtk.parts import share_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Keywords, Raw
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import FieldCaster, SolidCaster
@@ -241,7 +239,7 @@ def relief_shadow(
     if shading is not None:
         light = of_light(shading, "relief_shadow", scene, asked)
         attach(out, shading, DEFAULT_NAME, light, occlusion=share_of(sunlit, asked.occlusion))
-    arrays: dict[str, NDArray[np.generic]] = {one: t[:, i].copy() for i, one in enumerate(each)}
+    arrays: dict[str, Raw] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
     missing = int(np.count_nonzero(~shadow.valid))
     if missing:

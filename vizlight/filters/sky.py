@@ -28,9 +28,7 @@ from vizlight.vtk.polylines import has_lines_only
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Given
+    from vizlight._types import Given, Raw
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.sky import Sky
     from vizlight.shading.options import FeatureAngle
@@ -327,7 +325,7 @@ def _attach(
     lost = total = dark = 0
     bent, length = 0.0, 0.0
     for mesh, made in zip(meshes, found, strict=True):
-        arrays: dict[str, NDArray[np.generic]] = {asked.name: made.share}
+        arrays: dict[str, Raw] = {asked.name: made.share}
         dark += made.dark
         if made.between > bent:
             bent, length = made.between, mesh.length

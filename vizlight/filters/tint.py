@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vizlight._types import Array, Bools, ColorLike, Foreign, Keywords
+    from vizlight._types import Array, Bools, ColorLike, Foreign, Keywords, Raw, Slice
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.display import Bytes
     from vizlight.shading.results import Record
@@ -167,7 +167,7 @@ def tint(
     return lit if inplace else blocks.like(lit, iter(meshes))
 
 
-def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | slice]:
+def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
     """Return a mesh whose cells have the colours of their values, and the point each point was."""
     of_cells = isinstance(scalars, str) and is_of_cells(mesh, scalars)
     if isinstance(scalars, str) and of_cells and isinstance(mesh, pv.PolyData) and has_faces(mesh):
@@ -182,14 +182,14 @@ def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
     )
 
 
-def are_colors(array: NDArray[np.generic]) -> bool:
+def are_colors(array: Raw) -> bool:
     """Return whether an array holds colours as bytes, not values."""
     return array.ndim == 2 and array.dtype == np.uint8 and array.shape[1] in (3, 4)
 
 
 def values_of(
     mesh: pv.DataSet, scalars: str | ArrayLike | None, component: int | None = None
-) -> NDArray[np.generic]:
+) -> Raw:
     """Return the values that are coloured, one per point, or bytes that are colours already."""
     if scalars is None:
         scalars = mesh.point_data.active_scalars_name
@@ -204,7 +204,7 @@ def values_of(
             known = _check.one_of([*mesh.point_data, *mesh.cell_data])
             expected = f"a point array or a cell array, {known}"
             raise ValueError(_check.message("scalars", expected, repr(scalars)))
-        array: NDArray[np.generic] = np.asarray(mesh.point_data[scalars])
+        array: Raw = np.asarray(mesh.point_data[scalars])
     else:
         array = _check.reals("scalars", scalars)
         if array.ndim not in (1, 2) or len(array) != mesh.n_points:
@@ -233,7 +233,7 @@ def values_of(
 
 
 def color_table(
-    values: Sequence[NDArray[np.generic]],
+    values: Sequence[Raw],
     *,
     cmap: ColorMap = None,
     clim: Sequence[float] | float | None = None,
@@ -260,7 +260,7 @@ def color_table(
     colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}
     known: Keywords = {name: _known_color(name, color) for name, color in colors.items()}
     # PyVista looks at values to count categories alone.
-    sample: NDArray[np.generic] = np.zeros(1)
+    sample: Raw = np.zeros(1)
     if categories is True and any(len(part) for part in values):
         sample = np.unique(np.concatenate([np.unique(part) for part in values]))
     mapper = pv.DataSetMapper(pv.PolyData(np.zeros((len(sample), 3))))
@@ -291,7 +291,7 @@ def color_table(
     return table
 
 
-def _range(values: Sequence[NDArray[np.generic]]) -> tuple[float, float]:
+def _range(values: Sequence[Raw]) -> tuple[float, float]:
     """Return the smallest and the largest finite value, (0, 1) without any."""
     ends = []
     for part in values:
@@ -337,9 +337,7 @@ def _known_color(name: str, color: ColorLike | None) -> pv.Color | None:
         raise ValueError(_check.message(name, expected, _check.describe(color))) from error
 
 
-def map_colors(
-    table: pv.LookupTable, values: NDArray[np.generic], *, components: Literal[3, 4] = 4
-) -> Bytes:
+def map_colors(table: pv.LookupTable, values: Raw, *, components: Literal[3, 4] = 4) -> Bytes:
     """Return the colours of values, or colours as they are, as bytes of 3 or 4 components."""
     if not len(values):
         return np.zeros((0, components), np.uint8)

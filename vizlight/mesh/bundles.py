@@ -18,9 +18,7 @@ from vizlight.vtk import polylines
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Raw
     from vizlight.geometry.lines.bundle import Medium
     from vizlight.scene import Light, Scene
     from vizlight.shading.inputs import ShadingInputs
@@ -315,7 +313,7 @@ def _kept(
     return keys, Dimming(shares, {**facts, "source": digest, "lights": keys})
 
 
-def _digest(*arrays: NDArray[np.generic]) -> str:
+def _digest(*arrays: Raw) -> str:
     """Return a digest of arrays."""
     digest = hashlib.sha256()
     for array in arrays:

@@ -20,9 +20,7 @@ from vizlight.mesh import brains, georeference, polylines, series
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Foreign, Indices, Keywords
+    from vizlight._types import Array, Foreign, Indices, Keywords, Raw
 
 #: Package that reads the files of a suffix, and the extra that installs it.
 PACKAGES = {
@@ -223,8 +221,8 @@ def _polylines(
     points: Array,
     starts: Indices,
     lengths: Indices,
-    of_points: Mapping[str, NDArray[np.generic]],
-    of_lines: Mapping[str, NDArray[np.generic]],
+    of_points: Mapping[str, Raw],
+    of_lines: Mapping[str, Raw],
 ) -> pv.PolyData:
     """Return a mesh with one polyline for each line that has points; arrays are copied."""
     lengths = np.asarray(lengths, dtype=np.intp)
@@ -252,7 +250,7 @@ def _polylines(
     return mesh
 
 
-def _attach(data: pv.DataSetAttributes, name: object, array: NDArray[np.generic]) -> None:
+def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
     """Attach numbers as rows; rows of one component become flat."""
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)

@@ -14,9 +14,7 @@ from vizlight.mesh import blocks
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Foreign
+    from vizlight._types import Array, Foreign, Raw, Slice
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
@@ -188,10 +186,10 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     return grid
 
 
-def _bands(file: Foreign) -> dict[str, NDArray[np.generic]]:
+def _bands(file: Foreign) -> dict[str, Raw]:
     """Return the bands by name, each with the shape (rows, columns) or (rows, columns, 3)."""
     count = file.count
-    found = {}
+    found: dict[str, Raw] = {}
     for i in range(count):
         if np.dtype(file.dtypes[i]).kind not in "iuf":
             continue
@@ -203,11 +201,12 @@ def _bands(file: Foreign) -> dict[str, NDArray[np.generic]]:
     if kinds == [*_COLORS] and all(file.dtypes[i] == "uint8" for i in range(3)):
         colors = [*found.values()]
         rest = dict([*found.items()][3:])
-        return {"rgb": np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)} | rest
+        rgb: Raw = np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)
+        return {"rgb": rgb} | rest
     return found
 
 
-def _band(file: Foreign, i: int) -> NDArray[np.generic]:
+def _band(file: Foreign, i: int) -> Raw:
     """Return the values of a band in the file's unit, NaN where they are missing."""
     rows = file.read(i + 1, masked=True)
     scale, offset = file.scales[i], file.offsets[i]
@@ -221,7 +220,7 @@ def _band(file: Foreign, i: int) -> NDArray[np.generic]:
     return np.asarray(values)
 
 
-def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[slice, slice]]:
+def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice, Slice]]:
     """Return the grid of a raster, and the order of rows and columns along which x and y rise."""
     a, b, c, d, e, f = tuple(file.transform)[:6]
     if file.transform.is_identity:

@@ -22,7 +22,7 @@ from vizlight.vtk.cells import connectivity, has_faces
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vizlight._types import AnyArray, Array, Bools, Indices, VectorLike
+    from vizlight._types import AnyArray, Array, Bools, Indices, Sparse, VectorLike
     from vizlight.shading.results import Record
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
@@ -415,7 +415,7 @@ def cut(
     return out
 
 
-def _sparse(parts: Array, columns: Indices, count: int) -> scipy.sparse.csr_array:
+def _sparse(parts: Array, columns: Indices, count: int) -> Sparse:
     """Return a sparse array of rows with equally many parts in given columns."""
     ends = np.arange(0, parts.size + 1, parts.shape[1])
     made = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
@@ -423,7 +423,7 @@ def _sparse(parts: Array, columns: Indices, count: int) -> scipy.sparse.csr_arra
     return made
 
 
-def _mean_frames(array: Array, between: scipy.sparse.csr_array, n: int) -> Array:
+def _mean_frames(array: Array, between: Sparse, n: int) -> Array:
     """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), FRAMES):

@@ -19,9 +19,7 @@ from vizlight.vtk.cells import as_numpy, as_vtk, cell_data, field_data, point_da
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import NDArray
-
-    from vizlight._types import Foreign, Keywords
+    from vizlight._types import Foreign, Keywords, Raw
     from vizlight.mesh.blocks import DataSetT
     from vizlight.shading.results import Record
 
@@ -32,7 +30,7 @@ ANY = "any"
 def attach(
     mesh: pv.DataSet,
     name: str,
-    arrays: Mapping[str, NDArray[np.generic]],
+    arrays: Mapping[str, Raw],
     record: Record,
     common: str = "",
 ) -> None:
@@ -263,7 +261,7 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     return out
 
 
-def attach_rows(mesh: pv.DataSet, name: str, array: NDArray[np.generic]) -> None:
+def attach_rows(mesh: pv.DataSet, name: str, array: Raw) -> None:
     """Attach a point array; a part of a larger array is copied."""
     if array.dtype in (np.float32, np.float64) or not len(array):
         # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an

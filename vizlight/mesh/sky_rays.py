@@ -21,7 +21,7 @@ from vizlight.mesh.closed_meshes import Tracer
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Slice
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6
@@ -247,7 +247,7 @@ def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array
 
 def _starts(
     points: Array, ways: Array, net: tuple[Array, Array], away: float
-) -> Iterator[tuple[slice, Array, Array]]:
+) -> Iterator[tuple[Slice, Array, Array]]:
     """Yield some points, and the starts and directions of their rays, one ray of each at a time."""
     toward, outward = net
     count = len(toward)

@@ -19,10 +19,9 @@ from vizlight.vtk.cells import connectivity, has_faces
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Raw, Sparse
     from vizlight.shading.results import Record
 
 #: Number of bits of the smaller number of a pair.
@@ -210,7 +209,7 @@ class Cells:
         self.corners[rows] = made[first]
         return np.concatenate([rows, np.arange(before, len(self.corners))])
 
-    def shares(self) -> scipy.sparse.csr_array:
+    def shares(self) -> Sparse:
         """Return the weights of the points of the mesh in all points, shape (N + new, N)."""
         numbers = np.arange(self.count + 1)
         found = scipy.sparse.csr_array((np.ones(self.count), numbers[:-1], numbers))
@@ -313,7 +312,7 @@ def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
     return rebuilt(mesh, cells, origin, {})
 
 
-def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_array) -> pv.CellArray:
+def _split_lines(lines: vtkCellArray, parts: Cells, shares: Sparse) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
     if not len(parts.corners):  # lines of one point
         own = pv.CellArray()
@@ -337,9 +336,7 @@ def _split_lines(lines: vtkCellArray, parts: Cells, shares: scipy.sparse.csr_arr
     return blocks.cell_array(points[place], ends)
 
 
-def _interpolated(
-    rows: NDArray[np.generic], shares: scipy.sparse.csr_array, *, places: bool = False
-) -> NDArray[np.generic]:
+def _interpolated(rows: Raw, shares: Sparse, *, places: bool = False) -> Raw:
     """Return values of a point array at new points, given the shares of the mesh's points.
 
     Places are not directions, although they may have the length 1, as on a sphere.

@@ -12,12 +12,12 @@ from vizlight.model import kernels
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, FloatType, Indices
 
 __all__ = ["orthonormalize", "split"]
 
 
-def default_rtol(n: int, dtype: np.dtype[np.floating]) -> float:
+def default_rtol(n: int, dtype: FloatType) -> float:
     """Return the relative distance from a span below which a vector counts as inside it."""
     return float(8 * np.sqrt(n) * np.finfo(dtype).eps)
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from functools import reduce
 from operator import add
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy import absolute, maximum, minimum, sqrt
@@ -24,11 +24,8 @@ from vizlight.model.formulas import clamp, only, power, where
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import Vector
+    from vizlight._types import FloatType, Value, Vector
 
-#: A number or a vector of an algebra: whatever NumPy's functions and operators accept, such as an
-#: array. No static type says that.
-Value: TypeAlias = Any
 #: A direction whose part across the line is at most this many eps counts as along the line: its
 #: azimuth about the line is then rounding error alone.
 ALONG = 8.0
@@ -74,7 +71,7 @@ class Vectors(Protocol):
 class Arrays:
     """The algebra of component-first arrays of one type."""
 
-    def __init__(self, kind: np.dtype[np.floating]) -> None:
+    def __init__(self, kind: FloatType) -> None:
         self.type = kind.type
         self.least = ALONG * float(np.finfo(kind).eps)
 

@@ -29,10 +29,10 @@ from vizlight.verify.between import Places, interpolated, mean_spaces
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
     from vtkmodules.vtkCommonCore import vtkPoints
 
-    from vizlight._types import Array, Bools, Indices, Keywords
+    from vizlight._types import Array, Bools, Indices, Keywords, Raw, Rows
     from vizlight.scene.conversion import AnyView
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
@@ -84,7 +84,7 @@ class Sample:
     def __len__(self) -> int:
         return len(self.points)
 
-    def take(self, rows: Indices | slice | Bools) -> Sample:
+    def take(self, rows: Rows) -> Sample:
         """Return some of the places."""
         own = {
             field.name: getattr(self, field.name)[rows]
@@ -250,7 +250,7 @@ class Part:
     inputs: ShadingInputs
     options: LightOptions
     shares: dict[str, Array]
-    values: NDArray[np.generic] | None
+    values: Raw | None
 
     @property
     def drawn(self) -> tuple[vtkPoints, Indices]:
@@ -328,7 +328,7 @@ def _shares(mesh: pv.DataSet, lights: int) -> dict[str, Array]:
     return found
 
 
-def rows_of(source: ArraySource, ids: Indices) -> NDArray[np.generic]:
+def rows_of(source: ArraySource, ids: Indices) -> Raw:
     """Return rows of points or of an array by their numbers."""
     return np.asarray(source[:])[ids]
 

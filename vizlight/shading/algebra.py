@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.model import falloff
-from vizlight.model.manifolds import ALONG, Value, Vectors
+from vizlight.model.manifolds import ALONG, Vectors
 from vizlight.scene.light import WHITE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from vizlight._types import Color, Vector
+    from vizlight._types import Color, Value, Vector
     from vizlight.model.manifolds import Highlight
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Plan

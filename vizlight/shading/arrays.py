@@ -16,10 +16,9 @@ from vizlight.shading.terms import light
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import DTypeLike, NDArray
+    from numpy.typing import DTypeLike
 
-    from vizlight._types import Array, Bools, Keywords, Vector
-    from vizlight.model.manifolds import Value
+    from vizlight._types import Array, Bools, Keywords, Raw, Slice, Value, Vector
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
@@ -80,18 +79,18 @@ class Shading:
             plan=plan,
         )
 
-    def arrays(self) -> dict[str, NDArray[np.generic]]:
+    def arrays(self) -> dict[str, Raw]:
         """Return the arrays that there are."""
         return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
 
-    def part(self, _: int, rows: slice, /) -> Shading:
+    def part(self, _: int, rows: Slice, /) -> Shading:
         """Return the light of some points, with a share of the time."""
         share = (rows.stop - rows.start) / max(self.luminance.size, 1)
         own: Keywords = {name: array[rows] for name, array in self.arrays().items()}
         return dataclasses.replace(self, **own, seconds=self.seconds * share)
 
 
-def shade_block(plan: Plan, rows: slice, inputs: ShadingInputs, output: Shading) -> None:
+def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading) -> None:
     """Light the points of some rows of normals or tangents.
 
     Overflow and underflow are handled; the caller silences NumPy's warnings about them.
@@ -118,7 +117,7 @@ class Arrays(Algebra):
 
     inputs: ShadingInputs
 
-    def __init__(self, plan: Plan, inputs: ShadingInputs, rows: slice) -> None:
+    def __init__(self, plan: Plan, inputs: ShadingInputs, rows: Slice) -> None:
         super().__init__(plan, inputs)
         self.rows, self.type = rows, plan.dtype.type
         self.valid: Bools | None = None
@@ -251,7 +250,7 @@ class Arrays(Algebra):
         self.made[name] = value
 
 
-def columns(rows: ArraySource, block: slice, work: DTypeLike = np.float32) -> Array:
+def columns(rows: ArraySource, block: Slice, work: DTypeLike = np.float32) -> Array:
     """Return a block of rows component by component, in the wider precision of rows and work.
 
     Float64 vectors are thus normalised before float32 work rounds them.

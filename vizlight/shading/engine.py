@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, DTypeLike
 
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Keywords, Slice
     from vizlight.scene import View
     from vizlight.shading.options import Exponent
 
@@ -314,7 +314,7 @@ def run(
     light = shade_block if code is None else code.shade_block
     step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
 
-    def work(rows: slice) -> int:
+    def work(rows: Slice) -> int:
         # Overflow and NaN of single points are wanted: the terms mark them instead of warning.
         with np.errstate(all="ignore"):
             light(made, rows, inputs, shading)

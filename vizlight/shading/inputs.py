@@ -13,9 +13,9 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices, Vector
+    from vizlight._types import AnyArray, Array, Indices, RawType, Rows, Vector
 
 
 #: Names of the arrays: vectors of the space, and numbers.
@@ -31,10 +31,10 @@ class ArraySource(Protocol):
         """The shape; the first axis counts the points."""
 
     @property
-    def dtype(self) -> np.dtype[np.generic]:
+    def dtype(self) -> RawType:
         """The type of the numbers."""
 
-    def __getitem__(self, rows: slice, /) -> NDArray[np.generic]:
+    def __getitem__(self, rows: Rows, /) -> AnyArray:
         """Return some rows."""
 
 

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Vector
-    from vizlight.model.manifolds import Value
+    from vizlight._types import Array, Raw, Slice, Value, Vector
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
@@ -105,12 +104,12 @@ class Program(NamedTuple):
         """The compiled function, which is not compiled before its first call."""
         return _kernel(self.source)
 
-    def shade_block(self, plan: Plan, rows: slice, inputs: ShadingInputs, output: Shading) -> None:
+    def shade_block(self, plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading) -> None:
         """Light the points of some rows; as :func:`vizlight.shading.arrays.shade_block`."""
         for at, part in _parts(rows, inputs):
             self._shade_points(plan, at, part, output)
 
-    def _shade_points(self, plan: Plan, at: slice, part: ShadingInputs, output: Shading) -> None:
+    def _shade_points(self, plan: Plan, at: Slice, part: ShadingInputs, output: Shading) -> None:
         kind, count, whole = plan.dtype, part.count, at.step is None
         light: Array = output.luminance[at] if whole else np.empty(count, kind)
         terms = np.empty((2, count if plan.components else 0), kind)
@@ -268,7 +267,7 @@ def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
     return program(bare, tuple(kinds))
 
 
-def _flat(source: ArraySource | NDArray[np.generic] | None, kind: str) -> Array:
+def _flat(source: ArraySource | Raw | None, kind: str) -> Array:
     """Return all rows of an array one after the other, in the type that a kernel reads."""
     if source is None or not kind:
         return np.empty(0, np.float32)
@@ -276,7 +275,7 @@ def _flat(source: ArraySource | NDArray[np.generic] | None, kind: str) -> Array:
     return flat
 
 
-def _parts(rows: slice, inputs: ShadingInputs) -> Iterator[tuple[slice, ShadingInputs]]:
+def _parts(rows: Slice, inputs: ShadingInputs) -> Iterator[tuple[Slice, ShadingInputs]]:
     """Yield the places of one point of each row, and their inputs as arrays."""
     repeat, count = inputs.repeat, inputs.count
     sources = {name: x for name in (*PLACED, *SHARES) if (x := getattr(inputs, name)) is not None}
@@ -288,7 +287,7 @@ def _parts(rows: slice, inputs: ShadingInputs) -> Iterator[tuple[slice, ShadingI
 
 
 def _light_again(
-    plan: Plan, at: slice, odd: NDArray[np.intp], part: ShadingInputs, output: Shading
+    plan: Plan, at: Slice, odd: NDArray[np.intp], part: ShadingInputs, output: Shading
 ) -> None:
     """Light some points of a block by NumPy."""
     few = dataclasses.replace(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike
 
-    from vizlight._types import Vector
+    from vizlight._types import FloatType, Vector
     from vizlight.shading.inputs import Layout
     from vizlight.shading.options import Model, ShadingOptions
 
@@ -86,7 +86,7 @@ class Plan:
 
     n: int
     k: int
-    dtype: np.dtype[np.floating]
+    dtype: FloatType
     scene: Scene
     options: ShadingOptions
     exponent: float
@@ -376,7 +376,7 @@ def _exponent(options: ShadingOptions, k: int, n: int) -> float:
     return options.exponent
 
 
-def _precision(dtype: DTypeLike) -> np.dtype[np.floating]:
+def _precision(dtype: DTypeLike) -> FloatType:
     for kind in (np.dtype(np.float32), np.dtype(np.float64)):
         # Comparison refuses what is no type.
         if isinstance(dtype, str | type | np.dtype) and kind == dtype:

@@ -15,9 +15,7 @@ from vizlight._version import __version__
 from vizlight.shading.options import Options
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array
+    from vizlight._types import Array, Raw
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
 
@@ -40,7 +38,7 @@ def part_name(name: str, part: str) -> str:
 
 def arrays_of(
     shading: Shading, name: str, *, occlusion: Array | None = None, valid: bool = False
-) -> dict[str, NDArray[np.generic]]:
+) -> dict[str, Raw]:
     """Return the arrays of a result by their names, the light itself last.
 
     Parameters
@@ -54,7 +52,7 @@ def arrays_of(
     valid : bool
         Whether the array of the points that could be lit is there even if all could.
     """
-    parts: dict[str, NDArray[np.generic]] = {}
+    parts: dict[str, Raw] = {}
     if shading.diffuse is not None and shading.specular is not None:
         ambient = np.full_like(shading.luminance, shading.plan.ambient)
         if occlusion is not None:
@@ -82,7 +80,7 @@ def record_key(name: str) -> str:
     return f"{name}_provenance"
 
 
-def digest(array: NDArray[np.generic]) -> str:
+def digest(array: Raw) -> str:
     """Return a digest of the shape and the bytes of an array."""
     rows = np.ascontiguousarray(array)
     return f"{'x'.join(str(n) for n in rows.shape)}:{zlib.crc32(rows.view(np.uint8).data):08x}"
@@ -133,7 +131,7 @@ def _plain(value: object) -> object:
         return [_plain(part) for part in value]
     if dataclasses.is_dataclass(value):
         return plain(value)
-    array: NDArray[np.generic] = np.asarray(value)
+    array: Raw = np.asarray(value)
     if array.size <= WRITTEN_OUT and array.dtype.kind in "biufU":
         # JSON holds at most the digits of float64.
         return (array.astype(np.float64) if array.dtype.kind == "f" else array).tolist()

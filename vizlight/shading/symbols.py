@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from vizlight.model.manifolds import Value
+    from vizlight._types import Value
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Plan
 

@@ -28,7 +28,8 @@ from vizlight.scene.light import NO_ATTENUATION
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vizlight.model.manifolds import Highlight, Split, Value
+    from vizlight._types import Value
+    from vizlight.model.manifolds import Highlight, Split
     from vizlight.shading.algebra import Algebra, Lamp, Total
     from vizlight.shading.plan import Plan
 

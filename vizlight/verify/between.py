@@ -18,7 +18,7 @@ from vizlight.model.frames import orthonormalize
 from vizlight.shading import engine
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Rows
     from vizlight.scene import Light, Scene, View
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -257,7 +257,7 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     return np.asarray(total)[:, np.newaxis]
 
 
-def columns(shading: Shading, rows: Indices | slice = slice(None)) -> Array:
+def columns(shading: Shading, rows: Rows = slice(None)) -> Array:
     """Return luminance and colour of points, shape (N, 1) or (N, 4)."""
     light = shading.luminance[rows, np.newaxis]
     found = light if shading.rgb is None else np.hstack([light, shading.rgb[rows]])

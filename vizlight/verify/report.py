@@ -20,7 +20,7 @@ from vizlight.verify import between, oracle
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Array, Bools, Foreign, Indices
+    from vizlight._types import Array, Bools, Foreign, Indices, Slice
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -547,7 +547,7 @@ def _reference(
     n, row = given.points.shape[1], i // given.repeat
     own, shared = slice(i, (row + 1) * given.repeat, given.repeat), slice(row, row + 1)
 
-    def numbers(rows: ArraySource, at: slice) -> list[float]:
+    def numbers(rows: ArraySource, at: Slice) -> list[float]:
         values: list[float] = np.asarray(rows[at], dtype=np.float64).ravel().tolist()
         return values
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
-    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices
+    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
     from vizlight.shading.inputs import ArraySource
 
 
@@ -43,7 +43,7 @@ class GridPoints:
                 [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
             )
 
-    def __getitem__(self, rows: slice, /) -> Array:
+    def __getitem__(self, rows: Rows, /) -> Array:
         """Return a slice of the points; the first index varies fastest."""
         return self.at(np.arange(*rows.indices(self.shape[0])))
 

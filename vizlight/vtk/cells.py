@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkAbstractArray
     from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
-    from vizlight._types import AnyArray, Bools, Foreign, Indices
+    from vizlight._types import AnyArray, Bools, Foreign, Indices, Raw
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
@@ -220,7 +220,7 @@ def triangles(surface: vtkPolyData) -> Indices:
     return connectivity(polys)[0].reshape(-1, 3)
 
 
-def _halves(quads: Indices, points: NDArray[np.generic]) -> Indices | None:
+def _halves(quads: Indices, points: Raw) -> Indices | None:
     """Return the two triangles of each quadrilateral, those that VTK's filter makes.
 
     They have its shorter diagonal in common. None where the halves by one of its diagonals turn

@@ -15,10 +15,9 @@ from vizlight.vtk.topology import BLOCK, EDGES, components
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Raw
 
 
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
@@ -49,7 +48,7 @@ def corners_by_size(surface: vtkPolyData) -> Iterator[Indices]:
             yield ids[ends[:-1][size == s, np.newaxis] + np.arange(s)]
 
 
-def corner_normals(points: NDArray[np.generic], faces: Iterator[Indices] | list[Indices]) -> Array:
+def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Array:
     """Return the normals of points, by the corners of the faces around each.
 
     Each corner has a normal, across both its sides, and counts by its angle over the square root of
@@ -75,7 +74,7 @@ def corner_normals(points: NDArray[np.generic], faces: Iterator[Indices] | list[
     return np.ascontiguousarray(kernels.unit(total)[0].T, dtype=np.float32)
 
 
-def _add(total: Array, points: NDArray[np.generic], corners: Indices) -> None:
+def _add(total: Array, points: Raw, corners: Indices) -> None:
     """Add the weighted normals of all corners of some faces."""
     s = corners.shape[1]
     low, high = int(corners.min()), int(corners.max()) + 1
@@ -142,7 +141,7 @@ BEYOND = 0.01
 
 
 def split_faces(
-    points: NDArray[np.generic],
+    points: Raw,
     ids: Indices,
     ends: Indices,
     angle: float,
@@ -170,6 +169,8 @@ def split_faces(
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
     count = len(ends) - 1
+    # Faces that are there twice have no side, and are not turned over.
+    lone = None if twins is None else np.bincount(twins, minlength=count)[twins] == 1
     root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
     edges: list[tuple[Indices, Indices]] = []
     alike = True
@@ -196,9 +197,11 @@ def split_faces(
         cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         # Faces that are wound alike run along their common edge against each other.
         against = (rows[pair] < len(own)) != (rows[pair + 1] < len(own))
-        alike = alike and bool(against.all())
         # The other side of a face has its number beyond those of all faces.
         once = at[rows[pair]] < toward[rows[pair]]
+        if lone is not None:
+            once &= lone[a] & lone[b]
+        alike = alike and bool(against[once].all())
         b = np.where(against, b, b + count)
         edges.append((a[once].astype(root.dtype), b[once].astype(root.dtype)))
         smooth = np.where(against, cosine, -cosine) > least
@@ -217,7 +220,7 @@ def split_faces(
     return *numbered(root, ids, len(points)), turned
 
 
-def _face_normals(points: NDArray[np.generic], ids: Indices, ends: Indices) -> Array:
+def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
     """Return the unit normals of faces in float32, zero without an area."""
     unit = np.zeros((len(ends) - 1, 3), dtype=np.float32)
     size = np.diff(ends)
@@ -261,7 +264,7 @@ def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]
 NEAR = 1e-3
 
 
-def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
+def joined(points: Raw, surface: vtkPolyData) -> Indices | None:
     """Return the first of the points that slivers join with each.
 
     A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
@@ -315,7 +318,7 @@ def joined(points: NDArray[np.generic], surface: vtkPolyData) -> Indices | None:
 
 
 def common_normals(
-    points: NDArray[np.generic], triangles: Indices, normals: Array, first: Indices, least: float
+    points: Raw, triangles: Indices, normals: Array, first: Indices, least: float
 ) -> tuple[Array, Indices]:
     """Return normals that points which are joined have in common, where these are nearly the same.
 

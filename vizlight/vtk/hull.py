@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -208,7 +208,7 @@ def _keep_around(surface: vtkPolyData, points: Bools) -> None:
     surface.SetPolys(cells)
 
 
-def rim(mesh: Grid) -> list[NDArray[np.generic]]:
+def rim(mesh: Grid) -> list[Raw]:
     """Return the points along the four borders of a sheet; none for a grid that fills space."""
     size = dimensions(mesh)
     if 1 not in size:

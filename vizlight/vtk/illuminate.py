@@ -24,9 +24,9 @@ from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Keywords
+    from vizlight._types import Foreign, Keywords, Raw
     from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 __all__ = ["Illuminate"]
@@ -237,9 +237,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         made.GetFieldData().AddArray(text)
         return 1
 
-    def _lit(
-        self, data: vtkDataSet, pieces: int
-    ) -> tuple[dict[str, NDArray[np.generic]], dict[str, object]]:
+    def _lit(self, data: vtkDataSet, pieces: int) -> tuple[dict[str, Raw], dict[str, object]]:
         """Return the arrays that a dataset gets, by name, and their record."""
         scene = as_scene(self._scene)
         check_whole(data, "input")

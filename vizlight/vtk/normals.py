@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -114,7 +114,7 @@ class Sided:
         """Whether a piece has a border."""
         return bool(np.any(self.open)) if self.averted is None else len(self.averted) > 1
 
-    def part(self, i: int, rows: slice | Indices, /) -> Sided:
+    def part(self, i: int, rows: Slice | Indices, /) -> Sided:
         """Return what belongs to a mesh of a batch, by its number and its points."""
         return Sided(
             self.vectors[rows],
@@ -163,7 +163,7 @@ class Sided:
         found[:2] = False
         return found
 
-    def leaning(self, facing: Facing, averted: Bools, rows: slice = slice(None)) -> Array | None:
+    def leaning(self, facing: Facing, averted: Bools, rows: Rows = slice(None)) -> Array | None:
         """Return the sine by which normals may lean away from an eye that sees their own side.
 
         Faces around a point are seen until the last of them is averted where the surface is convex,
@@ -207,7 +207,7 @@ class Told(NamedTuple):
     side: NDArray[np.int8] | None = None
 
 
-def facing_of(normals: Array, points: NDArray[np.generic], view: View | None) -> Array:
+def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
     """Return how much of what an eye sees shows it the side of each normal: ``N . w / d^2``."""
     if view is None:
         shown = normals[:, 2]
@@ -231,7 +231,7 @@ class Turned:
         self._sided, self._points, self._view = sided, points, view
         self._facing, self._fields = facing, fields
 
-    def __getitem__(self, rows: slice, /) -> Array:
+    def __getitem__(self, rows: Rows, /) -> Array:
         """Return a slice of the normals."""
         sided, own = self._sided, self._sided.vectors[rows]
         lean = sided.leaning(self._facing, self._fields, rows)
@@ -242,7 +242,7 @@ class Turned:
         return np.where(averted[:, np.newaxis], -own, own)
 
 
-def _averted(vectors: Array, points: NDArray[np.generic], view: View, lean: Array | None) -> Bools:
+def _averted(vectors: Array, points: Raw, view: View, lean: Array | None) -> Bools:
     """Return the points whose normals point away from the eye, by more than they lean."""
     if view.parallel:
         toward = np.asarray(view.direction, dtype=np.float64)

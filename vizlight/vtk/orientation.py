@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.scene import View
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
@@ -195,7 +195,7 @@ class Shape:
         largest[largest == 0] = 1.0
         return middle, largest
 
-    def _from_middle(self, rows: Indices | slice, middle: Array) -> Array:
+    def _from_middle(self, rows: Indices | Slice, middle: Array) -> Array:
         """Return the ways from the centroids of the pieces to some points."""
         points = self.points[rows]
         if not self.all_finite:
@@ -204,7 +204,7 @@ class Shape:
         away -= middle[:, self.piece[rows]] if self.count > 1 else middle
         return away
 
-    def away(self, rows: Indices | slice) -> Array:
+    def away(self, rows: Indices | Slice) -> Array:
         """Return some points, shape (3, n), each piece about its centroid, at a size of 1."""
         middle, largest = self.frame
         away = self._from_middle(rows, middle)
@@ -290,7 +290,7 @@ class Shape:
             scores += np.bincount(self.piece[block][good], score[good], self.count)
         return scores
 
-    def _toward(self, view: View, block: slice) -> Array:
+    def _toward(self, view: View, block: Slice) -> Array:
         """Return vectors from some points toward the eye."""
         if view.parallel:
             return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
@@ -359,7 +359,7 @@ def sides_of(
 
 
 def _normals_of(
-    vectors: Array, piece: Indices | None, rows: slice, border: Bools
+    vectors: Array, piece: Indices | None, rows: Slice, border: Bools
 ) -> tuple[Array, Indices]:
     """Return the normals of some points of the pieces with a border, and their pieces."""
     own = vectors[rows]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Bools, Indices
+    from vizlight._types import Bools, Indices, Raw
 
 
 #: Least number of edges that are sorted at once, and largest number of parts of these.
@@ -151,7 +151,7 @@ def sorted_edges(
 
 def topology(
     corners: Indices,
-    points: NDArray[np.generic],
+    points: Raw,
     owners: Owners,
     own: Bools | None = None,
     visit: Callable[[SortedEdges], object] = len,
@@ -255,7 +255,7 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
         np.minimum.at(root, b, a)
 
 
-def coincident(points: NDArray[np.generic], owners: Owners) -> Indices | None:
+def coincident(points: Raw, owners: Owners) -> Indices | None:
     """Return the first point at the place of each point, None if all places differ.
 
     Points that are not finite differ from all others, as do points of two meshes.
@@ -312,7 +312,7 @@ BLOCK = 1 << 16
 _FACTORS = tuple(np.uint64(x) for x in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9))
 
 
-def place_numbers(points: NDArray[np.generic]) -> NDArray[np.uint64]:
+def place_numbers(points: Raw) -> NDArray[np.uint64]:
     """Return numbers of 64 bits made of the coordinates of points."""
     number = np.zeros(len(points), dtype=np.uint64)
     with np.errstate(all="ignore"):
@@ -338,9 +338,7 @@ def single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], .
     return numbers[(times == 1) & (numbers != 0)], np.unique(np.concatenate([none, *lines]))
 
 
-def inner_edges(
-    points: NDArray[np.generic], triangles: Indices, ends: NDArray[np.uint64]
-) -> NDArray[np.uint64]:
+def inner_edges(points: Raw, triangles: Indices, ends: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """Return the edges between some places that have two faces."""
     number, size = place_numbers(points), len(points)
     near = np.isin(number, ends)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.geometry.contours.spacing import Steps
 
     Luminance = Callable[[Indices, Indices, Array, Indices], Array]
@@ -237,7 +237,7 @@ def cut(
     return cut_bands, triangle
 
 
-def at_corners(values: Array, triangles: Indices, rows: slice | Indices) -> Array:
+def at_corners(values: Array, triangles: Indices, rows: Slice | Indices) -> Array:
     """Return the values at the corners of some triangles, from values at corners or at points."""
     return np.asarray(values[rows] if values.ndim == 2 else values[triangles[rows]])
 

@@ -28,7 +28,7 @@ from vizlight.geometry.lines import voxels
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 
 __all__ = ["Medium", "Targets", "directions", "medium"]
 
@@ -237,7 +237,7 @@ class Medium:
         targets = targets.ordered(order)
         left = np.empty((targets.places.shape[1], len(lights)), np.float32)
 
-        def work(part: slice) -> int:
+        def work(part: Slice) -> int:
             left[order, part.start] = self._light(targets, thick, *lights[part.start])
             return int(part.start)
 
@@ -268,7 +268,7 @@ class Medium:
         ways = directions(count)
         found: dict[int, tuple[Array, Array]] = {}
 
-        def work(part: slice) -> int:
+        def work(part: Slice) -> int:
             found[part.start] = self._pair(targets, thick, ways[part.start])
             return int(part.start)
 

@@ -12,7 +12,7 @@ from vizlight.model import kernels
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Slice
 
 __all__ = ["polyline_tangents"]
 
@@ -107,11 +107,11 @@ class _Lines:
         #: First and last vertex of each closed line, in ascending order.
         self.closed = first[closed], last[closed]
 
-    def place(self, vertices: Indices | slice) -> Array:
+    def place(self, vertices: Indices | Slice) -> Array:
         """Return the positions of vertices in float64."""
         return self.positions[self.ids[self.vertices[vertices]]].astype(np.float64, copy=False)
 
-    def tangents(self, block: slice) -> Array:
+    def tangents(self, block: Slice) -> Array:
         """Return the tangents at a block of vertices."""
         # Two more vertices on each side decide on the tangents of the block.
         wide = slice(max(block.start - 2, 0), min(block.stop + 2, len(self.vertices)))
@@ -123,13 +123,13 @@ class _Lines:
             found[end[low:high] - block.start] = self._seams(slice(low, high))
         return found
 
-    def _seams(self, lines: slice) -> Array:
+    def _seams(self, lines: Slice) -> Array:
         """Return the tangents where closed lines begin and end."""
         first, last = (end[lines] for end in self.closed)
         corners = np.stack([last - 1, first, first + 1], axis=1).ravel()
         return _vertex_tangents(self.place(corners), np.repeat(first, 3))[1::3]
 
-    def rows(self, block: slice) -> tuple[slice, Indices]:
+    def rows(self, block: Slice) -> tuple[Slice, Indices]:
         """Return the places in ids of a block of vertices, and the vertex in the block of each."""
         ends = np.append(self.vertices[block], len(self.ids))
         if block.stop < len(self.vertices):

@@ -14,7 +14,7 @@ from vizlight import _compiled
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Rows
 
 #: Largest number of cells that one step crosses.
 MOST_CROSSINGS = 300
@@ -26,7 +26,7 @@ SAVED = 4e-4, 4e-6
 class Columns:
     """Base class of rows whose fields are arrays, or such rows themselves."""
 
-    def __getitem__(self, rows: Indices | Bools | slice) -> Self:
+    def __getitem__(self, rows: Rows) -> Self:
         """Return some of the rows."""
         return type(self)(*(column[rows] for column in vars(self).values()))
 

@@ -18,11 +18,10 @@ from vizlight.geometry.nspace.parametric import ROUNDING, Manifold, manifold, pa
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Complex, Indices
 
-    Complex = NDArray[np.complexfloating]
     Function = Callable[[Complex], Complex]
 
 __all__ = [

@@ -14,7 +14,7 @@ from vizlight.model.frames import default_rtol, orthonormalize
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import AnyArray, Array, Indices
+    from vizlight._types import AnyArray, Array, Foreign, Indices
 
 __all__ = ["cut", "mean_frame", "slice_frame"]
 
@@ -112,7 +112,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     return edges, weights, np.asarray(cells_of, dtype=np.intp).reshape(cells.shape)
 
 
-def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
+def mean_frame(frame: ArrayLike, shares: Foreign, /) -> Array:
     """Return tangent frames at new points as weighted means of the tangent spaces at given points.
 
     A frame represents the space that it spans, and any basis of that space is equivalent:
@@ -149,7 +149,8 @@ def mean_frame(frame: ArrayLike, shares: scipy.sparse.csr_array, /) -> Array:
     if rows.ndim != 3:
         raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
     count, k, n = rows.shape
-    if not scipy.sparse.issparse(shares) or shares.dtype.kind not in "iuf":
+    sparse: bool = scipy.sparse.issparse(shares)
+    if not sparse or shares.dtype.kind not in "iuf":
         expected = "a sparse array of real numbers"
         raise TypeError(_check.message("shares", expected, _check.describe(shares)))
     parts = scipy.sparse.csr_array(shares)

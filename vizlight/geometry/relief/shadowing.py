@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, VectorLike
+    from vizlight._types import Array, Slice, VectorLike
     from vizlight.geometry.relief.height_field import Border, Field
 
 
@@ -232,7 +232,7 @@ def ratio(
     limit = depth <= LEAST_DEPTH * field.size
     shape, normals, heights = field.heights.shape, normal.reshape(-1, 3), field.heights.ravel()
 
-    def start(rows: slice) -> Array:
+    def start(rows: Slice) -> Array:
         row, column = np.divmod(np.arange(rows.start, rows.stop), shape[1])
         nodes = np.stack([field.x[column], field.y[row], heights[rows]])
         return nodes if limit else nodes - depth * normals[rows].T
@@ -252,7 +252,7 @@ def ratio(
 
 def _lengths(
     field: Field,
-    start: Callable[[slice], Array],
+    start: Callable[[Slice], Array],
     count: int,
     ways: Callable[[Array], tuple[Array, Array]],
     report: Callable[[int], None] = lambda _: None,
@@ -261,7 +261,7 @@ def _lengths(
     length = np.empty(count)
     fast = walks.walk.pays(walks.SAVED * count)
 
-    def work(rows: slice) -> int:
+    def work(rows: Slice) -> int:
         places = start(rows)
         _follow(field, places, *ways(places), length[rows], fast=fast)
         return int(rows.stop)

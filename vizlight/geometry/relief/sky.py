@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Slice
 
 #: First and largest number of azimuths; columns that are crossed one by one at first and at most,
 #: and error from which half as many do.
@@ -274,7 +274,7 @@ class _View:
         crowd = int(np.max(last - np.arange(rows))) + 1
         out, part = self.of(total), np.zeros(self.p.shape, np.float32)
 
-        def work(lines: slice) -> int:
+        def work(lines: Slice) -> int:
             azimuth(
                 self.z, self.x, self.y, self.p, self.q, self.slope, (first, mean),
                 (int(lines.start), int(lines.stop)), self.near, crowd, openness, part,
