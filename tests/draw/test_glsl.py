@@ -228,6 +228,13 @@ def test_numbers_are_float32(value, text):
     assert glsl.number(value) == text
 
 
+def test_a_term_may_name_a_vector_of_its_own():
+    w = glsl.Shader(plan(Scene(), n=3, normals=True))
+    own = w.vector((0.5, 1.0, 2.0))
+    assert (own.text, own.kind) == ("vec3(0.5, 1.0, 2.0)", "vec3")
+    assert (own * w.number(0.5)).kind == "vec3"
+
+
 def test_a_vector_of_one_number_is_a_number():
     assert glsl.vector([0.5]) == "0.5"
     assert glsl.vector([1, 2, 3]) == "vec3(1.0, 2.0, 3.0)"

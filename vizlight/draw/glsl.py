@@ -181,9 +181,11 @@ class Shader(Writer):
         return value
 
     def vector(self, values: Value, *, wide: bool = False) -> Value:
-        """Return a vector of the plan, which is a uniform."""
+        """Return a vector of the plan, which is a uniform, or a constant."""
         del wide
-        return values
+        if isinstance(values, Symbol):
+            return values
+        return Symbol(self, vector(values), f"vec{len(values)}")
 
     def way(self, direction: Value, *, wide: bool = False) -> Value:
         """Return a direction of the plan, which is a uniform of unit length."""
