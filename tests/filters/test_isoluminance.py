@@ -278,6 +278,15 @@ def test_kinds_of_meshes(mesh):
     assert np.isfinite(found["bands"]["luminance"]).all()
 
 
+def test_the_bands_are_what_a_plotter_shows():
+    sphere = pv.Sphere()
+    sphere["height"] = sphere.points[:, 2]
+    bands = vizlight.isoluminance(sphere, levels=4)["bands"]
+    assert "height" in bands.point_data
+    assert bands.active_scalars_info.association is pv.FieldAssociation.CELL
+    assert bands.active_scalars_name == "luminance"
+
+
 def test_names_and_the_accessor():
     found = pv.Sphere().vizlight.isoluminance(DULL, levels=4, name="glow")
     assert {"glow", "glow_band"} <= set(found["bands"].cell_data)

@@ -8,6 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View
+from vizlight.filters import relight
 
 TOWARD = np.array([1.0, -1, 0.6]) / np.linalg.norm([1.0, -1, 0.6])
 EYE = np.array([0.0, -1, 0.3]) / np.linalg.norm([0, -1, 0.3])
@@ -82,6 +83,12 @@ def test_curves_have_the_light_of_the_field(made):
     difference = np.abs(curves["luminance"] - expected)[~near_pole]
     assert np.median(difference) < 0.02
     assert np.quantile(difference, 0.99) < 0.1
+
+
+def test_every_panel_can_be_lit_again_by_its_record(made):
+    for panel in made[1]:
+        # It is compared with the light that the panel has.
+        relight.from_record(panel)
 
 
 def test_satin_of_thin_cylinders(made):

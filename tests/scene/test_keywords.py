@@ -5,7 +5,9 @@ from __future__ import annotations
 import inspect
 
 import pytest
+import pyvista as pv
 
+import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
 
 RECORDS = {
@@ -30,3 +32,11 @@ def test_an_unknown_keyword_is_answered_by_the_known_ones(record):
 def test_values_without_a_name_are_refused():
     with pytest.raises(TypeError, match=r"Scene: .* got Light\(.*; name it, as in Scene\(lights="):
         Scene(Light(direction=(1, 1, 1)))
+
+
+def test_filters_say_how_a_value_without_a_name_is_named():
+    scene = Scene()
+    with pytest.raises(TypeError, match=r"project: .* got Scene\(.*; name it, as in project\(sce"):
+        vizlight.project(pv.Sphere(), scene)
+    with pytest.raises(TypeError, match=r"got 'V'; name it, as in illuminate\(tangents="):
+        vizlight.illuminate(pv.Sphere(), scene, "V")

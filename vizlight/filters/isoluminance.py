@@ -336,6 +336,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         kind = surface.point_data[name].dtype
         shape = (len(found), *surface.point_data[name].shape[1:])
         bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+    # PyVista would draw an active array of the points in place of the bands.
+    bands_block.point_data.active_scalars_name = None
     return made, bands, light
 
 

@@ -116,14 +116,17 @@ def satin(
         "field": dataclasses.replace(field, normals=None, facing="auto"),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }
-    lines = dataclasses.replace(
-        asked,
-        vectors=str(asked.tangents),
-        line_field=asked.line_field or averaged,
-        tangents=None,
-        conditioned=False,
-        normals=None,
-        facing="auto",
+    # Options of streamlines, which the record of the curves names.
+    lines = StreamlineOptions(
+        **{f.name: getattr(asked, f.name) for f in dataclasses.fields(StreamlineOptions)}
+        | {
+            "vectors": str(asked.tangents),
+            "line_field": asked.line_field or averaged,
+            "tangents": None,
+            "conditioned": False,
+            "normals": None,
+            "facing": "auto",
+        }
     )
     curves = light_lines(traced, scene, lines, progress_bar=progress_bar, argument="surface")
     made = {

@@ -18,22 +18,30 @@ if TYPE_CHECKING:
 
 
 def named(function: Callable[P, R]) -> Callable[P, R]:
-    """Let the error for a keyword that a function does not have name the nearest that it has.
+    """Let errors for keywords that a function does not have, and for values without name, help.
 
-    An initialiser that takes keywords alone also says so of a value without a name.
+    They name the nearest keyword that it has, and the keyword that a value of a class is for.
     """
-    parameters = inspect.signature(function).parameters
-    known = list(parameters)
+    parameters = inspect.signature(function).parameters.values()
+    known = [parameter.name for parameter in parameters]
+    by_name = [
+        parameter.name
+        for parameter in parameters
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
+    ]
+    places = len(known) - len(by_name)
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    kinds = {parameters[name].kind for name in known[1:]}
-    keywords_only = function.__name__ == "__init__" and kinds == {inspect.Parameter.KEYWORD_ONLY}
 
     @functools.wraps(function)
     def method(*arguments: P.args, **keywords: P.kwargs) -> R:
-        if keywords_only and len(arguments) > 1:
-            expected = f"keywords of {owner} ({', '.join(known[1:])})"
-            got, remedy = _check.describe(arguments[1]), f"name it, as in {owner}({known[1]}=...)"
-            raise TypeError(_check.message(owner, expected, got, remedy))
+        if by_name and len(arguments) > places:
+            value: object = arguments[places]
+            kind = type(value).__name__.lower()
+            own = kind if kind in by_name else by_name[0]
+            expected, got = f"keywords of {owner} ({', '.join(by_name)})", _check.describe(value)
+            raise TypeError(
+                _check.message(owner, expected, got, f"name it, as in {owner}({own}=...)")
+            )
         for name in keywords:
             if name not in known:
                 raise TypeError(unknown_option(owner, name, known))
