@@ -244,6 +244,19 @@ def corners(mesh):
     return dict(zip(map(tuple, np.round(keys, 5).tolist()), light.ravel(), strict=True))
 
 
+def test_names_with_dots_keep_the_pieces_apart(image, tmp_path):
+    image.save(tmp_path / "grid.vti")
+    made = [
+        pieces.light(
+            tmp_path / "grid.vti", SCENE, contour="s", level=LEVEL, slab=0.05, out=tmp_path / out
+        )
+        for out in ("a.pvtp", "b.0.5.pvtp")
+    ]
+    plain, dotted = (vizlight.read(one.path) for one in made)
+    assert len(list((tmp_path / "b.0.5").iterdir())) > 1
+    np.testing.assert_array_equal(dotted.points, plain.points)
+
+
 @pytest.mark.parametrize("angle", [30, "auto"])
 def test_creases_in_pieces_are_lit_as_the_whole(tmp_path, angle):
     box = pv.Cube(center=(0.01, 0, 0)).triangulate().subdivide(3).clean()

@@ -241,7 +241,7 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
             if suffix != job.suffix:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
-            done.file = files.write_mesh(lit, target.with_suffix(suffix)).name
+            done.file = files.write_mesh(lit, target.with_name(target.name + suffix)).name
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error
     return done
