@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource
 
 
+def dimensions(grid: Foreign) -> tuple[int, int, int]:
+    """Return the number of points of a grid along each of its axes."""
+    low, high = np.reshape(grid.GetExtent(), (3, 2)).T
+    i, j, k = (high - low + 1).tolist()
+    return i, j, k
+
+
 class GridPoints:
     """Points of an image or a rectilinear grid, computed for each slice and not stored."""
 
@@ -29,7 +36,7 @@ class GridPoints:
     def __init__(self, grid: vtkImageData | vtkRectilinearGrid) -> None:
         self.shape: tuple[int, ...] = (grid.GetNumberOfPoints(), 3)
         low = np.array(grid.GetExtent()[::2])
-        self._dimensions = tuple(int(n) for n in np.array(grid.GetExtent()[1::2]) - low + 1)
+        self._dimensions = dimensions(grid)
         if isinstance(grid, vtkImageData):
             own = grid.GetIndexToPhysicalMatrix()
             matrix = np.array([[own.GetElement(i, j) for j in range(4)] for i in range(3)])

@@ -466,7 +466,7 @@ def computed_normals(
             # Points inside a volume have no normal; they are no fault.
             inside = size - owners.counts(np.flatnonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
-        number = scattered(number.astype(np.float64), origin, count).astype(np.intp)
+        number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)
     averted = None if told is None else told.averted
     all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
@@ -633,14 +633,12 @@ def _inside_out(surface: vtkPolyData, owners: Owners) -> Bools:
 
 def piece_numbers(mesh: Dataset) -> Indices:
     """Return for each point the number of its connected piece; 0 where it is on no surface."""
-    numbers = np.zeros(mesh.GetNumberOfPoints(), dtype=np.intp)
+    count = mesh.GetNumberOfPoints()
     surface, origin = _skin(mesh)
-    if surface is not None:
-        own = np.arange(len(numbers)) if origin is None else origin
-        numbers[own[own >= 0]] = topology(triangles(surface), places(surface), Owners()).piece[
-            own >= 0
-        ]
-    return numbers
+    if surface is None:
+        return np.zeros(count, dtype=np.intp)
+    piece = topology(triangles(surface), places(surface), Owners()).piece
+    return piece if origin is None else scattered(piece, origin, count)
 
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
