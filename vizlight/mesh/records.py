@@ -11,15 +11,25 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
+from vizlight._version import __version__
 from vizlight.mesh import blocks
 from vizlight.shading.results import digest, plain, record_key
+from vizlight.vtk import hull
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.cells import as_numpy, as_vtk, cell_data, field_data, point_data
+from vizlight.vtk.cells import (
+    as_numpy,
+    as_vtk,
+    cell_arrays,
+    cell_data,
+    field_data,
+    places,
+    point_data,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from vizlight._types import Foreign, Keywords, Raw
+    from vizlight._types import AnyArray, Foreign, Keywords, Raw
     from vizlight.mesh.blocks import DataSetT
     from vizlight.shading.results import Record
 
@@ -99,6 +109,46 @@ def _is_record(record: object) -> bool:
     if not all(isinstance(record.get(name, {}), dict) for name in ("options", "scene")):
         return False
     return all(isinstance(made_as, str) for made_as in record["arrays"].values())
+
+
+def fingerprint(mesh: pv.DataSet) -> str | None:
+    """Return a digest of the points and cells of a mesh, None for a kind that keeps no rows."""
+    if not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
+        return None
+    arrays = [places(mesh), np.array(sorted(hull.cell_types(mesh)))]
+    for cells in cell_arrays(mesh):
+        arrays += [as_numpy(cells.GetConnectivityArray()), as_numpy(cells.GetOffsetsArray())]
+    return source(*arrays)
+
+
+def source(*arrays: Raw) -> str:
+    """Return a digest of arrays from which others are computed."""
+    return " ".join(f"{array.dtype.str}{digest(array)}" for array in arrays)
+
+
+def keep(mesh: pv.DataSet, name: str, filter_name: str, rows: Raw, **facts: object) -> None:
+    """Attach rows of points, with a digest of the points and cells that they are computed from.
+
+    Where the user has an array of that name nothing is attached.
+    """
+    own = fingerprint(mesh)
+    if own is None or (point_data(mesh).HasArray(name) and name not in made(mesh, name)):
+        return
+    attach_rows(mesh, name, rows)
+    record = {"vizlight": __version__, "filter": filter_name, "source": own} | facts
+    write(mesh, name, record, {name: rows})
+
+
+def kept(mesh: pv.DataSet, name: str, width: int) -> tuple[AnyArray, Record] | None:
+    """Return rows that were kept of points, and their record, if the mesh has not changed since."""
+    record = read(mesh, name) if point_data(mesh).HasArray(name) else None
+    if record is None or name not in made(mesh, name):
+        return None
+    rows = np.asarray(mesh.point_data[name])
+    # Moved points or other cells: the rows are of another mesh.
+    if rows.shape != (mesh.n_points, width) or record.get("source") != fingerprint(mesh):
+        return None
+    return rows, record
 
 
 def share(record: Mapping[str, object], name: str) -> float:

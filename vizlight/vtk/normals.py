@@ -42,6 +42,7 @@ from vizlight.vtk.orientation import (
     Sums,
     crease_share,
     sides_of,
+    toward_eye,
 )
 from vizlight.vtk.topology import (
     Owners,
@@ -211,11 +212,8 @@ def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
     """Return how much of what an eye sees shows it the side of each normal: ``N . w / d^2``."""
     if view is None:
         shown = normals[:, 2]
-    elif view.parallel:
-        shown = normals @ np.asarray(view.direction, dtype=np.float64)
     else:
-        away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
-        toward, far = kernels.unit(away.T)
+        toward, far = kernels.unit(toward_eye(view, points))
         with np.errstate(all="ignore"):
             shown = kernels.dot(normals.T, toward) / far / far
     return np.where(np.isfinite(shown), shown, 0.0)
@@ -244,17 +242,11 @@ class Turned:
 
 def _averted(vectors: Array, points: Raw, view: View, lean: Array | None) -> Bools:
     """Return the points whose normals point away from the eye, by more than they lean."""
-    if view.parallel:
-        toward = np.asarray(view.direction, dtype=np.float64)
-        # Across the lean a normal of a coarse mesh points away while its faces are still seen:
-        # turning it there would draw a dark rim.
-        cosine = vectors @ toward / np.linalg.norm(toward)
-        least: Array | float = 0.0 if lean is None else -lean
-        return np.asarray(cosine < least, dtype=np.bool_)
-    away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
-    cosine = np.einsum("ij,ij->i", vectors, away)
-    least = 0.0 if lean is None else -lean * np.sqrt(np.einsum("ij,ij->i", away, away))
-    return np.asarray(cosine < least, dtype=np.bool_)
+    toward = toward_eye(view, points)
+    # Across the lean a normal of a coarse mesh points away while its faces are still seen: turning
+    # it there would draw a dark rim.
+    least = 0.0 if lean is None else -lean * np.sqrt(kernels.dot(toward, toward))
+    return np.asarray(kernels.dot(vectors.T, toward) < least, dtype=np.bool_)
 
 
 def sided_normals(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Array, Bools, Indices, Slice
+    from vizlight._types import Array, Bools, Indices, Raw, Slice
     from vizlight.scene import View
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
@@ -282,7 +282,7 @@ class Shape:
             own = normals[block].T.astype(np.float64)
             toward = kernels.unit(self.away(block))[0]
             if seen and view is not None:
-                toward += 3 * kernels.unit(self._toward(view, block))[0]
+                toward += 3 * kernels.unit(toward_eye(view, self.points[block]))[0]
             score = kernels.dot(own, toward)
             good = self.finite[block] & np.isfinite(score)
             if self.side is not None:
@@ -290,12 +290,13 @@ class Shape:
             scores += np.bincount(self.piece[block][good], score[good], self.count)
         return scores
 
-    def _toward(self, view: View, block: Slice) -> Array:
-        """Return vectors from some points toward the eye."""
-        if view.parallel:
-            return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
-        eye = np.array(view.position, dtype=np.float64)[:, np.newaxis]
-        return np.asarray(eye - self.points[block].T.astype(np.float64))
+
+def toward_eye(view: View, points: Raw) -> Array:
+    """Return vectors from points toward an eye as columns; a single one where all are alike."""
+    if view.parallel:
+        return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
+    eye = np.array(view.position, dtype=np.float64)[:, np.newaxis]
+    return np.asarray(eye - np.asarray(points).T.astype(np.float64))
 
 
 def _wide(size: Array, *sides: Array) -> Bools:
