@@ -252,13 +252,7 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
         own.DeepCopy(cells)
         put(own)
     found.SetPolys(blocks.cell_array(corners, ends))
-    for key, array in mesh.point_data.items():
-        records.attach_rows(found, key, np.asarray(array)[origin])
-    rows = _rows(mesh)
-    for key, array in mesh.cell_data.items():
-        found.cell_data[key] = np.asarray(array)[rows]
-    records.carry_active(mesh, found)
-    found.GetFieldData().DeepCopy(mesh.GetFieldData())
+    records.carry_rows(mesh, found, origin, _rows(mesh))
     records.carry(mesh, found)
     return found
 
@@ -380,11 +374,7 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     out = pv.PolyData()
     out.points = np.asarray(mesh.points)[kept]
     out.SetPolys(blocks.cell_array((np.cumsum(kept) - 1)[corners], ends))
-    for key, array in mesh.point_data.items():
-        records.attach_rows(out, key, np.asarray(array)[kept])
-    out.GetCellData().ShallowCopy(mesh.GetCellData())
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
-    records.carry_active(mesh, out)
+    records.carry_rows(mesh, out, np.flatnonzero(kept))
     return out
 
 

@@ -17,7 +17,7 @@ from vizlight.model.frames import default_rtol
 from vizlight.shading.results import plain
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of
-from vizlight.vtk.cells import connectivity, has_faces
+from vizlight.vtk.cells import has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -274,24 +274,10 @@ def continued(mesh: pv.DataSet, name: str) -> Array | None:
 
 
 def _neighbours(mesh: pv.DataSet) -> tuple[Indices, Indices]:
-    """Return the pairs of points that follow each other in a cell, each pair both ways."""
-    if isinstance(mesh, pv.PolyData):
-        kinds = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
-    else:
-        kinds = [pv.UnstructuredGrid(mesh).GetCells()]
-    pairs = []
-    for cells in kinds:
-        ids, ends = connectivity(cells)
-        after = np.roll(ids, -1)
-        filled = np.diff(ends) > 0
-        after[ends[1:][filled] - 1] = ids[ends[:-1][filled]]
-        # The first and the last point of a line are no neighbours.
-        inner = np.ones(len(ids), dtype=np.bool_)
-        if isinstance(mesh, pv.PolyData) and cells is kinds[0]:
-            inner[ends[1:][filled] - 1] = False
-        pairs += [(ids[inner], after[inner]), (after[inner], ids[inner])]
-    a, b = (np.concatenate(part) for part in zip(*pairs, strict=True))
-    return a, b
+    """Return the pairs of points that an edge joins, each pair both ways."""
+    edges = mesh.extract_all_edges(progress_bar=False)
+    a, b = polylines.segments(edges.GetLines()).T
+    return np.concatenate([a, b]), np.concatenate([b, a])
 
 
 def _blocks(
@@ -428,12 +414,9 @@ def _mean_frames(array: Array, between: Sparse, n: int) -> Array:
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), FRAMES):
         part = between[block]
-        used, columns = np.unique(part.indices, return_inverse=True)
-        near = scipy.sparse.csr_array(
-            (part.data, columns.reshape(-1), part.indptr), (len(part.indptr) - 1, len(used))
-        )
+        used = np.unique(part.indices)
         rows = array[used].astype(np.float64).reshape(len(used), -1, n)
-        found[block] = slices.mean_frame(rows, near).reshape(-1, array.shape[1])
+        found[block] = slices.mean_frame(rows, part[:, used]).reshape(-1, array.shape[1])
     return found
 
 

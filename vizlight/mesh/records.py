@@ -29,7 +29,7 @@ from vizlight.vtk.cells import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from vizlight._types import AnyArray, Foreign, Keywords, Raw
+    from vizlight._types import AnyArray, Foreign, Indices, Keywords, Raw, Slice
     from vizlight.mesh.blocks import DataSetT
     from vizlight.shading.results import Record
 
@@ -337,6 +337,18 @@ def activate(mesh: pv.DataSet, name: str) -> None:
         and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
     ):
         mesh.set_active_scalars(name, preference="point")
+
+
+def carry_rows(
+    mesh: pv.DataSet, derived: pv.DataSet, points: Indices, cells: Indices | Slice = slice(None)
+) -> None:
+    """Give a mesh that is made of some points and cells of another all arrays of these."""
+    for name, array in mesh.point_data.items():
+        attach_rows(derived, name, np.asarray(array)[points])
+    for name, array in mesh.cell_data.items():
+        derived.cell_data[name] = np.asarray(array)[cells]
+    carry_active(mesh, derived)
+    derived.GetFieldData().DeepCopy(mesh.GetFieldData())
 
 
 def carry_active(mesh: pv.DataSet, derived: pv.DataSet) -> None:

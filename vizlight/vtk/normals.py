@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
@@ -17,7 +16,6 @@ from vizlight.vtk import hull
 from vizlight.vtk.arrays import vectors_of
 from vizlight.vtk.cells import (
     as_numpy,
-    as_vtk,
     connectivity,
     faces_only,
     finite_faces,
@@ -532,11 +530,8 @@ def is_scan(mesh: Dataset) -> bool:
 
 def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     """Return normals of planes through neighbouring points, which face the eye."""
-    bare, estimate = vtkPolyData(), vtkPCANormalEstimation()
-    where = vtkPoints()
-    where.SetData(as_vtk(places(mesh)))
-    bare.SetPoints(where)
-    estimate.SetInputData(bare)
+    estimate = vtkPCANormalEstimation()
+    estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
