@@ -15,7 +15,7 @@ from vizlight._version import __version__
 from vizlight.mesh import blocks
 from vizlight.shading.results import digest, plain, record_key
 from vizlight.vtk import hull
-from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.arrays import is_of_cells, means
 from vizlight.vtk.cells import (
     as_numpy,
     as_vtk,
@@ -301,13 +301,9 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     wanted = {name for name in names if isinstance(name, str) and is_of_cells(mesh, name)}
     if not wanted:
         return mesh
-    only, out = mesh.copy(deep=False), mesh.copy(deep=False)
-    only.clear_data()
+    out = mesh.copy(deep=False)
     for name in wanted:
-        only.cell_data[name] = mesh.cell_data[name]
-    mean = only.cell_data_to_point_data()
-    for name in wanted:
-        out.point_data[name] = mean.point_data[name]
+        out.point_data[name] = means(mesh, np.asarray(mesh.cell_data[name]))
     return out
 
 

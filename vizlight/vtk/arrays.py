@@ -174,17 +174,21 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
     assert of_cells is not None
     rows = _real_rows(argument, of_cells, f"{value!r} with ")
     k = _checked_tangents(argument, value, rows, n).shape[1] // n
-    only: Foreign = mesh.NewInstance()
-    only.CopyStructure(mesh)
-    outer = line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n)
-    only.GetCellData().AddArray(as_vtk(outer, value))
-    mean = vtkCellDataToPointData()
-    mean.SetInputData(only)
-    mean.Update()
-    products = as_numpy(mean.GetOutput().GetPointData().GetArray(value))
+    products = means(mesh, line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n))
     found, _ = line_fields.principal(products.reshape(-1, n, n), k)
     kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
     return found.reshape(-1, k * n).astype(kind)
+
+
+def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
+    """Return the means at the points of a mesh of the rows of the cells around each."""
+    only: Foreign = mesh.NewInstance()
+    only.CopyStructure(mesh)
+    only.GetCellData().AddArray(as_vtk(rows, "rows"))
+    mean = vtkCellDataToPointData()
+    mean.SetInputData(only)
+    mean.Update()
+    return as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
 
 
 def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:
