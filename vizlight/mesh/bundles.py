@@ -251,10 +251,9 @@ def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
 
 def _place(light: Light) -> tuple[tuple[float, ...], bool]:
     """Return the position of a light and True, or its direction and False."""
-    if light.position is not None:
-        return tuple(light.position), True
-    assert light.direction is not None
-    return tuple(light.direction), False
+    place = light.direction if light.position is None else light.position
+    assert place is not None
+    return tuple(place), light.position is not None
 
 
 def _key(light: Light) -> str:
@@ -293,10 +292,8 @@ def _lines_of(given: object) -> Lines:
 def joined(meshes: Sequence[pv.DataSet]) -> Lines:
     """Return the lines of the meshes that have nothing but lines."""
     found = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
-    if not found:
-        none = np.empty(0, np.intp)
-        return Lines(np.empty((0, 3)), none, np.zeros(1, np.intp))
-    points, ids, offsets = zip(*found, strict=True)
+    none = np.empty((0, 3)), np.empty(0, np.intp), np.zeros(1, np.intp)
+    points, ids, offsets = zip(*(found or [none]), strict=True)
     starts = np.cumsum([0, *(len(rows) for rows in points)])
     ends = np.cumsum([0, *(len(own) for own in ids)])
     return Lines(

@@ -18,7 +18,7 @@ from vizlight import _check
 from vizlight.mesh import brains, georeference, polylines, series
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from vizlight._types import Array, Foreign, Indices, Keywords, Raw
 
@@ -338,5 +338,5 @@ def _of_axes(axes: list[Array]) -> pv.ImageData | pv.RectilinearGrid:
     return pv.RectilinearGrid(*axes)
 
 
-def _even(axis: Iterable[float], step: float) -> bool:
-    return bool(np.all(np.abs(np.diff(np.asarray(axis)) - step) <= EQUAL * step))
+def _even(axis: Array, step: float) -> bool:
+    return bool(np.all(np.abs(np.diff(axis) - step) <= EQUAL * step))

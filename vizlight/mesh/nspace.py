@@ -71,10 +71,7 @@ class Turning:
         exact = None if matrix is None else matrix.tolist()
         for name, array in arrays.items():
             if matrix is not None:
-                rows = array.shape[1] // n
-                array = _blocks(
-                    lambda x, rows=rows: projection.turn(x.reshape(-1, rows, n), matrix), array
-                )
+                array = _blocks(lambda x: projection.turn(x.reshape(len(x), -1, n), matrix), array)
             records.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
@@ -313,15 +310,13 @@ def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
 
 def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
     """Return a mesh without some points and without the cells that use one of them."""
-    before = set(mesh.point_data), set(mesh.cell_data)
     kept = np.asarray(np.flatnonzero(~lost), dtype=int)
-    grid: pv.DataSet = mesh.extract_points(kept, adjacent_cells=False, progress_bar=False)
+    grid: pv.DataSet = mesh.extract_points(
+        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False, progress_bar=False
+    )
     if isinstance(mesh, pv.PolyData):
         grid = grid.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
-    for data, names in zip((grid.point_data, grid.cell_data), before, strict=True):
-        for name in set(data) - names:
-            del data[name]
-    for name in before[0] - set(grid.point_data):  # where no point is left
+    for name in set(mesh.point_data) - set(grid.point_data):  # where no point is left
         records.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
     grid.GetFieldData().DeepCopy(mesh.GetFieldData())
     return grid

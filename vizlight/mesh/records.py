@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -96,17 +95,16 @@ def read(mesh: pv.DataSet, name: str) -> Keywords | None:
     return record if _is_record(record) else None
 
 
-#: Type of each entry that every record has.
-_ENTRIES = {"vizlight": str, "filter": str, "arrays": dict}
+#: Type of each entry of a record; every one has the first three.
+_ENTRIES = {"vizlight": str, "filter": str, "arrays": dict, "options": dict, "scene": dict}
 
 
 def _is_record(record: object) -> bool:
     """Return whether a value read from JSON has the form of a record."""
     if not isinstance(record, dict):
         return False
-    if not all(isinstance(record.get(name), kind) for name, kind in _ENTRIES.items()):
-        return False
-    if not all(isinstance(record.get(name, {}), dict) for name in ("options", "scene")):
+    whole: Keywords = {"options": {}, "scene": {}} | record
+    if not all(isinstance(whole.get(name), kind) for name, kind in _ENTRIES.items()):
         return False
     return all(isinstance(made_as, str) for made_as in record["arrays"].values())
 
@@ -154,8 +152,7 @@ def kept(mesh: pv.DataSet, name: str, width: int) -> tuple[AnyArray, Record] | N
 def share(record: Mapping[str, object], name: str) -> float:
     """Return a number from 0 to 1 in a record, 0 for anything else."""
     value = record.get(name)
-    known = isinstance(value, int | float) and math.isfinite(value) and 0 <= value <= 1
-    return float(value) if known and isinstance(value, int | float) else 0.0
+    return float(value) if isinstance(value, int | float) and 0 <= value <= 1 else 0.0
 
 
 def count(record: Mapping[str, object], name: str, most: int) -> int:

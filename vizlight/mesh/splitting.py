@@ -12,8 +12,9 @@ from vizlight import _check
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
-from vizlight.vtk import polylines
+from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import connectivity, has_faces
+from vizlight.vtk.cells import triangles as triangles_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,16 +46,11 @@ def simplices(mesh: pv.DataSet) -> Indices:
     """
     if not mesh.n_points or not mesh.n_cells:
         return np.empty((0, 3), np.intp)
-    if isinstance(mesh, pv.PolyData):
-        surface, origin = mesh, None
-    else:
-        surface, origin = blocks.outer_surface(mesh)
-    if has_faces(surface):
-        found, _ = triangles(surface)
-    else:
-        found = polylines.segments(surface.GetLines())
+    surface, origin = hull.surface_of(mesh)
+    lines = not has_faces(surface)
+    found = polylines.segments(surface.GetLines()) if lines else triangles_of(surface)
     if origin is None:
-        return found
+        return found.astype(np.intp, copy=False)
     found = origin[found]
     return found[(found >= 0).all(axis=1)]
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
-    vtkCellArray,
     vtkGenericCell,
     vtkImageData,
     vtkPolyData,
@@ -23,7 +22,7 @@ from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFi
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight.vtk.arrays import dimensions, points_of
-from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, connectivity, places
+from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, finite_faces, places
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import AnyArray, Bools, Dataset, Foreign, Indices, Raw
+    from vizlight._types import AnyArray, Dataset, Foreign, Indices, Raw
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -108,6 +107,11 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     return surface, np.where(off <= 1e-5 * np.abs(skin).max(initial=0), ids, -1)
 
 
+def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
+    """Return :func:`outer_surface`; a surface is its own, and has no indices."""
+    return (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
+
+
 def scattered(rows: AnyArray, origin: Indices, count: int) -> AnyArray:
     """Return an array of all points of a mesh from one of its surface; other rows are zero."""
     found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
@@ -128,7 +132,7 @@ class Part(NamedTuple):
     Attributes
     ----------
     surface : vtkPolyData
-        Faces around all points of those layers.
+        Faces around all points of those layers, but for those with a corner that is not finite.
     origin : ndarray of int
         Point of the grid that each point of the surface is.
     side : ndarray of int8
@@ -170,8 +174,8 @@ def parts(mesh: Grid) -> Iterator[Part]:
         index = list(np.unravel_index(own, inner, order="F"))
         index[axis] = layer = index[axis] + low
         side = (layer >= stop).astype(np.int8) - (layer < start)
-        _keep_around(surface, side == 0)
-        yield Part(surface, np.ravel_multi_index(index, size, order="F"), side)
+        around = finite_faces(surface, side == 0)
+        yield Part(around, np.ravel_multi_index(index, size, order="F"), side)
 
 
 def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
@@ -193,15 +197,6 @@ _EXTRACT = (
     (vtkRectilinearGrid, vtkExtractRectilinearGrid),
     (vtkStructuredGrid, vtkExtractGrid),
 )
-
-
-def _keep_around(surface: vtkPolyData, points: Bools) -> None:
-    """Take the faces, all of four corners, that have none of some points from a surface."""
-    quads = connectivity(surface.GetPolys())[0].reshape(-1, 4)
-    kept = as_vtk(quads[points[quads].any(axis=1)].ravel())
-    cells = vtkCellArray()
-    cells.SetData(4, kept)
-    surface.SetPolys(cells)
 
 
 def rim(mesh: Grid) -> list[Raw]:

@@ -31,7 +31,7 @@ from vizlight.vtk.corners import (
     joined,
     surface_normals,
 )
-from vizlight.vtk.hull import dimension, outer_surface, scattered
+from vizlight.vtk.hull import dimension, scattered, surface_of
 from vizlight.vtk.orientation import (
     MOST_LEAN,
     SHARP,
@@ -343,7 +343,7 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
             return Sided(given, open=side)
         lean = np.zeros(len(given), dtype=np.float32)
         for part in hull.parts(mesh):
-            shape = PartShape(finite_faces(part.surface), part.side, np.zeros(3), 1.0)
+            shape = PartShape(part.surface, part.side, np.zeros(3), 1.0)
             on = part.side == 0
             lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
         return Sided(given, lean, open=side)
@@ -563,7 +563,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     single, ends = single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in hull.parts(mesh):
-        surface, own = finite_faces(part.surface), part.side == 0
+        surface, own = part.surface, part.side == 0
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         vectors[part.origin[own]] = normals[own]
@@ -630,7 +630,7 @@ def piece_numbers(mesh: Dataset) -> Indices:
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
     """Return the faces of the outer surface and its points' indices, None where it has none."""
-    surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
+    surface, origin = surface_of(mesh)
     return (finite_faces(faces_only(surface)) if has_faces(surface) else None), origin
 
 

@@ -87,9 +87,7 @@ def cells_of(mesh: Dataset, /) -> tuple[Array, Indices, Indices]:
 
 def _flat(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
     """Return the lines of a mesh as polylines, and the index of each of their points in it."""
-    if isinstance(mesh, vtkPolyData):
-        return mesh, None
-    surface, origin = hull.outer_surface(mesh)
+    surface, origin = hull.surface_of(mesh)
     if hull.is_curved(mesh):
         # VTK turns each curve into a polyline; segments let the curves be joined below.
         ends = segments(surface.GetLines())

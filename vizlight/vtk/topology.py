@@ -255,6 +255,24 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
         np.minimum.at(root, b, a)
 
 
+def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return what pairs connect each of some things with, as it is and turned over.
+
+    Each thing stands twice, the second time turned over, with its number beyond all others. One
+    that is connected with its own turned copy has no sides.
+
+    Parameters
+    ----------
+    a, b : ndarray of int, shape (n,)
+        Pairs of things that agree, and of one and the turned copy of another.
+    count : int
+        Number of things.
+    """
+    a, b = np.append(a, a + count), np.append(b, (b + count) % (2 * count))
+    root = components(np.minimum(a, b), np.maximum(a, b), 2 * count)
+    return root[:count], root[count:]
+
+
 def coincident(points: Raw, owners: Owners) -> Indices | None:
     """Return the first point at the place of each point, None if all places differ.
 
