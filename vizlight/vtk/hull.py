@@ -25,7 +25,7 @@ from vizlight.vtk.arrays import dimensions, points_of
 from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, finite_faces, places
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from typing import TypeGuard
 
     from numpy.typing import NDArray
@@ -184,11 +184,7 @@ def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
     bare.CopyStructure(mesh)
     extent = list(mesh.GetExtent())
     extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
-    take: Foreign = next(extract for kind, extract in _EXTRACT if isinstance(mesh, kind))()
-    take.SetVOI(extent)
-    take.SetInputData(bare)
-    take.Update()
-    return take.GetOutput()
+    return cropped(bare, extent)
 
 
 #: Filters that take a part of a grid.
@@ -197,6 +193,15 @@ _EXTRACT = (
     (vtkRectilinearGrid, vtkExtractRectilinearGrid),
     (vtkStructuredGrid, vtkExtractGrid),
 )
+
+
+def cropped(mesh: Foreign, extent: Sequence[int]) -> Foreign:
+    """Return a part of a grid, with its arrays."""
+    take: Foreign = next(extract for kind, extract in _EXTRACT if isinstance(mesh, kind))()
+    take.SetVOI(extent)
+    take.SetInputData(mesh)
+    take.Update()
+    return take.GetOutput()
 
 
 def rim(mesh: Grid) -> list[Raw]:
