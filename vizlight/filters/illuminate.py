@@ -15,7 +15,7 @@ from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.parts import occluded, uses_normals
+from vizlight.vtk.parts import share_of, uses_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -234,9 +234,10 @@ def light_mesh(
         taken = [one.mesh for one in refined]
         parts, rest = [one.part for one in refined], [one.left for one in refined]
         taken = with_sky(taken, options.occlusion)
+        shares = [share_of(own, options.occlusion) for own in taken]
         parts = [
-            part._replace(inputs=occluded(part.inputs, own, options.occlusion))
-            for part, own in zip(parts, taken, strict=True)
+            part._replace(inputs=dataclasses.replace(part.inputs, occlusion=share))
+            for part, share in zip(parts, shares, strict=True)
         ]
     # Refinement has made new meshes with parts of their own.
     inputs = [part.inputs for part in parts]

@@ -50,7 +50,7 @@ class Source(NamedTuple):
     named: LightOptions | None
     sided: Sided | None = None
     inside: int = 0
-    shares: bundles.Live | None = None
+    shares: bundles.Dimmed | None = None
 
     @property
     def facing(self) -> Facing:
@@ -106,11 +106,12 @@ def read(
     own = with_sky([mesh], options.occlusion)[0] if own is None else own
     part = part_of(own, path, scene, options)
     inputs, sided = part.inputs, part.sided
-    shares: bundles.Live | None = None
+    shares: bundles.Dimmed | None = None
     if isinstance(options.bundle, Bundle):
         _refuse_following(scene)
         given = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
-        shares = bundles.Live(mesh, inputs, options.bundle, given)
+        work = bundles.Work([mesh], [inputs], options.bundle)
+        shares = bundles.Dimmed(mesh, inputs, work, given)
         inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)
     source = Source(mesh, inputs, part.options, options, None, inside, shares)

@@ -13,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.mesh import blocks, records, tracers
-from vizlight.mesh.normals import NORMALS, closest, onlooker, with_normals
+from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
@@ -341,7 +341,7 @@ def _traced(
             normals = kernels.unit_rows(lines.point_data[NORMALS])
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
-            normals = closest(surface, places)[1]
+            normals = closest_normals(surface, places)
         lines.point_data["Normals"] = normals.astype(np.float32)
     for key in (NORMALS, TRACED):
         if key in lines.point_data:

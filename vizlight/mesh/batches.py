@@ -167,8 +167,9 @@ def _names(options: LightOptions) -> list[str] | None:
 
 def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     """Return what a mesh must have in common with those it is joined with, None for no others."""
-    joined = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
-    if not joined or not 0 < point_count(mesh) <= SMALL:
+    if not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
+        return None
+    if not 0 < point_count(mesh) <= SMALL:
         return None
     data = point_data(mesh)
     if any(data.HasArray(name) for name in _KEPT):
@@ -185,7 +186,7 @@ def _key(mesh: pv.DataSet, names: Sequence[str]) -> Key | None:
     return (*kinds, *forms)
 
 
-def _kinds(mesh: pv.DataSet) -> Key | None:
+def _kinds(mesh: pv.PolyData | pv.UnstructuredGrid) -> Key | None:
     """Return the kinds of the cells of a mesh, None for a mesh that cannot be joined."""
     if isinstance(mesh, pv.PolyData):
         verts, lines, polys, strips = (count(mesh) > 0 for count, _ in POLYDATA)
@@ -194,12 +195,10 @@ def _kinds(mesh: pv.DataSet) -> Key | None:
         # Where there are segments, lines are joined at their ends.
         segments = lines and 2 in np.diff(connectivity(mesh.GetLines())[1])
         return ("polydata", verts, lines, polys, segments)
-    if isinstance(mesh, pv.UnstructuredGrid):
-        if cell_data(mesh).HasArray(GHOSTS) or point_data(mesh).HasArray(GHOSTS):
-            return None
-        kinds = as_numpy(vtkUnstructuredGrid.GetDistinctCellTypesArray(mesh)).tolist()
-        return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
-    return None
+    if cell_data(mesh).HasArray(GHOSTS) or point_data(mesh).HasArray(GHOSTS):
+        return None
+    kinds = as_numpy(vtkUnstructuredGrid.GetDistinctCellTypesArray(mesh)).tolist()
+    return ("grid", *kinds) if kinds and _JOINED.issuperset(kinds) else None
 
 
 def _joined(meshes: Sequence[pv.DataSet], members: list[int], names: Iterable[str]) -> Batch:

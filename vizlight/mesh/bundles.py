@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import hashlib
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,7 +17,7 @@ from vizlight.vtk import polylines
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array, Indices, Raw
+    from vizlight._types import Array, Indices
     from vizlight.geometry.lines.bundle import Medium
     from vizlight.scene import Light, Scene
     from vizlight.shading.inputs import ShadingInputs
@@ -41,10 +40,13 @@ class Dimming(NamedTuple):
         Share of each light of intensity above 0.
     record : dict
         Diameter, side of a voxel, and digests of what the shares were computed from.
+    keys : list of str
+        Where each light comes from.
     """
 
     transmittance: Array
     record: Record
+    keys: list[str]
 
 
 class Lines(NamedTuple):
@@ -63,7 +65,7 @@ def dim(
     names: tuple[str, str],
     /,
     *,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None],
 ) -> list[Dimming]:
     """Return the shares of light that reach the points of meshes inside a bundle of lines.
 
@@ -80,7 +82,7 @@ def dim(
     names : tuple of str
         Names of the luminance and the transmittance. Shares that a mesh has under that name are
         used again where nothing that they depend on has changed.
-    progress : callable, optional
+    progress : callable
         Function that is called with the number of grids that are done, and of all.
 
     Returns
@@ -93,89 +95,50 @@ def dim(
     TypeError, ValueError
         If there are no lines, or points that are not in 3-space.
     """
-    work = _work_of(meshes, inputs, bundle)
-    lights = _lights(scene)
-    made = []
-    for number, (mesh, given) in enumerate(zip(meshes, inputs, strict=True)):
-        done, total = number * len(lights), len(meshes) * len(lights)
+    work, lights = Work(meshes, inputs, bundle), _lights(scene)
+    made: list[Dimming] = []
+    for mesh, given in zip(meshes, inputs, strict=True):
 
-        def report(count: int, done: int = done, total: int = total) -> None:
-            if progress is not None:
-                progress(done + count, total)
+        def report(count: int, done: int = len(made) * len(lights)) -> None:
+            progress(done + count, len(meshes) * len(lights))
 
-        made.append(_Target(work, mesh, given, names).dim(lights, report))
+        made.append(Dimmed(mesh, given, work, names).by(lights, report))
     return made
 
 
-def _work_of(
-    meshes: Sequence[pv.DataSet],
-    inputs: Sequence[ShadingInputs],
-    bundle: Bundle,
-) -> _Work:
-    """Return the lines that dim meshes."""
-    for given in inputs:
-        if given.points.shape[1] != 3:
-            got = f"points of {given.points.shape[1]} components"
-            raise ValueError(_check.message("bundle", "points in 3-space", got))
-    own = bundle.lines is None
-    lines = joined(meshes) if own else _lines_of(bundle.lines)
-    if not len(lines.ids):
-        remedy = "pass Bundle(lines=...) to dim another mesh by lines"
-        raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
-    asked = [bundle.diameter, bundle.depth, bundle.grid]
-    source = _digest(lines.points, lines.ids, lines.offsets, np.array(repr([asked, own])))
-    return _Work(lines, source, bundle)
+class Work:
+    """The lines that dim meshes, and what is computed of them once it is needed.
 
-
-def _lights(scene: Scene) -> list[Light]:
-    """Return the lights that shine, where the view of a scene has them."""
-    return [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
-
-
-class Live:
-    """Shares of light of one mesh, computed again only for lights that have moved.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh that is lit.
-    inputs : ShadingInputs
-        Its points with tangents or normals.
-    bundle : Bundle
-        How the lines dim the light.
-    names : tuple of str
-        As for :func:`dim`.
+    Raises
+    ------
+    TypeError, ValueError
+        If there are no lines, or points that are not in 3-space.
     """
 
     def __init__(
-        self, mesh: pv.DataSet, inputs: ShadingInputs, bundle: Bundle, names: tuple[str, str]
+        self, meshes: Sequence[pv.DataSet], inputs: Sequence[ShadingInputs], bundle: Bundle
     ) -> None:
-        self._target = _Target(_work_of([mesh], [inputs], bundle), mesh, inputs, names)
-
-    def dimmed(self, inputs: ShadingInputs, scene: Scene) -> ShadingInputs:
-        """Return inputs with the shares of the lights of a scene.
-
-        They are the same object where they have those shares already.
-        """
-        known = self._target.known
-        made = self._target.dim(_lights(scene))
-        if known is made and inputs.transmittance is made.transmittance:
-            return inputs
-        return dataclasses.replace(inputs, transmittance=made.transmittance)
-
-
-@dataclasses.dataclass
-class _Work:
-    """Lines and what is computed of them once they are needed."""
-
-    lines: Lines
-    source: str
-    bundle: Bundle
+        for given in inputs:
+            if given.points.shape[1] != 3:
+                got = f"points of {given.points.shape[1]} components"
+                raise ValueError(_check.message("bundle", "points in 3-space", got))
+        self.own, self.bundle = bundle.lines is None, bundle
+        self.lines = joined(meshes) if self.own else _lines_of(bundle.lines)
+        if not len(self.lines.ids):
+            remedy = "pass Bundle(lines=...) to dim another mesh by lines"
+            raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
+        asked = repr([bundle.diameter, bundle.depth, bundle.grid, self.own])
+        self.source = records.source(*self.lines, np.array([asked]))
 
     @functools.cached_property
     def medium(self) -> tuple[Medium, float]:
         """Medium of the lines and their diameter."""
         return medium_of(self.lines, self.bundle)
+
+
+def _lights(scene: Scene) -> list[Light]:
+    """Return the lights that shine, where the view of a scene has them."""
+    return [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
 
 
 def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
@@ -202,70 +165,78 @@ def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
     return geometry.medium(*lines, voxel=voxel), diameter
 
 
-class _Target:
-    """A mesh that lines dim, and the shares that are known of it."""
+class Dimmed:
+    """A mesh that lines dim, and the shares that are known of it, one for each light.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh that is lit.
+    inputs : ShadingInputs
+        Its points with tangents or normals.
+    work : Work
+        Lines that dim it.
+    names : tuple of str
+        As for :func:`dim`.
+    """
 
     def __init__(
-        self, work: _Work, mesh: pv.DataSet, given: ShadingInputs, names: tuple[str, str]
+        self, mesh: pv.DataSet, inputs: ShadingInputs, work: Work, names: tuple[str, str]
     ) -> None:
         self._work = work
-        points = np.asarray(given.points[:])
-        if given.origin is not None and any(given.origin):
-            points = points.astype(np.float64) + np.array(given.origin)
-        vectors = given.normals if given.tangents is None else given.tangents
+        points = np.asarray(inputs.points[:])
+        if inputs.origin is not None and any(inputs.origin):
+            points = points.astype(np.float64) + np.array(inputs.origin)
+        vectors = inputs.normals if inputs.tangents is None else inputs.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
         lengths: Array | None = None
-        if given.tangents is not None:
+        if inputs.tangents is not None:
             lengths = np.zeros(len(points))
-            if work.bundle.lines is None and polylines.has_lines_only(mesh):
+            if work.own and polylines.has_lines_only(mesh):
                 lengths = polylines.of_points(mesh, geometry.line_lengths)
-        if rows is not None and len(rows) * given.repeat == len(points):
-            rows = np.repeat(rows, given.repeat, axis=0)
+        if rows is not None and len(rows) * inputs.repeat == len(points):
+            rows = np.repeat(rows, inputs.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
             # Several tangents per point: a surface or a volume that light reaches from all sides.
             rows = lengths = None
-        self._points, self._rows, self._lengths = points, rows, lengths
-        empty = np.empty(0)
-        self._digest = _digest(
-            np.array(work.source),
-            points,
-            *(empty if x is None else x for x in (rows, lengths)),
-        )
-        kept = _kept(mesh, names, self._digest)
-        #: Shares that still hold, and the keys of their lights.
-        self.known = None if kept is None else kept[1]
-        self._keys = [] if kept is None else kept[0]
+        self._targets = points, rows, lengths
+        arrays = (np.empty(0) if x is None else x for x in self._targets)
+        self._source = f"{work.source} {records.source(*arrays)}"
+        self._known = _kept(mesh, names, self._source)
 
-    def dim(
-        self, lights: Sequence[Light], progress: Callable[[int], None] | None = None
-    ) -> Dimming:
+    def by(self, lights: Sequence[Light], progress: Callable[[int], None] | None = None) -> Dimming:
         """Return the shares of some lights, known ones where they still hold."""
-        keys, known = [_key(light) for light in lights], self.known
+        keys, known = [_key(light) for light in lights], self._known
         columns: dict[str, Array] = {}
         facts: Record = {}
         if known is not None:
-            if self._keys == keys:
+            if known.keys == keys:
                 return known
-            columns = dict(zip(self._keys, known.transmittance.T, strict=True))
-            facts = {name: known.record.get(name) for name in ("diameter", "voxel")}
+            columns = dict(zip(known.keys, known.transmittance.T, strict=True))
+            facts = known.record
         missing = [i for i, key in enumerate(keys) if key not in columns]
         if missing:
             medium, diameter = self._work.medium
-            found = medium.dimmed(
-                medium.targets(self._points, self._rows, self._lengths),
-                diameter,
-                [_place(lights[i]) for i in missing],
-                progress=progress,
-            )
-            columns |= {keys[i]: found[:, j] for j, i in enumerate(missing)}
+            places = [_place(lights[i]) for i in missing]
+            targets = medium.targets(*self._targets)
+            found = medium.dimmed(targets, diameter, places, progress=progress)
+            columns |= {keys[i]: column for i, column in zip(missing, found.T, strict=True)}
             facts = {"diameter": diameter, "voxel": medium.voxel}
-        transmittance = np.empty((len(self._points), len(keys)), np.float32)
+        transmittance = np.empty((len(self._targets[0]), len(keys)), np.float32)
         for i, key in enumerate(keys):
             transmittance[:, i] = columns[key]
-        record: Record = {**facts, "source": self._digest, "lights": keys}
-        made = Dimming(transmittance, record)
-        self.known, self._keys = made, keys
-        return made
+        self._known = Dimming(transmittance, facts | {"source": self._source, "lights": keys}, keys)
+        return self._known
+
+    def dimmed(self, inputs: ShadingInputs, scene: Scene) -> ShadingInputs:
+        """Return inputs with the shares of the lights of a scene.
+
+        They are the same object where they have those shares already.
+        """
+        made = self.by(_lights(scene))
+        if inputs.transmittance is made.transmittance:
+            return inputs
+        return dataclasses.replace(inputs, transmittance=made.transmittance)
 
 
 def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
@@ -280,10 +251,9 @@ def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
 
 def _place(light: Light) -> tuple[tuple[float, ...], bool]:
     """Return the position of a light and True, or its direction and False."""
-    if light.position is not None:
-        return tuple(light.position), True
-    assert light.direction is not None
-    return tuple(light.direction), False
+    place = light.direction if light.position is None else light.position
+    assert place is not None
+    return tuple(place), light.position is not None
 
 
 def _key(light: Light) -> str:
@@ -295,31 +265,16 @@ def _key(light: Light) -> str:
     return f"{'near' if near else 'far'} {place}"
 
 
-def _kept(
-    mesh: pv.DataSet, names: tuple[str, str], digest: str
-) -> tuple[list[str], Dimming] | None:
-    """Return the keys of lights and the shares of a mesh that still hold."""
-    whole = records.read(mesh, names[0])
-    record = (whole or {}).get("bundle")
-    if not isinstance(record, dict) or record.get("source") != digest:
+def _kept(mesh: pv.DataSet, names: tuple[str, str], source: str) -> Dimming | None:
+    """Return the shares of a mesh that still hold."""
+    record = (records.read(mesh, names[0]) or {}).get("bundle")
+    if not isinstance(record, dict) or record.get("source") != source:
         return None
-    keys, made = record.get("lights"), records.made(mesh, names[0])
-    if not isinstance(keys, list) or names[1] not in made & set(mesh.point_data):
+    keys = record.get("lights")
+    if not isinstance(keys, list) or names[1] not in records.made(mesh, names[0]):
         return None
     shares = np.asarray(mesh.point_data[names[1]]).reshape(mesh.n_points, -1)
-    if shares.shape[1] != len(keys):
-        return None
-    facts: Record = {name: record.get(name) for name in ("diameter", "voxel")}
-    return keys, Dimming(shares, {**facts, "source": digest, "lights": keys})
-
-
-def _digest(*arrays: Raw) -> str:
-    """Return a digest of arrays."""
-    digest = hashlib.sha256()
-    for array in arrays:
-        digest.update(f"{array.dtype}{array.shape}".encode())
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
+    return Dimming(shares, record, keys) if shares.shape[1] == len(keys) else None
 
 
 def _lines_of(given: object) -> Lines:
@@ -337,15 +292,12 @@ def _lines_of(given: object) -> Lines:
 def joined(meshes: Sequence[pv.DataSet]) -> Lines:
     """Return the lines of the meshes that have nothing but lines."""
     found = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
-    if not found:
-        none = np.empty(0, np.intp)
-        return Lines(np.empty((0, 3)), none, np.zeros(1, np.intp))
-    points, ids, offsets = zip(*found, strict=True)
-    kind = np.result_type(*points)
+    none = np.empty((0, 3)), np.empty(0, np.intp), np.zeros(1, np.intp)
+    points, ids, offsets = zip(*(found or [none]), strict=True)
     starts = np.cumsum([0, *(len(rows) for rows in points)])
     ends = np.cumsum([0, *(len(own) for own in ids)])
     return Lines(
-        np.concatenate(points).astype(kind, copy=False),
+        np.concatenate(points),
         np.concatenate([own + start for own, start in zip(ids, starts, strict=False)]),
         np.concatenate(
             [[0], *(own[1:] + end for own, end in zip(offsets, ends, strict=False))]

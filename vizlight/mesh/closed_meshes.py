@@ -108,8 +108,7 @@ class Solid:
 
 def triangles_of(surface: object, name: str) -> tuple[Array, Indices]:
     """Return the vertices and triangles of a surface; coincident vertices are merged."""
-    vertices, triangles, _, _ = _merged(surface, name)
-    return vertices, triangles
+    return _merged(surface, name)[:2]
 
 
 def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indices]:

@@ -18,7 +18,7 @@ from vizlight import _check
 from vizlight.mesh import brains, georeference, polylines, series
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from vizlight._types import Array, Foreign, Indices, Keywords, Raw
 
@@ -78,7 +78,7 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return georeference.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
-    if suffix == ".inp" and _begins(path, b"*"):
+    if suffix == ".inp" and _head(path, 1) == b"*":
         # PyVista takes it for the format of AVS.
         return _of_meshio(path, ("abaqus",))
     if PACKAGES.get(suffix, ("",))[0] == "meshio" and missing(path) == "":
@@ -91,9 +91,9 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
     return None
 
 
-def _begins(path: Path, start: bytes) -> bool:
+def _head(path: Path, count: int) -> bytes:
     with path.open("rb") as file:
-        return file.read(len(start)) == start
+        return file.read(count)
 
 
 def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
@@ -143,9 +143,7 @@ class _Console:
 
 def _refuse_narrow(path: Path) -> None:
     """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
-    with path.open("rb") as file:
-        head = file.read(_DEM_COLUMNS.stop)
-    number = head[_DEM_COLUMNS].strip()
+    number = _head(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
     if not number.isdigit() or int(number) < _DEM_LEAST:
         got = ascii(number.decode("latin-1"))
         raise ValueError(f"{got} columns in the header, VTK reads {_DEM_LEAST} or more")
@@ -340,5 +338,5 @@ def _of_axes(axes: list[Array]) -> pv.ImageData | pv.RectilinearGrid:
     return pv.RectilinearGrid(*axes)
 
 
-def _even(axis: Iterable[float], step: float) -> bool:
-    return bool(np.all(np.abs(np.diff(np.asarray(axis)) - step) <= EQUAL * step))
+def _even(axis: Array, step: float) -> bool:
+    return bool(np.all(np.abs(np.diff(axis) - step) <= EQUAL * step))

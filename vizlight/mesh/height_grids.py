@@ -12,7 +12,7 @@ import scipy
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, records, splitting
 from vizlight.vtk.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
@@ -134,12 +134,14 @@ def _sampled(
     points: Array = np.asarray(points_of(mesh, None)[:], dtype=np.float64)
     z = _elevation(mesh, elevation, points[:, 2])
     points = np.column_stack([points[:, :2], factor * np.asarray(z, dtype=np.float64)])
-    skin = blocks.surface(mesh if isinstance(mesh, pv.PolyData) else _skin(mesh), "mesh")
-    faces = skin if skin.is_all_triangles else skin.triangulate()
-    triangles = np.asarray(faces.regular_faces, dtype=np.intp)
+    if isinstance(mesh, pv.PolyData):
+        blocks.surface(mesh, "mesh")
+    else:
+        _check_layer(mesh)
+    triangles = splitting.simplices(mesh)
     known = np.all(np.isfinite(points), axis=1)
     triangles = triangles[np.all(known[triangles], axis=1)]
-    if not len(triangles):
+    if not len(triangles) or triangles.shape[1] < 3:
         raise ValueError(_check.message("mesh", "faces with heights", "none"))
     used = points[np.unique(triangles)]
     low, sides = used.min(axis=0)[:2], np.ptp(used, axis=0)[:2]
@@ -160,27 +162,20 @@ def _sampled(
     return Raster(x, y, height_field.filled(heights), place, own=points)
 
 
-def _skin(grid: Grid) -> pv.PolyData:
-    """Return the cells of a grid of one layer as quadrangles of the same points."""
+def _check_layer(grid: Grid, remedy: str = "") -> tuple[int, int]:
+    """Return the numbers of columns and rows of a grid that has one layer."""
     nx, ny, nz = grid.dimensions
     if nz != 1:
         got = f"{nx} x {ny} x {nz}"
-        raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got))
-    at = np.arange(nx * ny).reshape(ny, nx)
-    faces = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1).reshape(-1, 4)
-    points = np.asarray(points_of(grid, None)[:])
-    skin: pv.PolyData = pv.PolyData.from_regular_faces(points, faces)
-    return skin
+        raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got, remedy))
+    return nx, ny
 
 
 def _nodes(grid: Grid) -> tuple[Array, float]:
     """Return the points of a level grid, shape (ny, nx, 3), and the rounding of their x and y."""
     if grid.n_points == 0:
         raise ValueError(_check.message("mesh", "a grid of points", "an empty one"))
-    nx, ny, nz = grid.dimensions
-    if nz != 1:
-        got = f"{nx} x {ny} x {nz}"
-        raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got, REMEDY))
+    nx, ny = _check_layer(grid, REMEDY)
     if isinstance(grid, pv.StructuredGrid):
         points: Array = np.asarray(grid.points)
     else:

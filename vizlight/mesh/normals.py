@@ -12,20 +12,16 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._version import __version__
+from vizlight.geometry.lines.simplices import Simplices
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene import View
-from vizlight.shading.results import digest
 from vizlight.vtk.cells import (
-    POLYDATA,
-    as_numpy,
     connectivity,
     faces_only,
     first_twins,
     has_faces,
     places,
-    point_data,
     triangles,
 )
 from vizlight.vtk.corners import numbered, split_faces
@@ -37,12 +33,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import TypeVar
 
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
     from vizlight._types import Array, Indices
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
-    from vizlight.shading.results import Record
 
     SurfaceT = TypeVar("SurfaceT")
 
@@ -59,7 +52,6 @@ FEWEST = 256
 #: Numbers of meshes, and of triangles of each, whose normals are compared with the faces, and share
 #: of the area from which they contradict them.
 MOST_MESHES, MOST_FACES, CONTRADICT = 16, 4096, 0.25
-_NONE = np.empty(0)
 
 
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
@@ -186,7 +178,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     """Return a surface with points split where faces meet at more than an angle in degrees.
 
     ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
-    points; the mesh itself is not changed.
+    points; the mesh itself is not changed, and one that is split shares no memory with it.
     """
     return split_or_normals(mesh, angle)[0]
 
@@ -202,25 +194,17 @@ def split_or_normals(
         if not found.sharp:
             return mesh, found
         angle = SHARP
-    return _split(mesh, angle), None
-
-
-def _split(mesh: pv.PolyData, angle: float) -> pv.PolyData:
-    """Return a surface with points split where faces meet at more than an angle in degrees.
-
-    One that is split shares no memory with the mesh.
-    """
     ids, ends = _corners(mesh)
     twins = first_twins(blocks.cell_array(ids, ends))
     corners, origin, turned = split_faces(places(mesh), ids, ends, angle, twins)
     if len(origin) == mesh.n_points:
-        return mesh
+        return mesh, None
     # Pieces that are taken apart would not know that they had a side in common.
     size = np.diff(ends)
     last = np.repeat(ends[:-1] + ends[1:] - 1, size)
     at = np.arange(len(ids))
     corners = corners[np.where(np.repeat(turned, size), last - at, at)]
-    return _at(mesh, corners, ends, origin)
+    return _at(mesh, corners, ends, origin), None
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
@@ -268,13 +252,7 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
         own.DeepCopy(cells)
         put(own)
     found.SetPolys(blocks.cell_array(corners, ends))
-    for key, array in mesh.point_data.items():
-        records.attach_rows(found, key, np.asarray(array)[origin])
-    rows = _rows(mesh)
-    for key, array in mesh.cell_data.items():
-        found.cell_data[key] = np.asarray(array)[rows]
-    records.carry_active(mesh, found)
-    found.GetFieldData().DeepCopy(mesh.GetFieldData())
+    records.carry_rows(mesh, found, origin, _rows(mesh))
     records.carry(mesh, found)
     return found
 
@@ -284,24 +262,6 @@ def _rows(mesh: pv.PolyData) -> Indices:
     size = np.diff(connectivity(mesh.GetStrips())[1])
     rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
     return np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
-
-
-def fingerprint(mesh: pv.DataSet) -> str | None:
-    """Return a digest of the points and cells of a mesh, None for a kind that keeps no normals."""
-    cells: list[vtkCellArray | None]
-    if isinstance(mesh, pv.PolyData):
-        cells = [get(mesh) if count(mesh) else None for count, get in POLYDATA[1:]]
-    elif isinstance(mesh, pv.UnstructuredGrid):
-        cells = [mesh.GetCells()]
-    else:
-        return None
-    arrays = [places(mesh)]
-    for cell in cells:
-        if cell is not None and cell.GetNumberOfCells():
-            arrays += [as_numpy(cell.GetConnectivityArray()), as_numpy(cell.GetOffsetsArray())]
-        else:
-            arrays.append(_NONE)
-    return " ".join(f"{array.dtype.str}{digest(array)}" for array in arrays)
 
 
 def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
@@ -315,46 +275,27 @@ def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
     """Return normals, without the rows of points where these do not stay with a mesh."""
     if normals is None or _stay(mesh, normals):
         return normals
-    return dataclasses.replace(normals, vectors=_NONE, lean=None, open=0)
+    return dataclasses.replace(normals, vectors=np.empty(0), lean=None, open=0)
 
 
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
-    """Attach normals that were computed to a mesh, with a digest of what they were computed from.
-
-    Where the user has an array of that name nothing is attached, and nothing to a small mesh.
-    """
+    """Attach normals that were computed to a mesh, unless it is small; see :func:`records.keep`."""
     if not _stay(mesh, normals):
-        return
-    if point_data(mesh).HasArray(KEPT) and KEPT not in records.made(mesh, KEPT):
-        return
-    source = fingerprint(mesh)
-    if source is None:
         return
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     # One array, so that it travels with the mesh through files as a whole or not at all.
     rows[:, :3], rows[:, 3], rows[:, 4] = normals.vectors, normals.lean, normals.open
-    records.attach_rows(mesh, KEPT, rows)
-    record: Record = {
-        "vizlight": __version__, "filter": "normals", "source": source, "sharp": normals.sharp,
-        "inside": normals.inside,
-    }  # fmt: skip
-    records.write(mesh, KEPT, record, {KEPT: rows})
+    records.keep(mesh, KEPT, "normals", rows, sharp=normals.sharp, inside=normals.inside)
 
 
 def kept(mesh: pv.DataSet) -> Sided | None:
     """Return the normals that an earlier result kept, if the mesh has not changed since."""
-    there = point_data(mesh).HasArray(KEPT)
-    record = records.read(mesh, KEPT) if there else None
-    if record is None or KEPT not in records.made(mesh, KEPT):
+    found = records.kept(mesh, KEPT, 5)
+    if found is None:
         return None
-    rows = np.asarray(mesh.point_data[KEPT])
-    if rows.shape != (mesh.n_points, 5) or rows.dtype != np.float32:
-        return None
-    # Moved points or other cells: the normals are of another surface.
-    if record.get("source") != fingerprint(mesh):
-        return None
+    rows, record = found
     return Sided(
-        np.ascontiguousarray(rows[:, :3]),
+        np.ascontiguousarray(rows[:, :3], dtype=np.float32),
         rows[:, 3],
         rows[:, 4].astype(np.intp),
         records.share(record, "sharp"),
@@ -395,24 +336,12 @@ def with_normals(
     return triangles if triangles.is_all_triangles else triangles.triangulate()
 
 
-def closest(surface: pv.PolyData, points: Array) -> tuple[Array, Array]:
-    """Return the closest points on a mesh of triangles, and its interpolated normals there."""
-    if not len(points):
-        return np.empty((0, 3)), np.empty((0, 3))
+def closest_normals(surface: pv.PolyData, points: Array) -> Array:
+    """Return the normals of a mesh of triangles, interpolated, at its places closest to points."""
+    cells = Simplices(surface.points, np.asarray(surface.regular_faces, dtype=np.intp))
     nearest: Foreign = surface.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
-    corners = surface.regular_faces[np.atleast_1d(nearest[0])]
-    places: Array = np.atleast_2d(nearest[1])
-    a, b, c = (np.asarray(surface.points, dtype=np.float64)[corners[:, i]] for i in range(3))
-    normal = np.cross(b - a, c - a)
-    area = np.einsum("ij,ij->i", normal, normal)
-    area = np.where(area > 0, area, 1)[:, np.newaxis]
-    weights = [
-        np.einsum("ij,ij->i", np.cross(q - p, places - p), normal)[:, np.newaxis] / area
-        for p, q in ((b, c), (c, a), (a, b))
-    ]
-    normals = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
-    found = sum(w * normals[corners[:, i]] for i, w in enumerate(weights))
-    return places, np.asarray(found)
+    places = cells.locate(np.atleast_1d(nearest[0]), np.atleast_2d(nearest[1]))
+    return cells.interpolated(np.asarray(surface.point_data[NORMALS], dtype=np.float64), places)
 
 
 def welded(mesh: pv.PolyData) -> pv.PolyData:
@@ -445,11 +374,7 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     out = pv.PolyData()
     out.points = np.asarray(mesh.points)[kept]
     out.SetPolys(blocks.cell_array((np.cumsum(kept) - 1)[corners], ends))
-    for key, array in mesh.point_data.items():
-        records.attach_rows(out, key, np.asarray(array)[kept])
-    out.GetCellData().ShallowCopy(mesh.GetCellData())
-    out.GetFieldData().ShallowCopy(mesh.GetFieldData())
-    records.carry_active(mesh, out)
+    records.carry_rows(mesh, out, np.flatnonzero(kept))
     return out
 
 

@@ -17,7 +17,7 @@ from vizlight.model.frames import default_rtol
 from vizlight.shading.results import plain
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of
-from vizlight.vtk.cells import connectivity, has_faces
+from vizlight.vtk.cells import has_faces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -71,10 +71,7 @@ class Turning:
         exact = None if matrix is None else matrix.tolist()
         for name, array in arrays.items():
             if matrix is not None:
-                rows = array.shape[1] // n
-                array = _blocks(
-                    lambda x, rows=rows: projection.turn(x.reshape(-1, rows, n), matrix), array
-                )
+                array = _blocks(lambda x: projection.turn(x.reshape(len(x), -1, n), matrix), array)
             records.attach_rows(out, name, array)
         if plane is not None:
             out = self._sliced(out, *plane, lost)
@@ -274,24 +271,10 @@ def continued(mesh: pv.DataSet, name: str) -> Array | None:
 
 
 def _neighbours(mesh: pv.DataSet) -> tuple[Indices, Indices]:
-    """Return the pairs of points that follow each other in a cell, each pair both ways."""
-    if isinstance(mesh, pv.PolyData):
-        kinds = [mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
-    else:
-        kinds = [pv.UnstructuredGrid(mesh).GetCells()]
-    pairs = []
-    for cells in kinds:
-        ids, ends = connectivity(cells)
-        after = np.roll(ids, -1)
-        filled = np.diff(ends) > 0
-        after[ends[1:][filled] - 1] = ids[ends[:-1][filled]]
-        # The first and the last point of a line are no neighbours.
-        inner = np.ones(len(ids), dtype=np.bool_)
-        if isinstance(mesh, pv.PolyData) and cells is kinds[0]:
-            inner[ends[1:][filled] - 1] = False
-        pairs += [(ids[inner], after[inner]), (after[inner], ids[inner])]
-    a, b = (np.concatenate(part) for part in zip(*pairs, strict=True))
-    return a, b
+    """Return the pairs of points that an edge joins, each pair both ways."""
+    edges = mesh.extract_all_edges(progress_bar=False)
+    a, b = polylines.segments(edges.GetLines()).T
+    return np.concatenate([a, b]), np.concatenate([b, a])
 
 
 def _blocks(
@@ -327,15 +310,13 @@ def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
 
 def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
     """Return a mesh without some points and without the cells that use one of them."""
-    before = set(mesh.point_data), set(mesh.cell_data)
     kept = np.asarray(np.flatnonzero(~lost), dtype=int)
-    grid: pv.DataSet = mesh.extract_points(kept, adjacent_cells=False, progress_bar=False)
+    grid: pv.DataSet = mesh.extract_points(
+        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False, progress_bar=False
+    )
     if isinstance(mesh, pv.PolyData):
         grid = grid.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
-    for data, names in zip((grid.point_data, grid.cell_data), before, strict=True):
-        for name in set(data) - names:
-            del data[name]
-    for name in before[0] - set(grid.point_data):  # where no point is left
+    for name in set(mesh.point_data) - set(grid.point_data):  # where no point is left
         records.attach_rows(grid, name, np.asarray(mesh.point_data[name])[:0])
     grid.GetFieldData().DeepCopy(mesh.GetFieldData())
     return grid
@@ -428,12 +409,9 @@ def _mean_frames(array: Array, between: Sparse, n: int) -> Array:
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), FRAMES):
         part = between[block]
-        used, columns = np.unique(part.indices, return_inverse=True)
-        near = scipy.sparse.csr_array(
-            (part.data, columns.reshape(-1), part.indptr), (len(part.indptr) - 1, len(used))
-        )
+        used = np.unique(part.indices)
         rows = array[used].astype(np.float64).reshape(len(used), -1, n)
-        found[block] = slices.mean_frame(rows, near).reshape(-1, array.shape[1])
+        found[block] = slices.mean_frame(rows, part[:, used]).reshape(-1, array.shape[1])
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, records
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.polylines import has_lines_only, line_tangents
 
@@ -133,8 +133,5 @@ def _taken(
 ) -> pv.PolyData:
     """Return lines of some sizes through points of a mesh, with the data of those of its lines."""
     out = polydata(np.asarray(mesh.points)[rows], np.concatenate([[0], np.cumsum(sizes)]))
-    for name, array in mesh.point_data.items():
-        out.point_data[name] = np.asarray(array)[rows]
-    for name, array in mesh.cell_data.items():
-        out.cell_data[name] = np.asarray(array)[lines]
+    records.carry_rows(mesh, out, rows, np.asarray(lines))
     return out

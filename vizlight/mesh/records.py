@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -11,15 +10,25 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
+from vizlight._version import __version__
 from vizlight.mesh import blocks
 from vizlight.shading.results import digest, plain, record_key
-from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.cells import as_numpy, as_vtk, cell_data, field_data, point_data
+from vizlight.vtk import hull
+from vizlight.vtk.arrays import is_of_cells, means
+from vizlight.vtk.cells import (
+    as_numpy,
+    as_vtk,
+    cell_arrays,
+    cell_data,
+    field_data,
+    places,
+    point_data,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from vizlight._types import Foreign, Keywords, Raw
+    from vizlight._types import AnyArray, Foreign, Indices, Keywords, Raw, Slice
     from vizlight.mesh.blocks import DataSetT
     from vizlight.shading.results import Record
 
@@ -86,26 +95,64 @@ def read(mesh: pv.DataSet, name: str) -> Keywords | None:
     return record if _is_record(record) else None
 
 
-#: Type of each entry that every record has.
-_ENTRIES = {"vizlight": str, "filter": str, "arrays": dict}
+#: Type of each entry of a record; every one has the first three.
+_ENTRIES = {"vizlight": str, "filter": str, "arrays": dict, "options": dict, "scene": dict}
 
 
 def _is_record(record: object) -> bool:
     """Return whether a value read from JSON has the form of a record."""
     if not isinstance(record, dict):
         return False
-    if not all(isinstance(record.get(name), kind) for name, kind in _ENTRIES.items()):
-        return False
-    if not all(isinstance(record.get(name, {}), dict) for name in ("options", "scene")):
+    whole: Keywords = {"options": {}, "scene": {}} | record
+    if not all(isinstance(whole.get(name), kind) for name, kind in _ENTRIES.items()):
         return False
     return all(isinstance(made_as, str) for made_as in record["arrays"].values())
+
+
+def fingerprint(mesh: pv.DataSet) -> str | None:
+    """Return a digest of the points and cells of a mesh, None for a kind that keeps no rows."""
+    if not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
+        return None
+    arrays = [places(mesh), np.array(sorted(hull.cell_types(mesh)))]
+    for cells in cell_arrays(mesh):
+        arrays += [as_numpy(cells.GetConnectivityArray()), as_numpy(cells.GetOffsetsArray())]
+    return source(*arrays)
+
+
+def source(*arrays: Raw) -> str:
+    """Return a digest of arrays from which others are computed."""
+    return " ".join(f"{array.dtype.str}{digest(array)}" for array in arrays)
+
+
+def keep(mesh: pv.DataSet, name: str, filter_name: str, rows: Raw, **facts: object) -> None:
+    """Attach rows of points, with a digest of the points and cells that they are computed from.
+
+    Where the user has an array of that name nothing is attached.
+    """
+    own = fingerprint(mesh)
+    if own is None or (point_data(mesh).HasArray(name) and name not in made(mesh, name)):
+        return
+    attach_rows(mesh, name, rows)
+    record = {"vizlight": __version__, "filter": filter_name, "source": own} | facts
+    write(mesh, name, record, {name: rows})
+
+
+def kept(mesh: pv.DataSet, name: str, width: int) -> tuple[AnyArray, Record] | None:
+    """Return rows that were kept of points, and their record, if the mesh has not changed since."""
+    record = read(mesh, name) if point_data(mesh).HasArray(name) else None
+    if record is None or name not in made(mesh, name):
+        return None
+    rows = np.asarray(mesh.point_data[name])
+    # Moved points or other cells: the rows are of another mesh.
+    if rows.shape != (mesh.n_points, width) or record.get("source") != fingerprint(mesh):
+        return None
+    return rows, record
 
 
 def share(record: Mapping[str, object], name: str) -> float:
     """Return a number from 0 to 1 in a record, 0 for anything else."""
     value = record.get(name)
-    known = isinstance(value, int | float) and math.isfinite(value) and 0 <= value <= 1
-    return float(value) if known and isinstance(value, int | float) else 0.0
+    return float(value) if isinstance(value, int | float) and 0 <= value <= 1 else 0.0
 
 
 def count(record: Mapping[str, object], name: str, most: int) -> int:
@@ -251,13 +298,9 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     wanted = {name for name in names if isinstance(name, str) and is_of_cells(mesh, name)}
     if not wanted:
         return mesh
-    only, out = mesh.copy(deep=False), mesh.copy(deep=False)
-    only.clear_data()
+    out = mesh.copy(deep=False)
     for name in wanted:
-        only.cell_data[name] = mesh.cell_data[name]
-    mean = only.cell_data_to_point_data()
-    for name in wanted:
-        out.point_data[name] = mean.point_data[name]
+        out.point_data[name] = means(mesh, np.asarray(mesh.cell_data[name]))
     return out
 
 
@@ -287,6 +330,18 @@ def activate(mesh: pv.DataSet, name: str) -> None:
         and mesh.active_scalars_info.association != pv.FieldAssociation.POINT
     ):
         mesh.set_active_scalars(name, preference="point")
+
+
+def carry_rows(
+    mesh: pv.DataSet, derived: pv.DataSet, points: Indices, cells: Indices | Slice = slice(None)
+) -> None:
+    """Give a mesh that is made of some points and cells of another all arrays of these."""
+    for name, array in mesh.point_data.items():
+        attach_rows(derived, name, np.asarray(array)[points])
+    for name, array in mesh.cell_data.items():
+        derived.cell_data[name] = np.asarray(array)[cells]
+    carry_active(mesh, derived)
+    derived.GetFieldData().DeepCopy(mesh.GetFieldData())
 
 
 def carry_active(mesh: pv.DataSet, derived: pv.DataSet) -> None:

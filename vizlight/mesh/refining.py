@@ -124,7 +124,8 @@ def refined(
     records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
-        splitting.keep_tangents(found, np.asarray(made.inputs.tangents[:]))
+        tangents = np.asarray(made.inputs.tangents[:])
+        records.keep(found, splitting.TANGENTS, "refine", tangents)
     return Refined(found, made, left)
 
 

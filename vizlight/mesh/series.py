@@ -56,14 +56,13 @@ class Series:
         self._meshes: Sequence[Foreign] | None = None
         self._reader: Foreign = None
         if isinstance(source, str | Path):
-            path = _check.path("series", source)
+            path, reason = _check.path("series", source), ""
             try:
                 source = reader_of(path)
             except OSError as error:
-                expected, got = "the path of a file that PyVista reads", f"'{path}' ({error})"
-                raise ValueError(_check.message("series", expected, got)) from error
+                source, reason = None, f" ({error})"
             if source is None:
-                expected, got = "the path of a file that PyVista reads", f"'{path}'"
+                expected, got = "the path of a file that PyVista reads", f"'{path}'{reason}"
                 raise ValueError(_check.message("series", expected, got))
         if hasattr(source, "read"):
             if times is not None:

@@ -9,12 +9,12 @@ import pyvista as pv
 import scipy
 
 from vizlight import _check
-from vizlight._version import __version__
-from vizlight.mesh import blocks, normals, records
+from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
-from vizlight.vtk import polylines
+from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import connectivity, has_faces
+from vizlight.vtk.cells import triangles as triangles_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     from vizlight._types import Array, Bools, Indices, Raw, Sparse
-    from vizlight.shading.results import Record
 
 #: Number of bits of the smaller number of a pair.
 HALF = 31
@@ -47,16 +46,11 @@ def simplices(mesh: pv.DataSet) -> Indices:
     """
     if not mesh.n_points or not mesh.n_cells:
         return np.empty((0, 3), np.intp)
-    if isinstance(mesh, pv.PolyData):
-        surface, origin = mesh, None
-    else:
-        surface, origin = blocks.outer_surface(mesh)
-    if has_faces(surface):
-        found, _ = triangles(surface)
-    else:
-        found = polylines.segments(surface.GetLines())
+    surface, origin = hull.surface_of(mesh)
+    lines = not has_faces(surface)
+    found = polylines.segments(surface.GetLines()) if lines else triangles_of(surface)
     if origin is None:
-        return found
+        return found.astype(np.intp, copy=False)
     found = origin[found]
     return found[(found >= 0).all(axis=1)]
 
@@ -358,31 +352,13 @@ def _interpolated(rows: Raw, shares: Sparse, *, places: bool = False) -> Raw:
     return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
 
 
-def keep_tangents(mesh: pv.PolyData, tangents: Array) -> None:
-    """Attach the tangents of lines, with a digest of the points and lines that they belong to.
-
-    New points lie on the segments of a line, whose direction is not the line's there. Where
-    the user has an array of that name nothing is attached.
-    """
-    ours = TANGENTS in records.made(mesh, TANGENTS)
-    if TANGENTS in mesh.point_data and not ours:
-        return
-    records.attach_rows(mesh, TANGENTS, tangents)
-    record: Record = {
-        "vizlight": __version__, "filter": "refine", "source": normals.fingerprint(mesh),
-    }  # fmt: skip
-    records.write(mesh, TANGENTS, record, [TANGENTS])
-
-
 def kept_tangents(mesh: pv.DataSet) -> Array | None:
-    """Return the tangents that were kept of lines, if the mesh has not changed since."""
-    rows = mesh.point_data.get(TANGENTS)
-    record = None if rows is None else records.read(mesh, TANGENTS)
-    if rows is None or record is None or np.shape(rows) != (mesh.n_points, 3):
-        return None
-    if TANGENTS not in records.made(mesh, TANGENTS):
-        return None
-    return np.asarray(rows) if record.get("source") == normals.fingerprint(mesh) else None
+    """Return the tangents that were kept of lines, if the mesh has not changed since.
+
+    New points of a refined line lie on its segments, whose direction is not the line's there.
+    """
+    found = records.kept(mesh, TANGENTS, 3)
+    return None if found is None else found[0]
 
 
 def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:

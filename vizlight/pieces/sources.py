@@ -17,11 +17,10 @@ import numpy as np
 import pyvista as pv
 from vtkmodules import vtkIOXML
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
-from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight import _check, files
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
+from vizlight.vtk.hull import cropped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -153,12 +152,7 @@ class GridPiece:
         if not hasattr(mesh, "GetExtent"):
             return own_cells(mesh)
         if tuple(mesh.GetExtent()) != self.extent:
-            kinds = {pv.ImageData: vtkExtractVOI, pv.RectilinearGrid: vtkExtractRectilinearGrid}
-            cutter: Foreign = kinds.get(type(mesh), vtkExtractGrid)()
-            cutter.SetInputDataObject(mesh)
-            cutter.SetVOI(self.extent)
-            cutter.Update()
-            own = pv.wrap(cutter.GetOutput())
+            own = pv.wrap(cropped(mesh, self.extent))
             for name in mesh.field_data:
                 own.field_data[name] = mesh.field_data[name]
             mesh = own

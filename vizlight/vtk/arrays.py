@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource
 
 
+def dimensions(grid: Foreign) -> tuple[int, int, int]:
+    """Return the number of points of a grid along each of its axes."""
+    low, high = np.reshape(grid.GetExtent(), (3, 2)).T
+    i, j, k = (high - low + 1).tolist()
+    return i, j, k
+
+
 class GridPoints:
     """Points of an image or a rectilinear grid, computed for each slice and not stored."""
 
@@ -29,7 +36,7 @@ class GridPoints:
     def __init__(self, grid: vtkImageData | vtkRectilinearGrid) -> None:
         self.shape: tuple[int, ...] = (grid.GetNumberOfPoints(), 3)
         low = np.array(grid.GetExtent()[::2])
-        self._dimensions = tuple(int(n) for n in np.array(grid.GetExtent()[1::2]) - low + 1)
+        self._dimensions = dimensions(grid)
         if isinstance(grid, vtkImageData):
             own = grid.GetIndexToPhysicalMatrix()
             matrix = np.array([[own.GetElement(i, j) for j in range(4)] for i in range(3)])
@@ -167,17 +174,21 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
     assert of_cells is not None
     rows = _real_rows(argument, of_cells, f"{value!r} with ")
     k = _checked_tangents(argument, value, rows, n).shape[1] // n
-    only: Foreign = mesh.NewInstance()
-    only.CopyStructure(mesh)
-    outer = line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n)
-    only.GetCellData().AddArray(as_vtk(outer, value))
-    mean = vtkCellDataToPointData()
-    mean.SetInputData(only)
-    mean.Update()
-    products = as_numpy(mean.GetOutput().GetPointData().GetArray(value))
+    products = means(mesh, line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n))
     found, _ = line_fields.principal(products.reshape(-1, n, n), k)
     kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
     return found.reshape(-1, k * n).astype(kind)
+
+
+def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
+    """Return the means at the points of a mesh of the rows of the cells around each."""
+    only: Foreign = mesh.NewInstance()
+    only.CopyStructure(mesh)
+    only.GetCellData().AddArray(as_vtk(rows, "rows"))
+    mean = vtkCellDataToPointData()
+    mean.SetInputData(only)
+    mean.Update()
+    return as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
 
 
 def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:

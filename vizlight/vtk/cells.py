@@ -114,14 +114,8 @@ def faces_only(mesh: vtkPolyData) -> vtkPolyData:
     VTK takes the faces of a mesh that has vertices or lines for others, and an edge of polygons
     that stand at one place twice for one where many faces meet.
     """
-    bare = vtkPolyData()
-    bare.SetPoints(mesh.GetPoints())
-    bare.SetStrips(mesh.GetStrips())
-    polys = mesh.GetPolys()
-    if (first := first_twins(polys)) is not None:
-        polys = _cells(polys, first == np.arange(len(first)))
-    bare.SetPolys(polys)
-    return bare
+    first = first_twins(mesh.GetPolys())
+    return _faces(mesh, None if first is None else first == np.arange(len(first)))
 
 
 def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
@@ -139,21 +133,22 @@ def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
     def some(points: Bools) -> Bools:
         return np.diff(np.concatenate([[0], np.cumsum(points[ids])])[offsets]) > 0
 
-    kept = ~some(~known) if own is None else ~some(~known) & some(own)
+    return _faces(surface, ~some(~known) if own is None else ~some(~known) & some(own))
+
+
+def _faces(surface: vtkPolyData, kept: Bools | None) -> vtkPolyData:
+    """Return the points and the strips of a surface, and all or some of its polygons."""
+    polys = surface.GetPolys()
+    if kept is not None:
+        ids, offsets = connectivity(polys)
+        size = np.diff(offsets)
+        ends = np.concatenate([[0], np.cumsum(size[kept])])
+        polys = vtkCellArray()
+        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
     found = vtkPolyData()
     found.SetPoints(surface.GetPoints())
     found.SetStrips(surface.GetStrips())
-    found.SetPolys(_cells(polys, kept))
-    return found
-
-
-def _cells(cells: vtkCellArray, kept: Bools) -> vtkCellArray:
-    """Return some of the cells of an array."""
-    ids, offsets = connectivity(cells)
-    size = np.diff(offsets)
-    found = vtkCellArray()
-    ends = np.concatenate([[0], np.cumsum(size[kept])])
-    found.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+    found.SetPolys(polys)
     return found
 
 
@@ -161,23 +156,23 @@ def first_twins(cells: vtkCellArray) -> Indices | None:
     """Return the first cell of the same points as each cell, None if they all differ."""
     ids, offsets = connectivity(cells)
     number = np.zeros(max(len(offsets) - 1, 0), dtype=np.uint64)
-    size = cells.IsHomogeneous()
     with np.errstate(over="ignore"):
         of_point = mixed(np.arange(1, int(ids.max(initial=0)) + 2, dtype=np.uint64))
         for block in _pool.blocks(len(number), 1 << 16):
             ends = offsets[block.start : block.stop + 1]
             corners = of_point[ids[ends[0] : ends[-1]]]
-            if size > 0:
-                for column in corners.reshape(-1, size).T:
-                    number[block] += column
-                continue
             sums = np.concatenate([[np.uint64(0)], np.cumsum(corners, dtype=np.uint64)])
             number[block] = np.diff(sums[ends - ends[0]])
-    ordered = np.sort(number)
+    return firsts(number)
+
+
+def firsts(numbers: NDArray[np.uint64]) -> Indices | None:
+    """Return the first place at which each of some numbers stands, None if they all differ."""
+    ordered = np.sort(numbers)
     if not np.any(ordered[1:] == ordered[:-1]):
         return None
     del ordered
-    _, first, own = np.unique(number, return_index=True, return_inverse=True)
+    _, first, own = np.unique(numbers, return_index=True, return_inverse=True)
     return np.asarray(first[own.reshape(-1)], dtype=np.intp)
 
 
@@ -204,20 +199,21 @@ def used(surface: vtkPolyData) -> Bools:
 def triangles(surface: vtkPolyData) -> Indices:
     """Return the corners of the triangles of a surface."""
     polys = surface.GetPolys()
-    if not surface.GetNumberOfStrips() and polys.IsHomogeneous() == _QUAD:
-        quads = connectivity(polys)[0].reshape(-1, _QUAD)
-        if (halves := _halves(quads, places(surface))) is not None:
-            return halves
-    if surface.GetNumberOfStrips() or (polys.GetNumberOfCells() and polys.IsHomogeneous() != 3):
-        split = vtkTriangleFilter()
-        split.PassVertsOff()
-        split.PassLinesOff()
-        split.SetInputData(surface)
-        split.Update()
-        found = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
-        # VTK's are twice as long, and go with the filter.
-        return found.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
-    return connectivity(polys)[0].reshape(-1, 3)
+    ids = connectivity(polys)[0]
+    # Number of corners of all polygons; 0 where there are none, -1 where they differ.
+    size = -1 if surface.GetNumberOfStrips() else polys.IsHomogeneous()
+    if size in (0, 3):
+        return ids.reshape(-1, 3)
+    if size == _QUAD and (halves := _halves(ids.reshape(-1, _QUAD), places(surface))) is not None:
+        return halves
+    split = vtkTriangleFilter()
+    split.PassVertsOff()
+    split.PassLinesOff()
+    split.SetInputData(surface)
+    split.Update()
+    found = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
+    # VTK's are twice as long, and go with the filter.
+    return found.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
 
 
 def _halves(quads: Indices, points: Raw) -> Indices | None:

@@ -10,7 +10,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity, places, triangles
-from vizlight.vtk.topology import BLOCK, EDGES, components
+from vizlight.vtk.topology import BLOCK, EDGES, components, double_cover
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,13 +39,17 @@ def corners_by_size(surface: vtkPolyData) -> Iterator[Indices]:
     if surface.GetNumberOfStrips():
         yield triangles(surface)
         return
-    ids, ends = connectivity(surface.GetPolys())
+    for _, corners in _by_size(*connectivity(surface.GetPolys())):
+        yield corners
+
+
+def _by_size(ids: Indices, ends: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the faces of three corners or more that have equally many, and their corners."""
     size = np.diff(ends)
-    for s in np.unique(size):
-        if len(ids) == s * len(size):
-            yield ids.reshape(-1, s)
-        elif s > 2:
-            yield ids[ends[:-1][size == s, np.newaxis] + np.arange(s)]
+    for s in np.unique(size[size > 2]):
+        faces = np.flatnonzero(size == s)
+        whole = len(faces) == len(size)
+        yield faces, ids.reshape(-1, s) if whole else ids[ends[faces, np.newaxis] + np.arange(s)]
 
 
 def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Array:
@@ -214,25 +218,21 @@ def split_faces(
     turned = np.zeros(count, dtype=np.bool_)
     if not alike:
         one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
-        one, other = np.append(one, one + count), np.append(other, (other + count) % (2 * count))
-        side = components(np.minimum(one, other), np.maximum(one, other), 2 * count)
-        turned = side[:count] > side[count:]
+        up, down = double_cover(one, other, count)
+        turned = up > down
     return *numbered(root, ids, len(points)), turned
 
 
 def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
     """Return the unit normals of faces in float32, zero without an area."""
     unit = np.zeros((len(ends) - 1, 3), dtype=np.float32)
-    size = np.diff(ends)
-    for s in np.unique(size[size > 2]):
-        of_size = np.flatnonzero(size == s)
-        for block in _pool.blocks(len(of_size), BLOCK):
-            rows = of_size[block]
-            corners = ids[ends[rows][:, np.newaxis] + np.arange(s)]
-            first, *more = (points.take(at, axis=0).T.astype(np.float64) for at in corners.T)
+    for faces, corners in _by_size(ids, ends):
+        for block in _pool.blocks(len(faces), BLOCK):
+            at = corners[block].T
+            first, *more = (points.take(corner, axis=0).T.astype(np.float64) for corner in at)
             sides = [corner - first for corner in more]
             across = sum(kernels.cross(a, b) for a, b in itertools.pairwise(sides))
-            unit[rows] = kernels.unit(np.asarray(across))[0].T
+            unit[faces[block]] = kernels.unit(np.asarray(across))[0].T
     return unit
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
-    vtkCellArray,
     vtkGenericCell,
     vtkImageData,
     vtkPolyData,
@@ -18,18 +17,20 @@ from vtkmodules.vtkCommonDataModel import (
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
+from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
+from vtkmodules.vtkImagingCore import vtkExtractVOI
 
-from vizlight.vtk.arrays import points_of
-from vizlight.vtk.cells import GHOSTS, as_numpy, as_vtk, connectivity, places
+from vizlight.vtk.arrays import dimensions, points_of
+from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, finite_faces, places
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from typing import TypeGuard
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw
+    from vizlight._types import AnyArray, Dataset, Foreign, Indices, Raw
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -37,10 +38,16 @@ if TYPE_CHECKING:
 NUMBERS = "vizlight numbers"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
+#: Types that stand for vertices, lines, polygons and strips.
+_KINDS = (2, 4, 7, 6)
 
 
-def cell_types(mesh: vtkUnstructuredGrid) -> set[int]:
-    """Return the types of the cells of a grid."""
+def cell_types(mesh: Dataset) -> set[int]:
+    """Return the types of the cells of a grid, of a surface one for each kind, else nothing."""
+    if isinstance(mesh, vtkPolyData):
+        return {kind for kind, (count, _) in zip(_KINDS, POLYDATA, strict=True) if count(mesh)}
+    if not isinstance(mesh, vtkUnstructuredGrid):
+        return set()
     return set(np.unique(as_numpy(mesh.GetDistinctCellTypesArray())).tolist())
 
 
@@ -57,8 +64,6 @@ def dimension(mesh: Dataset) -> int:
 
 def is_curved(mesh: Dataset) -> bool:
     """Return whether a dataset has cells that are not linear."""
-    if not isinstance(mesh, vtkUnstructuredGrid) or not mesh.GetNumberOfCells():
-        return False
     return any(kind > _LAST_LINEAR and kind not in _OTHER_LINEAR for kind in cell_types(mesh))
 
 
@@ -73,37 +78,41 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         points.SetData(as_vtk(points_of(mesh, None)[:]))
         bare.SetPoints(points)
         return bare, np.arange(mesh.GetNumberOfPoints())
-    if not is_curved(mesh):
-        plain = vtkGeometryFilter()
+    curved = is_curved(mesh)
+    numbered: Foreign = mesh
+    if curved:
+        # VTK's ids of the nodes of curved cells are those within the cell, so the points of the
+        # mesh are numbered here.
+        numbered = mesh.NewInstance()
+        numbered.ShallowCopy(mesh)
+        numbers = np.arange(mesh.GetNumberOfPoints(), dtype=np.float64)
+        numbered.GetPointData().AddArray(as_vtk(numbers, NUMBERS))
+        take: Foreign = vtkDataSetSurfaceFilter()
+        take.SetNonlinearSubdivisionLevel(1)
+    else:
+        take = vtkGeometryFilter()
         # VTK's own name may be that of an array of the mesh, whose surface was taken before.
-        plain.SetOriginalPointIdsName(NUMBERS)
-        plain.PassThroughPointIdsOn()
-        plain.SetInputData(mesh)
-        plain.Update()
-        surface = plain.GetOutput()
-        ids = as_numpy(surface.GetPointData().GetArray(NUMBERS))
-        surface.GetPointData().RemoveArray(NUMBERS)
-        return surface, ids.astype(np.intp, copy=False)
-    # VTK's ids of the nodes of curved cells are those within the cell, so the points of the mesh
-    # are numbered here.
-    numbered: Foreign = mesh.NewInstance()
-    numbered.ShallowCopy(mesh)
-    numbers = np.arange(mesh.GetNumberOfPoints(), dtype=np.float64)
-    numbered.GetPointData().AddArray(as_vtk(numbers, NUMBERS))
-    curved = vtkDataSetSurfaceFilter()
-    curved.SetNonlinearSubdivisionLevel(1)
-    curved.SetInputData(numbered)
-    curved.Update()
-    surface = curved.GetOutput()
+        take.SetOriginalPointIdsName(NUMBERS)
+        take.PassThroughPointIdsOn()
+    take.SetInputData(numbered)
+    take.Update()
+    surface: vtkPolyData = take.GetOutput()
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
+    if not curved:
+        return surface, ids
     # The control points of Bezier cells are not on the surface.
     skin = places(surface)
     off = np.abs(skin - places(mesh)[ids]).max(axis=1, initial=0)
     return surface, np.where(off <= 1e-5 * np.abs(skin).max(initial=0), ids, -1)
 
 
-def scattered(rows: Array, origin: Indices, count: int) -> Array:
+def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
+    """Return :func:`outer_surface`; a surface is its own, and has no indices."""
+    return (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
+
+
+def scattered(rows: AnyArray, origin: Indices, count: int) -> AnyArray:
     """Return an array of all points of a mesh from one of its surface; other rows are zero."""
     found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
     there = origin >= 0
@@ -123,7 +132,7 @@ class Part(NamedTuple):
     Attributes
     ----------
     surface : vtkPolyData
-        Faces around all points of those layers.
+        Faces around all points of those layers, but for those with a corner that is not finite.
     origin : ndarray of int
         Point of the grid that each point of the surface is.
     side : ndarray of int8
@@ -150,13 +159,6 @@ def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
     return not any(data.HasArray(GHOSTS) for data in (mesh.GetPointData(), mesh.GetCellData()))
 
 
-def dimensions(mesh: Grid) -> tuple[int, int, int]:
-    """Return the number of points of a grid along each of its axes."""
-    low, high = np.reshape(mesh.GetExtent(), (3, 2)).T.tolist()
-    i, j, k = (b - a + 1 for a, b in zip(low, high, strict=True))
-    return i, j, k
-
-
 def parts(mesh: Grid) -> Iterator[Part]:
     """Yield the surface of a grid by layers across its longest axis."""
     size = dimensions(mesh)
@@ -172,40 +174,34 @@ def parts(mesh: Grid) -> Iterator[Part]:
         index = list(np.unravel_index(own, inner, order="F"))
         index[axis] = layer = index[axis] + low
         side = (layer >= stop).astype(np.int8) - (layer < start)
-        _keep_around(surface, side == 0)
-        yield Part(surface, np.ravel_multi_index(index, size, order="F"), side)
+        around = finite_faces(surface, side == 0)
+        yield Part(around, np.ravel_multi_index(index, size, order="F"), side)
 
 
 def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
     """Return some layers of a grid across an axis as a grid."""
-    found: Foreign = mesh.NewInstance()
+    bare: Foreign = mesh.NewInstance()
+    bare.CopyStructure(mesh)
     extent = list(mesh.GetExtent())
     extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
-    own = slice(low, high)
-    if isinstance(mesh, vtkStructuredGrid):
-        points = vtkPoints()
-        kept = tuple(own if i == axis else slice(None) for i in (2, 1, 0))
-        cube = places(mesh).reshape(*dimensions(mesh)[::-1], 3)
-        points.SetData(as_vtk(cube[kept].reshape(-1, 3)))
-        found.SetExtent(extent)
-        found.SetPoints(points)
-        return found
-    found.CopyStructure(mesh)
-    found.SetExtent(extent)
-    if isinstance(mesh, vtkRectilinearGrid):
-        stored = (mesh.GetXCoordinates, mesh.GetYCoordinates, mesh.GetZCoordinates)[axis]()
-        put = (found.SetXCoordinates, found.SetYCoordinates, found.SetZCoordinates)[axis]
-        put(as_vtk(as_numpy(stored)[own]))
-    return found
+    return cropped(bare, extent)
 
 
-def _keep_around(surface: vtkPolyData, points: Bools) -> None:
-    """Take the faces, all of four corners, that have none of some points from a surface."""
-    quads = connectivity(surface.GetPolys())[0].reshape(-1, 4)
-    kept = as_vtk(quads[points[quads].any(axis=1)].ravel())
-    cells = vtkCellArray()
-    cells.SetData(4, kept)
-    surface.SetPolys(cells)
+#: Filters that take a part of a grid.
+_EXTRACT = (
+    (vtkImageData, vtkExtractVOI),
+    (vtkRectilinearGrid, vtkExtractRectilinearGrid),
+    (vtkStructuredGrid, vtkExtractGrid),
+)
+
+
+def cropped(mesh: Foreign, extent: Sequence[int]) -> Foreign:
+    """Return a part of a grid, with its arrays."""
+    take: Foreign = next(extract for kind, extract in _EXTRACT if isinstance(mesh, kind))()
+    take.SetVOI(extent)
+    take.SetInputData(mesh)
+    take.Update()
+    return take.GetOutput()
 
 
 def rim(mesh: Grid) -> list[Raw]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
@@ -17,7 +16,6 @@ from vizlight.vtk import hull
 from vizlight.vtk.arrays import vectors_of
 from vizlight.vtk.cells import (
     as_numpy,
-    as_vtk,
     connectivity,
     faces_only,
     finite_faces,
@@ -33,7 +31,7 @@ from vizlight.vtk.corners import (
     joined,
     surface_normals,
 )
-from vizlight.vtk.hull import dimension, outer_surface, scattered
+from vizlight.vtk.hull import dimension, scattered, surface_of
 from vizlight.vtk.orientation import (
     MOST_LEAN,
     SHARP,
@@ -42,6 +40,7 @@ from vizlight.vtk.orientation import (
     Sums,
     crease_share,
     sides_of,
+    toward_eye,
 )
 from vizlight.vtk.topology import (
     Owners,
@@ -211,11 +210,8 @@ def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
     """Return how much of what an eye sees shows it the side of each normal: ``N . w / d^2``."""
     if view is None:
         shown = normals[:, 2]
-    elif view.parallel:
-        shown = normals @ np.asarray(view.direction, dtype=np.float64)
     else:
-        away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
-        toward, far = kernels.unit(away.T)
+        toward, far = kernels.unit(toward_eye(view, points))
         with np.errstate(all="ignore"):
             shown = kernels.dot(normals.T, toward) / far / far
     return np.where(np.isfinite(shown), shown, 0.0)
@@ -244,17 +240,11 @@ class Turned:
 
 def _averted(vectors: Array, points: Raw, view: View, lean: Array | None) -> Bools:
     """Return the points whose normals point away from the eye, by more than they lean."""
-    if view.parallel:
-        toward = np.asarray(view.direction, dtype=np.float64)
-        # Across the lean a normal of a coarse mesh points away while its faces are still seen:
-        # turning it there would draw a dark rim.
-        cosine = vectors @ toward / np.linalg.norm(toward)
-        least: Array | float = 0.0 if lean is None else -lean
-        return np.asarray(cosine < least, dtype=np.bool_)
-    away = np.asarray(view.position) - np.asarray(points, dtype=np.float64)
-    cosine = np.einsum("ij,ij->i", vectors, away)
-    least = 0.0 if lean is None else -lean * np.sqrt(np.einsum("ij,ij->i", away, away))
-    return np.asarray(cosine < least, dtype=np.bool_)
+    toward = toward_eye(view, points)
+    # Across the lean a normal of a coarse mesh points away while its faces are still seen: turning
+    # it there would draw a dark rim.
+    least = 0.0 if lean is None else -lean * np.sqrt(kernels.dot(toward, toward))
+    return np.asarray(kernels.dot(vectors.T, toward) < least, dtype=np.bool_)
 
 
 def sided_normals(
@@ -353,7 +343,7 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
             return Sided(given, open=side)
         lean = np.zeros(len(given), dtype=np.float32)
         for part in hull.parts(mesh):
-            shape = PartShape(finite_faces(part.surface), part.side, np.zeros(3), 1.0)
+            shape = PartShape(part.surface, part.side, np.zeros(3), 1.0)
             on = part.side == 0
             lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
         return Sided(given, lean, open=side)
@@ -466,7 +456,7 @@ def computed_normals(
             # Points inside a volume have no normal; they are no fault.
             inside = size - owners.counts(np.flatnonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
-        number = scattered(number.astype(np.float64), origin, count).astype(np.intp)
+        number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)
     averted = None if told is None else told.averted
     all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
@@ -540,11 +530,8 @@ def is_scan(mesh: Dataset) -> bool:
 
 def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     """Return normals of planes through neighbouring points, which face the eye."""
-    bare, estimate = vtkPolyData(), vtkPCANormalEstimation()
-    where = vtkPoints()
-    where.SetData(as_vtk(places(mesh)))
-    bare.SetPoints(where)
-    estimate.SetInputData(bare)
+    estimate = vtkPCANormalEstimation()
+    estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
@@ -576,7 +563,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     single, ends = single_edges(lines)
     sums, counts = [], np.zeros((4, 1), dtype=np.intp)
     for part in hull.parts(mesh):
-        surface, own = finite_faces(part.surface), part.side == 0
+        surface, own = part.surface, part.side == 0
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         vectors[part.origin[own]] = normals[own]
@@ -633,19 +620,17 @@ def _inside_out(surface: vtkPolyData, owners: Owners) -> Bools:
 
 def piece_numbers(mesh: Dataset) -> Indices:
     """Return for each point the number of its connected piece; 0 where it is on no surface."""
-    numbers = np.zeros(mesh.GetNumberOfPoints(), dtype=np.intp)
+    count = mesh.GetNumberOfPoints()
     surface, origin = _skin(mesh)
-    if surface is not None:
-        own = np.arange(len(numbers)) if origin is None else origin
-        numbers[own[own >= 0]] = topology(triangles(surface), places(surface), Owners()).piece[
-            own >= 0
-        ]
-    return numbers
+    if surface is None:
+        return np.zeros(count, dtype=np.intp)
+    piece = topology(triangles(surface), places(surface), Owners()).piece
+    return piece if origin is None else scattered(piece, origin, count)
 
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
     """Return the faces of the outer surface and its points' indices, None where it has none."""
-    surface, origin = (mesh, None) if isinstance(mesh, vtkPolyData) else outer_surface(mesh)
+    surface, origin = surface_of(mesh)
     return (finite_faces(faces_only(surface)) if has_faces(surface) else None), origin
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Array, Bools, Indices, Slice
+    from vizlight._types import Array, Bools, Indices, Raw, Slice
     from vizlight.scene import View
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
@@ -104,23 +104,26 @@ class Shape:
     Coincident points are connected, so that triangles that share no point can form one piece.
     """
 
-    #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for points of
-    #: the one before. Cells belong to the part in which they begin.
-    side: NDArray[np.int8] | None = None
-
     def __init__(
         self, surface: vtkPolyData, owners: Owners, side: NDArray[np.int8] | None = None
     ) -> None:
-        self.points, self.owners, self.side = places(surface), owners, side
+        #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for
+        #: points of the one before. Cells belong to the part in which they begin.
+        self.side = side
+        self.points, self.owners = places(surface), owners
+        self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.triangles = triangles(surface)
-        own = None if side is None else side == 0
         self._start_count()
-        found = topology(self.triangles, self.points, owners, own, self._count)
+        self._find_pieces(surface)
+
+    def _find_pieces(self, surface: vtkPolyData) -> None:
+        """Find the connected pieces."""
+        own = None if self.side is None else self.side == 0
+        found = topology(self.triangles, self.points, self.owners, own, self._count)
         self.piece, self.open, self.alike, folded, self.same = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
             self.alike = False
-        self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.count = len(self.open)
         self._note_folded(folded)
 
@@ -282,7 +285,7 @@ class Shape:
             own = normals[block].T.astype(np.float64)
             toward = kernels.unit(self.away(block))[0]
             if seen and view is not None:
-                toward += 3 * kernels.unit(self._toward(view, block))[0]
+                toward += 3 * kernels.unit(toward_eye(view, self.points[block]))[0]
             score = kernels.dot(own, toward)
             good = self.finite[block] & np.isfinite(score)
             if self.side is not None:
@@ -290,12 +293,13 @@ class Shape:
             scores += np.bincount(self.piece[block][good], score[good], self.count)
         return scores
 
-    def _toward(self, view: View, block: Slice) -> Array:
-        """Return vectors from some points toward the eye."""
-        if view.parallel:
-            return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
-        eye = np.array(view.position, dtype=np.float64)[:, np.newaxis]
-        return np.asarray(eye - self.points[block].T.astype(np.float64))
+
+def toward_eye(view: View, points: Raw) -> Array:
+    """Return vectors from points toward an eye as columns; a single one where all are alike."""
+    if view.parallel:
+        return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
+    eye = np.array(view.position, dtype=np.float64)[:, np.newaxis]
+    return np.asarray(eye - np.asarray(points).T.astype(np.float64))
 
 
 def _wide(size: Array, *sides: Array) -> Bools:
@@ -311,14 +315,13 @@ class PartShape(Shape):
     def __init__(
         self, surface: vtkPolyData, side: NDArray[np.int8], middle: Array, scale: float
     ) -> None:
-        self.points, self.side, self.owners = places(surface), side, Owners()
-        self.triangles = triangles(surface)
-        self.finite = np.all(np.isfinite(self.points), axis=1)
+        super().__init__(surface, Owners(), side)
+        self.frame = middle[:, np.newaxis], np.array([scale])
+
+    def _find_pieces(self, surface: vtkPolyData) -> None:  # noqa: ARG002
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
-        self._start_count()
         for edges in sorted_edges(self.triangles, len(self.points)):
             self._count(edges)
-        self.frame = middle[:, np.newaxis], np.array([scale])
 
 
 def sides_of(

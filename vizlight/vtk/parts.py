@@ -96,6 +96,7 @@ def part_of(
     has_no_sign = isinstance(own, str) and is_of_cells(mesh, own)
     inputs = ShadingInputs(
         points=points,
+        occlusion=share_of(mesh, options.occlusion, path),
         tangents=tangents,
         normals=normals,
         base_tangents=base,
@@ -104,25 +105,17 @@ def part_of(
         line_field=options.line_field or has_no_sign,
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
-    return Part(occluded(inputs, mesh, options.occlusion, path), options, sided)
+    return Part(inputs, options, sided)
 
 
-def occluded(
-    inputs: ShadingInputs, mesh: Dataset, name: str | None, path: str = ""
-) -> ShadingInputs:
-    """Return inputs with the point array of a mesh that is the share of the ambient light.
+def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
+    """Return the point array of one component that is the share of the ambient light.
 
     Raises
     ------
     TypeError, ValueError
-        If there is no such array of one component.
+        If there is no such array.
     """
-    share = share_of(mesh, name, path)
-    return inputs if share is None else dataclasses.replace(inputs, occlusion=share)
-
-
-def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
-    """Return the point array that is the share of the ambient light; see :func:`occluded`."""
     if name is None:
         return None
     array = named(mesh.GetPointData(), name)

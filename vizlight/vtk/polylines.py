@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkStripper
 
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.vtk import hull
-from vizlight.vtk.cells import as_vtk, connectivity, faces, has_faces, places
+from vizlight.vtk.cells import as_vtk, connectivity, faces, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,19 +26,13 @@ POINTS = {1, 2}
 
 def has_lines_only(mesh: Dataset) -> bool:
     """Return whether a mesh has lines, possibly vertices, and no other cells."""
-    if isinstance(mesh, vtkPolyData):
-        return mesh.GetNumberOfLines() > 0 and not has_faces(mesh)
-    if isinstance(mesh, vtkUnstructuredGrid) and mesh.GetNumberOfCells():
-        kinds = hull.cell_types(mesh)
-        return bool(kinds & LINES) and kinds <= LINES | POINTS
-    return False
+    kinds = hull.cell_types(mesh)
+    return bool(kinds & LINES) and kinds <= LINES | POINTS
 
 
 def has_several_kinds(mesh: Dataset) -> bool:
     """Return whether a mesh has lines or vertices beside other cells."""
-    if isinstance(mesh, vtkPolyData):
-        return has_faces(mesh) and mesh.GetNumberOfLines() + mesh.GetNumberOfVerts() > 0
-    kinds = hull.cell_types(mesh) if isinstance(mesh, vtkUnstructuredGrid) else set()
+    kinds = hull.cell_types(mesh)
     thin = kinds & (LINES | POINTS)
     return bool(thin) and thin < kinds
 
@@ -93,9 +87,7 @@ def cells_of(mesh: Dataset, /) -> tuple[Array, Indices, Indices]:
 
 def _flat(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
     """Return the lines of a mesh as polylines, and the index of each of their points in it."""
-    if isinstance(mesh, vtkPolyData):
-        return mesh, None
-    surface, origin = hull.outer_surface(mesh)
+    surface, origin = hull.surface_of(mesh)
     if hull.is_curved(mesh):
         # VTK turns each curve into a polyline; segments let the curves be joined below.
         ends = segments(surface.GetLines())
@@ -109,7 +101,8 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
     """Return points, connectivity and offsets of polylines, consecutive segments joined."""
     lines = mesh.GetLines()
     ids, offsets = connectivity(lines)
-    if np.any(np.diff(offsets) == 2) and _shared(ids, mesh.GetNumberOfPoints()):
+    # Segments that have an end in common.
+    if np.any(np.diff(offsets) == 2) and np.bincount(ids).max() > 1:
         bare = vtkPolyData()
         bare.SetPoints(mesh.GetPoints())
         bare.SetLines(lines)
@@ -120,13 +113,6 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
         join.Update()
         ids, offsets = connectivity(join.GetOutput().GetLines())
     return places(mesh), ids, offsets
-
-
-def _shared(ids: Indices, count: int) -> bool:
-    """Return whether two corners of lines are the same point."""
-    used = np.zeros(count, dtype=np.bool_)
-    used[ids] = True
-    return bool(np.count_nonzero(used) < len(ids))
 
 
 def segments(lines: vtkCellArray) -> Indices:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.normals import Told, facing_of, given_normals, wound_normals
 from vizlight.vtk.orientation import crease_share, middles, sides_of
-from vizlight.vtk.topology import BLOCK, place_numbers
+from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -219,15 +217,10 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
     cosines = kernels.dot(along[one].T, along[other].T)
     alike, most = (np.bincount(number, of, len(pairs)) for of in (cosines, CLEAR * abs(cosines)))
     a, b = np.divmod(pairs, max(total, 1))
-    # Each piece stands twice, the second time turned over; two that meet at several borders may
-    # agree at one and not at another.
-    # A piece that is joined with its own turned copy has no sides.
+    # Two pieces that meet at several borders may agree at one and not at another.
     same, turned = alike >= -most, alike < most
-    rows = np.concatenate([a[same], a[same] + total, a[turned], a[turned] + total])
-    columns = np.concatenate([b[same], b[same] + total, b[turned] + total, b[turned]])
-    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * total, 2 * total))
-    label = connected_components(graph, directed=False)[1]
-    up, down = label[:total], label[total:]
+    one, other = np.append(a[same], a[turned]), np.append(b[same], b[turned] + total)
+    up, down = double_cover(one, other, total)
     group = np.unique(np.minimum(up, down), return_inverse=True)[1].reshape(-1)
     return group, np.where(up <= down, 1.0, -1.0), up == down
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
-from vizlight.vtk.cells import mixed, places, triangles
+from vizlight.vtk.cells import firsts, mixed, places, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -255,6 +255,24 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
         np.minimum.at(root, b, a)
 
 
+def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return what pairs connect each of some things with, as it is and turned over.
+
+    Each thing stands twice, the second time turned over, with its number beyond all others. One
+    that is connected with its own turned copy has no sides.
+
+    Parameters
+    ----------
+    a, b : ndarray of int, shape (n,)
+        Pairs of things that agree, and of one and the turned copy of another.
+    count : int
+        Number of things.
+    """
+    a, b = np.append(a, a + count), np.append(b, (b + count) % (2 * count))
+    root = components(np.minimum(a, b), np.maximum(a, b), 2 * count)
+    return root[:count], root[count:]
+
+
 def coincident(points: Raw, owners: Owners) -> Indices | None:
     """Return the first point at the place of each point, None if all places differ.
 
@@ -263,25 +281,15 @@ def coincident(points: Raw, owners: Owners) -> Indices | None:
     number = place_numbers(points)
     if owners.of is not None:
         number ^= place_numbers(np.repeat(owners.of[:, np.newaxis], 3, axis=1))
-    ordered = np.sort(number)
-    if not np.any(ordered[1:] == ordered[:-1]):
+    same = firsts(number)
+    if same is None:
         return None
-    del ordered
-    order = np.argsort(number, kind="stable")
-    new = np.ones(len(points), dtype=np.bool_)
-    new[1:] = number[order[1:]] != number[order[:-1]]
-    again = np.flatnonzero(~new)
-    one, other = order[again], order[again - 1]
-    new[again] = np.any(points[one] != points[other], axis=1)
+    again = np.flatnonzero(same != np.arange(len(points)))
+    apart = np.any(points[again] != points[same[again]], axis=1)
     if owners.of is not None:
-        new[again] |= owners.of[one] != owners.of[other]
-    if new.all():
-        return None
-    first = np.where(new, np.arange(len(points)), 0)
-    np.maximum.accumulate(first, out=first)
-    same = np.empty(len(points), dtype=np.intp)
-    same[order] = order[first]
-    return same
+        apart |= owners.of[again] != owners.of[same[again]]
+    same[again[apart]] = again[apart]
+    return None if apart.all() else same
 
 
 def is_closed(surface: vtkPolyData, owners: Owners) -> tuple[Bools, Bools]:
