@@ -11,6 +11,7 @@ from lamps import SHINY, SHOULDER, shiny
 import vizlight
 from studies.relief import hills
 from vizlight import Light, Material, Scene, relief_day, relief_shadow
+from vizlight.filters import relight
 from vizlight.geometry import relief, sun
 
 TOWARD = np.array([0.6, -0.5, 0.4])
@@ -412,3 +413,13 @@ def test_shadows_that_end_within_large_triangles_are_told():
     open_ = grid.extract_surface(algorithm=None).triangulate()
     with pytest.warns(UserWarning, match="shadows end within triangles"):
         relief_shadow(open_, Scene(lights=Light(direction=(-1, 0, 1))), raster=0.1)
+
+
+@pytest.mark.parametrize("kind", ["image", "raised flat"])
+def test_a_lit_field_whose_heights_were_active_can_be_lit_again(kind):
+    field = pv.ImageData(dimensions=(9, 8, 1))
+    field["h"] = np.sin(np.arange(72.0))
+    field = field if kind == "image" else field.cast_to_structured_grid()
+    lit = relief_shadow(field, sun=(315, 30), lit=True)
+    assert lit.point_data.active_scalars_name != "h"
+    relight.from_record(lit)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -16,7 +17,7 @@ from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
 from vizlight.mesh.casters import CasterOptions, caster
-from vizlight.mesh.height_grids import Grid
+from vizlight.mesh.height_grids import Grid, elevation_name
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
 from vizlight.scene import Light, Scene
@@ -206,6 +207,9 @@ def relief_shadow(
         up=None if asked.raster is None else ABOVE,
     )  # fmt: skip
     shadow = caster(own, scene, asked)
+    if asked.elevation is None and (isinstance(own, Grid) or asked.raster is not None):
+        # For the record: in the result the light is the active array.
+        asked = dataclasses.replace(asked, elevation=elevation_name(own))
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     made = [name, name + VALID, *each]

@@ -162,11 +162,12 @@ def _sampled(
     return Raster(x, y, height_field.filled(heights), place, own=points)
 
 
-def _check_layer(grid: Grid, remedy: str = "") -> tuple[int, int]:
+def _check_layer(grid: Grid) -> tuple[int, int]:
     """Return the numbers of columns and rows of a grid that has one layer."""
     nx, ny, nz = grid.dimensions
     if nz != 1:
         got = f"{nx} x {ny} x {nz}"
+        remedy = "pass one layer of it, or its closed surface, mesh.extract_surface()"
         raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got, remedy))
     return nx, ny
 
@@ -175,7 +176,7 @@ def _nodes(grid: Grid) -> tuple[Array, float]:
     """Return the points of a level grid, shape (ny, nx, 3), and the rounding of their x and y."""
     if grid.n_points == 0:
         raise ValueError(_check.message("mesh", "a grid of points", "an empty one"))
-    nx, ny = _check_layer(grid, REMEDY)
+    nx, ny = _check_layer(grid)
     if isinstance(grid, pv.StructuredGrid):
         points: Array = np.asarray(grid.points)
     else:
@@ -225,12 +226,20 @@ def heights_name(grid: pv.DataSet) -> str | None:
     return grid.point_data.active_scalars_name or (there[0] if len(there) == 1 else None)
 
 
+def elevation_name(grid: Grid | pv.PolyData) -> str | None:
+    """Return the name of the point array of heights, None where the z of the points is taken."""
+    name = heights_name(grid)
+    if name is not None and isinstance(grid, pv.StructuredGrid | pv.PolyData):
+        z = np.asarray(grid.points)[:, 2]
+        return None if np.nanmin(z) < np.nanmax(z) else name
+    return name
+
+
 def _elevation(grid: Grid | pv.PolyData, name: str | None, z: Array) -> Array:
     """Return the heights in a point array, or the z of points that may have heights as their z."""
     if name is None:
-        name = heights_name(grid)
-        curved = isinstance(grid, pv.StructuredGrid | pv.PolyData)
-        if curved and (name is None or np.nanmin(z) < np.nanmax(z)):
+        name = elevation_name(grid)
+        if name is None and isinstance(grid, pv.StructuredGrid | pv.PolyData):
             return z
     grid = records.averaged(grid, name)
     there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
