@@ -149,11 +149,7 @@ def live_html(
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(given)))
     _check.integer("files", files, low=1, high=2)
     _check.text("frames", frames)
-    steps: dict[float, pv.DataSet | pv.MultiBlock] = {}
-    if isinstance(mesh, Mapping):
-        steps |= mesh
-    else:
-        steps[0.0] = mesh
+    steps: dict[float, Foreign] = dict(mesh) if isinstance(mesh, Mapping) else {0.0: mesh}
     if not steps:
         raise ValueError(_check.message("mesh", "one mesh or more", "an empty mapping"))
     values = [_check.number("mesh", value) for value in steps]

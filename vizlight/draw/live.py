@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
     from vizlight.shading.display import Bytes
+    from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import Layout, ShadingInputs
     from vizlight.shading.options import ShadingOptions
 
@@ -233,11 +234,7 @@ class Live:
             return
         (shading,), _ = lighting.light([(inputs, self.source.options)], scene, progress_bar=False)
         if self.scene is None or self.scene.colored:
-            rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
-            # VTK wraps around above 1, so a bright highlight would turn black.
-            shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
-            shown[~shading.valid] = NO_DATA
-            _write(self.drawn, COLORS, shown)
+            _write(self.drawn, COLORS, on_screen(shading))
         else:
             _write(self.drawn, LUMINANCE, np.where(shading.valid, shading.luminance, NO_DATA[0]))
 
@@ -381,6 +378,15 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     prop = actor.GetProperty()
     material = Material.from_property(prop, lights=lights, view=view, model=kind)
     return Scene(lights=lights, material=material, view=view)
+
+
+def on_screen(shading: Shading) -> Array:
+    """Return light as colours of a screen, and the colour of what is no data where it has none."""
+    rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
+    # VTK wraps around above 1, so a bright highlight would turn black.
+    shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
+    shown[~shading.valid] = NO_DATA
+    return shown
 
 
 def _write(mesh: pv.DataSet, name: str, values: Raw) -> None:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices, Raw
+    from vizlight._types import Array, Foreign, Indices, Raw
     from vizlight.draw.live import Live
     from vizlight.filters.relight import Source
     from vizlight.shading.plan import Plan
@@ -134,7 +134,9 @@ class Page:
         """Add a mesh with its light."""
         live, actor = shown.live, shown.actor
         # A page has surfaces, lines and points; of a volume its outer surface.
-        surface, ids = _surface(live)
+        surface, ids = live.drawn, np.arange(live.drawn.n_points)
+        if not isinstance(surface, pv.PolyData):
+            surface, ids = blocks.outer_surface(surface)
         prop = actor.GetProperty()
         made: dict[str, object] = {
             "name": shown.name,
@@ -198,7 +200,7 @@ class Page:
         self._remember(live)
         made: dict[str, object] = {
             "live": True,
-            "lights": self._set_of(rows),
+            "lights": _number_of(rows, self.lights),
             "texts": texts,
             "numbers": constants,
             "surface": plan.surface,
@@ -239,7 +241,8 @@ class Page:
         far = max(MOST_LAMPS, len(rows))
         # Sliders raise what is 0 now, so the texts have all terms.
         whole = dataclasses.replace(scene.material, diffuse=1.0, specular=1.0)
-        cue = _ended(scene.depth_cue) or DepthCue(front=0.0, back=1.0)
+        # The page finds the ends of a depth cue.
+        cue = dataclasses.replace(scene.depth_cue or DepthCue(), front=0.0, back=1.0)
         sources, inputs = {"": live.source}, live.source.inputs
         furry = inputs.fur_height is not None
         if live.source.options.conditioned and inputs.normals is not None and not furry:
@@ -258,11 +261,8 @@ class Page:
             key = f"{'data ' if data else ''}{free}{i} {j}{' cue' if ended else ''}"
             turned = source.sided is not None
             written = program.write(plan, turned=turned, data=data, sky=plan.occluded)
-            # Equal texts are stored once and named by their number.
             text = [list(each) for each in dialects.VTK_JS.replacements(written, given)]
-            if text not in self._texts:
-                self._texts.append(text)
-            found[key] = self._texts.index(text)
+            found[key] = _number_of(text, self._texts)
         plan = _plan(scene.replace(depth_cue=None), live.source)
         return found, constants, plan
 
@@ -270,16 +270,11 @@ class Page:
         """Keep how the first mesh was lit, for the texts that the page copies."""
         if len(self.meshes) or live.source.named is None:
             return
-        options: dict[str, str] = {}
-        for field in dataclasses.fields(live.source.named):
-            value = getattr(live.source.named, field.name)
-            if (
-                field.name not in ("name", "feature_angle")
-                and value != field.default
-                and isinstance(value, _PLAIN)
-            ):
-                options[field.name] = ascii(value)
-        self.recipe["options"] = options
+        self.recipe["options"] = {
+            name: ascii(value)
+            for name, value in live.source.named.changed().items()
+            if name not in ("name", "feature_angle") and isinstance(value, _PLAIN)
+        }
         if live.given is not None:
             self.recipe["color"] = f", scalars={live.given!a}"
 
@@ -287,19 +282,16 @@ class Page:
         """Return colours with the light that does not depend on the eye."""
         live, actor = shown.live, shown.actor
         placed = live.source._replace(inputs=live.placed(actor))
-        colors = None if live.scalars is None else live.mapped(actor)
+        colors = None if live.scalars is None else live.mapped(actor)[ids]
         if live.own_eye:
-            whole = lit_colors(placed, scene, colors)[ids]
-            return {"live": False, "colors": _packed(whole, "u1"), "color": [1.0, 1.0, 1.0]}
-        lit, seen = fixed_colors(placed, scene, colors)
-        lit = lit[ids]
-        # Points of the surface that are none of the mesh.
-        lit[ids < 0] = 0
-        why = "" if live.reason == "asked for" else f", because {live.reason}"
-        said = f"; {seen} as from the first view" if seen else ""
-        self.notices.append(
-            f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
-        )
+            lit = lit_colors(placed, scene, colors, ids)
+        else:
+            lit, seen = fixed_colors(placed, scene, colors, ids)
+            why = "" if live.reason == "asked for" else f", because {live.reason}"
+            said = f"; {seen} as from the first view" if seen else ""
+            self.notices.append(
+                f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
+            )
         return {"live": False, "colors": _packed(lit, "u1"), "color": [1.0, 1.0, 1.0]}
 
     def _lights_of(self, live: Live, scene: Scene) -> list[dict[str, object]]:
@@ -326,12 +318,6 @@ class Page:
             rows.append(_lamp(light, value.tolist(), at=at, follows=follows))
         return rows
 
-    def _set_of(self, rows: list[dict[str, object]]) -> int:
-        """Return the index of a set of lights, which meshes share."""
-        if rows not in self.lights:
-            self.lights.append(rows)
-        return self.lights.index(rows)
-
     def add_bars(self, plotter: pv.BasePlotter, shown: Sequence[Shown]) -> None:
         """Add the scalar bars that the plotter shows."""
         titles = list(plotter.scalar_bars.keys())
@@ -348,6 +334,13 @@ class Page:
                 if plotter.scalar_bars[title].GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
                     self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
+
+
+def _number_of(item: Foreign, known: list[Foreign]) -> int:
+    """Return the number by which equal items, which are stored once, are named."""
+    if item not in known:
+        known.append(item)
+    return known.index(item)
 
 
 def _plan(scene: Scene, source: Source) -> Plan:
@@ -426,10 +419,9 @@ def _numbers_of(live: Live) -> dict[str, Raw]:
 
 def _ends(rows: Sequence[Raw]) -> tuple[float, float] | None:
     """Return the least and the largest finite value, None if there are not two."""
-    values = [np.asarray(row, dtype=np.float64) for row in rows]
-    finite = [row[np.isfinite(row)] for row in values]
-    low = min((float(row.min()) for row in finite if len(row)), default=0.0)
-    high = max((float(row.max()) for row in finite if len(row)), default=0.0)
+    values = np.concatenate(rows, dtype=np.float64)
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
     return (low, high) if low < high and np.isfinite(high - low) else None
 
 
@@ -441,20 +433,6 @@ def _codes(values: Raw, ends: tuple[float, float]) -> dict[str, object]:
         (NO_VALUE - 1) * (np.where(known, rows, ends[0]) - ends[0]) / (ends[1] - ends[0])
     )
     return _packed(np.where(known, codes, NO_VALUE), "u2")
-
-
-def _surface(live: Live) -> tuple[pv.PolyData, Indices]:
-    """Return what is drawn as cells of PolyData, and the index of each of its points."""
-    if isinstance(live.drawn, pv.PolyData):
-        return live.drawn, np.arange(live.drawn.n_points)
-    return blocks.outer_surface(live.drawn)
-
-
-def _ended(cue: DepthCue | None) -> DepthCue | None:
-    """Return a depth cue with ends; the page finds those that are not given."""
-    if cue is None or (cue.front is not None and cue.back is not None):
-        return cue
-    return dataclasses.replace(cue, front=0.0, back=1.0)
 
 
 def _packed(values: Raw, kind: str) -> dict[str, object]:

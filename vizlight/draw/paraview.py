@@ -15,9 +15,8 @@ from vizlight import _check, files
 from vizlight.draw import dialects, program
 from vizlight.draw.fragments import Fragments, unfit, unfit_layout
 from vizlight.draw.live import NORMALS, TANGENTS
-from vizlight.draw.sources import sources_of
+from vizlight.draw.sources import sources_in_scene
 from vizlight.filters.tint import color_table
-from vizlight.mesh import blocks
 from vizlight.scene import Scene, View
 from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
@@ -257,15 +256,10 @@ def save(
         If a file cannot be written.
     """
     path = files.check_output(path, (SUFFIX,))
-    blocks.check(mesh)
-    _check.instance("scene", scene, Scene, optional=True)
-    sources, used = sources_of(mesh, scene, options)
+    sources, used = sources_in_scene(mesh, scene, options)
     if len(sources) != 1:
         expected, remedy = "one block", "write a script for each"
         raise ValueError(_check.message("mesh", expected, f"{len(sources)} blocks", remedy))
-    if used is None:
-        remedy = "pass a Scene, or a mesh that a filter has lit"
-        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
     (source,) = sources
     if scalars is not None:
         _check.text("scalars", scalars, expected="the name of a point array")

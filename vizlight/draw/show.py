@@ -16,7 +16,7 @@ from vizlight.filters.sky import SKY
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Function, Given, Keywords
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
@@ -103,7 +103,8 @@ def plot(
     for name in ("off_screen", "notebook"):
         if given.get(name) is not None:
             _check.boolean(name, given[name])
-    window = _taken(given, pv.Plotter.__init__)
+    own = inspect.signature(pv.Plotter.__init__).parameters
+    window = {name: given.pop(name) for name in [*given] if name in own}
     size = None if window_size is None else list(window_size)
     plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
@@ -129,12 +130,6 @@ def _size(window_size: object) -> tuple[int, int]:
         expected = "(width, height), each from 1 to 16384 pixels"
         raise ValueError(_check.message("window_size", expected, sides))
     return int(sides[0]), int(sides[1])
-
-
-def _taken(given: Keywords, function: Function) -> Keywords:
-    """Take from keywords those of a function."""
-    known = inspect.signature(function).parameters
-    return {name: given.pop(name) for name in [*given] if name in known}
 
 
 def _furnish(plotter: Foreign, given: Keywords) -> None:
