@@ -96,29 +96,24 @@ def relief(
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.data(path, shape, time)
-        found = mesh.run()
-        if shape.contour is not None or shape.slice is not None or not _is_field(found):
-            mesh = scenes.surface(mesh, shape)
-            found = None
-            scenes.check_target(shape)
-        on: dict[str, object] = {}
-        if found is None and "raster" not in given:
-            on["feature_angle"] = "auto"
-        raised = None
-        if found is not None:
+        field, on, raised = _is_field(mesh, shape), dict[str, object](), None
+        if field:
             raised = _raised(mesh, given.get("elevation"), shape.exaggeration)
+        else:
+            mesh = scenes.surface(mesh, shape)
+            scenes.check_target(shape)
+            if "raster" not in given:
+                on["feature_angle"] = "auto"
         if raised is not None and raised.arguments[2] != 1:
             on["exaggeration"] = raised.arguments[2]
-        camera = look.camera(raised or mesh, is_map=found is not None)
+        camera = look.camera(raised or mesh, is_map=field)
         scene = look.scene(camera)
         shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
-        shown = _raised_like(raised, shaded)
-        made = Job(shaded, look, camera, shown=shown, kind=mesh)
-        made.suffix = ".vtp" if found is None else _suffix(found)
-        made.scalars = made.name
+        made = _shared(shaded, look, camera, mesh, raised, field=field)
+        made.suffix = made.suffix or ".vtp"
         if given["lit"]:
             made.scalars = "rgb" if look.colored else "luminance"
-        elif found is not None and (white := 3 * _level_light(scene.run().lights)) < 1:
+        elif field and (white := 3 * _level_light(scene.run().lights)) < 1:
             made.clim = (0.0, round(white, 3))
             text = (
                 f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
@@ -143,19 +138,14 @@ def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
 
     def job(path: Path, time: float | str | None) -> Job:
         mesh = scenes.data(path, shape, time)
-        found = mesh.run()
-        field = shape.contour is None and shape.slice is None and _is_field(found)
+        field = _is_field(mesh, shape)
         if shape.contour is not None or shape.slice is not None:
             mesh = scenes.surface(mesh, shape)
         # The sky belongs to the heights as they are.
         raised = _raised(mesh, None, 1.0) if field else None
         camera = look.camera(raised or mesh, is_map=field)
         lit = look.step("skylit", "sky", mesh, **given)
-        shown = _raised_like(raised, lit)
-        made = Job(lit, look, camera, shown=shown, kind=mesh)
-        made.scalars = made.name
-        made.suffix = _suffix(found) if field else ""
-        return made
+        return _shared(lit, look, camera, mesh, raised, field=field)
 
     return carry_out(files, job, common.out, "sky", shape)
 
@@ -171,13 +161,19 @@ def _raised(mesh: Step, elevation: str | None, factor: float | None) -> Step | N
     return scenes.warped("raised", mesh, str(name), factor)
 
 
-def _raised_like(raised: Step | None, lit: Step) -> Step | None:
-    """Return the step that raises a lit map as another step raises the map."""
-    if raised is None:
-        return None
-    shown = Step("shown", raised.path, lit, *raised.arguments[1:])
-    shown.note = raised.note
-    return shown
+def _shared(
+    lit: Step, look: scenes.Look, camera: Step, mesh: Step, raised: Step | None, *, field: bool
+) -> Job:
+    """Return the job of a share of light at the points of a mesh, of a map as it was raised."""
+    from vizlight import files
+
+    made = Job(lit, look, camera, kind=mesh)
+    made.scalars = made.name
+    made.suffix = files.FORMATS[type(mesh.run()).__name__][0] if field else ""
+    if raised is not None:
+        made.shown = Step("shown", raised.path, lit, *raised.arguments[1:])
+        made.shown.note = raised.note
+    return made
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -237,13 +233,7 @@ def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common)
         camera = look.camera(mesh)
         lit = look.step("found", "isoluminance", mesh, look.scene(camera), **given)
         bands = Step("", "[]", lit, "bands")
-        return Job(
-            lit,
-            look,
-            camera,
-            shown=bands,
-            parts=("bands", "contours"),
-        )
+        return Job(lit, look, camera, shown=bands, parts=("bands", "contours"))
 
     return carry_out(files, job, common.out, "contours", shape)
 
@@ -290,13 +280,8 @@ def _tips(mesh: Step, length: float | str | None) -> Step:
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
 
 
-def _is_field(mesh: pv.DataSet) -> bool:
-    """Tell whether a mesh is a grid of one layer."""
-    sizes: tuple[int, ...] = getattr(mesh, "dimensions", ())
-    return sum(size > 1 for size in sizes) == 2
-
-
-def _suffix(mesh: pv.DataSet) -> str:
-    from vizlight import files
-
-    return files.FORMATS[type(mesh).__name__][0]
+def _is_field(mesh: Step, shape: Shape) -> bool:
+    """Tell whether a mesh, of which no part is taken, is a grid of one layer."""
+    sizes: tuple[int, ...] = getattr(mesh.run(), "dimensions", ())
+    whole = shape.contour is None and shape.slice is None
+    return whole and sum(size > 1 for size in sizes) == 2

@@ -168,7 +168,13 @@ def _builder(
     asked = LightOptions(**given)
     lights, place = "illuminate", dict[str, object](inplace=True)
     if refine is not None:
-        lights, place = "refine", {"error": _finest(refine)}
+        from vizlight.filters.refine import FINEST
+
+        expected = f"a number of at least {FINEST:g}, such as 1/255"
+        error = float(fraction("refine", refine, expected))
+        if error < FINEST:
+            raise ValueError(message("--refine", expected, refine))
+        lights, place = "refine", {"error": error}
 
     def job(path: Path, time: float | str | None) -> Job:
         data = scenes.joined(scenes.data(path, target, time), given.get("tangents"))
@@ -193,24 +199,13 @@ def _builder(
     return job
 
 
-def _finest(text: str) -> float:
-    """Return the error between points that is asked for."""
-    from vizlight.filters.refine import FINEST
-
-    expected = f"a number of at least {FINEST:g}, such as 1/255"
-    error = float(fraction("refine", text, expected))
-    if error < FINEST:
-        raise ValueError(message("--refine", expected, text))
-    return error
-
-
 def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
     """Return the step that measures what a reader can read back from the picture."""
-    names = [field for field in inspect.signature(vizlight.legibility).parameters if field in given]
-    known = {name: given[name] for name in names}
+    asked = inspect.signature(vizlight.legibility).parameters
+    known = {name: value for name, value in given.items() if name in asked}
     if made.shown is not None and made.shown.path == "vizlight.tint":
         known["scalars"] = made.shown.arguments[1]
-        known |= {name: made.shown.keywords[name] for name in made.shown.keywords.keys() & {"cmap"}}
+        known |= scenes.known(cmap=made.shown.keywords.get("cmap"))
     return Step("", "vizlight.legibility", made.lit, scene, **known, view=made.camera)
 
 
@@ -358,8 +353,8 @@ def _runs(pieces: Pieces) -> dict[str, Step]:
 
         _check.integer("--workers", pieces.workers, low=1)
     if pieces.scheduler is None:
-        several = pieces.workers is not None and pieces.workers > 1
-        return {"map": Step("work", "vizlight.pieces.Processes", pieces.workers)} if several else {}
+        processes = Step("work", "vizlight.pieces.Processes", pieces.workers)
+        return {"map": processes} if (pieces.workers or 1) > 1 else {}
     if pieces.workers is not None:
         raise ValueError(message("--workers", "--workers or --scheduler", "both"))
     if importlib.util.find_spec("distributed") is None:

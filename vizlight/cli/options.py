@@ -201,7 +201,8 @@ def arguments_of(
         text_type = _type(name, argument.annotation, module)
         if text_type is None or value is None or name in (*NOT_OPTIONS, *without):
             continue
-        default = _value(value, module)
+        constant: Foreign = _find(module, value.id) if isinstance(value, ast.Name) else value
+        default = ast.literal_eval(constant)
         shown = Parameter(
             help=first_clause(_text(name, texts)),
             negative=() if default is False or name == "rotation" else None,
@@ -253,11 +254,6 @@ def _function(module: str, name: str) -> tuple[ast.FunctionDef, dict[str, str]]:
     return node, _words.parameters(ast.get_docstring(node))
 
 
-def _value(node: ast.AST | None, module: str) -> object:
-    """Return a constant, or what a name stands for that is one."""
-    return ast.literal_eval(_find(module, node.id) if isinstance(node, ast.Name) else node)  # type: ignore[arg-type]
-
-
 def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
     """Return the type of an option on the command line, None where text cannot give it."""
     if name in READ:
@@ -268,8 +264,7 @@ def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
     if bool in parts:
         # A flag; the name of an array in its place is left to scripts.
         parts = [bool]
-    optional = [None] if "None" in names else []
-    return Union[(*parts, *optional)] if parts else None
+    return Union[(*parts, *([None] * ("None" in names)))] if parts else None
 
 
 def _choices(name: str, module: str) -> object | None:

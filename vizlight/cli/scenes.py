@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Foreign, Given, Keywords, Vector
-    from vizlight.cli.arguments import Color, Common, Lights, Part
+    from vizlight.cli.arguments import Color, Common, Part
     from vizlight.scene import Scene, View
 
     #: Position, focal point and direction up of a camera that no mesh changes.
@@ -86,9 +86,8 @@ def data(file: Path, target: Part, time: float | str | None = None) -> Step:
 
     mesh = Step("data", "vizlight.read", file, **known(time=time, overlay=target.overlay))
     mesh.note = "" if time is not None else series.note(mesh.run())
-    warp = target.warp if isinstance(target, Shape) else None
-    if isinstance(target, Shape) and warp is not None:
-        mesh = warped("raised", mesh, warp, target.exaggeration)
+    if isinstance(target, Shape) and target.warp is not None:
+        mesh = warped("raised", mesh, target.warp, target.exaggeration)
     for text in target.threshold or ():
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
@@ -259,12 +258,15 @@ class Look:
             color_table([], cmap=color.cmap)
         self._fill, self._progress = fill, common.out.progress
         self.lights, self._eye = common.lights, common.eye
-        _check_question(self.lights)
+        question = self.lights.question
+        for name in ("light", "light_position", "headlight", "scene"):
+            if question is not None and getattr(self.lights, name):
+                got = f"--{name.replace('_', '-')} beside it"
+                raise ValueError(message("--for", "lights of its own", got, "leave one out"))
         self.size = arguments.pixels(common.out.size)
         file = common.lights.scene
         self._file = None if file is None else _scene_of(file)
         base = vizlight.Scene() if self._file is None else self._file
-        question = self.lights.question
         if question is not None:
             base = getattr(vizlight.presets, question)()
         changes = known(**vars(common.finish))
@@ -350,10 +352,10 @@ class Look:
         if asked.question is not None:
             made = Step("scene", f"vizlight.presets.{asked.question}", view)
             return Step("scene", ".replace", made, **values) if values else made
-        lights = [
-            Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
-            for text in asked.light or ()
-        ]
+        lights = []
+        for text in asked.light or ():
+            toward = arguments.vector("light", text, n=n)
+            lights.append(Step("", "vizlight.Light", direction=toward))
         for text in asked.light_position or ():
             place = arguments.vector("light-position", text, n=n, direction=False)
             lights.append(Step("", "vizlight.Light", position=place))
@@ -372,16 +374,6 @@ class Look:
         content = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
         read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", content))
         return Step("scene", ".replace", read, **values) if values else read
-
-
-def _check_question(lights: Lights) -> None:
-    """Check that light for a question has no lights beside it."""
-    if lights.question is None:
-        return
-    for name in ("light", "light_position", "headlight", "scene"):
-        if getattr(lights, name):
-            got = f"--{name.replace('_', '-')} beside it"
-            raise ValueError(message("--for", "lights of its own", got, "leave one out"))
 
 
 def check_answers(question: str | None, mesh: Step, color: Color, tangents: object) -> None:
