@@ -86,10 +86,8 @@ class Sample:
 
     def take(self, rows: Rows) -> Sample:
         """Return some of the places."""
-        own = {
-            field.name: getattr(self, field.name)[rows]
-            for field in dataclasses.fields(self)
-            if isinstance(getattr(self, field.name), np.ndarray)
+        own: Keywords = {
+            n: array[rows] for n, array in vars(self).items() if isinstance(array, np.ndarray)
         }
         shares = {name: share[rows] for name, share in self.shares.items()}
         return dataclasses.replace(self, **own, shares=shares)
@@ -112,13 +110,9 @@ class Sample:
     ) -> ShadingInputs:
         """Return inputs of the engine of other tangents and normals, ``repeat`` at each place."""
         lit = self.options.conditioned is True or tangents is None
-        shares: Keywords = {
-            name: np.repeat(share, repeat, axis=0) for name, share in self.shares.items()
-        }
-        points = np.repeat(self.points, repeat, axis=0)
-        return ShadingInputs(
-            points=points, tangents=tangents, normals=normals if lit else None, **shares
-        )
+        known = {"points": self.points} | self.shares
+        several: Keywords = {name: np.repeat(rows, repeat, axis=0) for name, rows in known.items()}
+        return ShadingInputs(tangents=tangents, normals=normals if lit else None, **several)
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
         """Return the light of other tangents and normals at the places, shape (M repeat, 3)."""
@@ -171,20 +165,12 @@ def sample(part: Part, cells: Indices, at: Array, camera: pv.Camera, scene: Scen
     values = None
     if part.values is not None:
         values = interpolated(part.values[ids].astype(np.float64), places)
+    options = ShadingOptions.of(vars(part.options) | {"precision": "float64", "components": False})
     return Sample(
         kind=part.kind, points=points, eye=toward, right=right, up=np.cross(toward, right),
         tangents=tangents, normals=normals, values=values, valid=valid, scene=scene,
-        options=_shading(part), shares=shares,
+        options=options, shares=shares,
     )  # fmt: skip
-
-
-def _shading(part: Part) -> ShadingOptions:
-    """Return the options that light a part, in float64."""
-    own = {
-        field.name: getattr(part.options, field.name)
-        for field in dataclasses.fields(ShadingOptions)
-    }
-    return ShadingOptions(**own | {"precision": "float64", "components": False})
 
 
 def _toward_eye(camera: pv.Camera, points: Array) -> Array:
@@ -294,26 +280,17 @@ def _part(
     known = options
     if kind == "surface" and options.tangents is not None:
         known = dataclasses.replace(options, conditioned=True)
-    made = part_of(mesh, path, scene, known)
-    return Part(
-        kind,
-        mesh,
-        cells,
-        made.inputs.of_faces(),
-        options,
-        _shares(mesh, sum(light.intensity > 0 for light in scene.lights)),
-        None if scalars is None else values_of(mesh, scalars),
-    )
+    inputs = part_of(mesh, path, scene, known).inputs.of_faces()
+    shares = _shares(mesh, sum(light.intensity > 0 for light in scene.lights))
+    values = None if scalars is None else values_of(mesh, scalars)
+    return Part(kind, mesh, cells, inputs, options, shares, values)
 
 
 def _shares(mesh: pv.DataSet, lights: int) -> dict[str, Array]:
     """Return the shares of light that a filter found to reach the points of a mesh."""
     made = records.made(mesh, DEFAULT_NAME)
-    found: dict[str, Array] = {
-        name: np.asarray(mesh.point_data[name])
-        for name in ("transmittance", "occlusion")
-        if name in made
-    }
+    names = {"transmittance", "occlusion"} & made
+    found: dict[str, Array] = {name: np.asarray(mesh.point_data[name]) for name in names}
     name = (records.read(mesh, DEFAULT_NAME) or {}).get("options", {}).get("occlusion")
     if isinstance(name, str) and name in mesh.point_data:
         found["occlusion"] = np.asarray(mesh.point_data[name])
@@ -357,13 +334,11 @@ def _camera_of(view: View, mesh: pv.DataSet | pv.MultiBlock) -> pv.Camera:
     if view.position is None or view.parallel:
         assert view.direction is not None
         return camera_on(mesh, view.direction, up=view.axes()[1].tolist(), parallel=view.parallel)
-    position = np.array(view.position)
+    position, toward = np.array(view.position), np.array(view.direction)
     if view.direction is None:
         toward = position - np.array(camera_on(mesh).focal_point)
-    else:
-        toward = np.array(view.direction)
     eye = View(direction=toward, up=view.up)
-    camera = camera_on((-1, 1, -1, 1, -1, 1), toward, up=eye.axes()[1].tolist())
+    camera = camera_on((-1, 1, -1, 1, -1, 1), toward.tolist(), up=eye.axes()[1].tolist())
     camera.position = tuple(position)
     camera.focal_point = tuple(position - toward)
     camera.view_angle = VIEW_ANGLE

@@ -158,24 +158,28 @@ def weights(corners: Array, origin: Array, way: Array) -> Array:
         return np.ones((m, 1))
     start = origin - corners[:, 0]
     # What lies along the line of sight has no part in where it meets a cell.
-    flat = [_across(x, way) for x in (start, *(corners[:, i] - corners[:, 0] for i in range(1, s)))]
+    flat = [
+        flattened(x, way) for x in (start, *(corners[:, i] - corners[:, 0] for i in range(1, s)))
+    ]
     if s == 2:
         p, u = flat
-        second = np.clip(_ratio(_dots(p, u), _dots(u, u)), 0.0, 1.0)
+        second = np.clip(_ratio(dots(p, u), dots(u, u)), 0.0, 1.0)
         return np.stack([1 - second, second], axis=1)
     p, u, v = flat
-    uu, uv, vv, pu, pv_ = _dots(u, u), _dots(u, v), _dots(v, v), _dots(p, u), _dots(p, v)
+    uu, uv, vv, pu, pv_ = dots(u, u), dots(u, v), dots(v, v), dots(p, u), dots(p, v)
     area = uu * vv - uv**2
     second, third = _ratio(vv * pu - uv * pv_, area), _ratio(uu * pv_ - uv * pu, area)
     found = np.maximum(np.stack([1 - second - third, second, third], axis=1), 0.0)
     return np.asarray(found / found.sum(axis=1, keepdims=True))
 
 
-def _across(vectors: Array, way: Array) -> Array:
-    return np.asarray(vectors - _dots(vectors, way)[:, np.newaxis] * way)
+def flattened(vectors: Array, way: Array) -> Array:
+    """Return what of vectors stands across unit directions."""
+    return np.asarray(vectors - dots(vectors, way)[:, np.newaxis] * way)
 
 
-def _dots(a: Array, b: Array) -> Array:
+def dots(a: Array, b: Array) -> Array:
+    """Return the dot products of rows."""
     return np.asarray(np.einsum("ij,ij->i", a, b))
 
 
