@@ -10,13 +10,11 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
-from vizlight.draw.fragments import Fragments, unfit
-from vizlight.draw.html import write_page
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.html import Shown, write_page
 from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
-from vizlight.draw.live import LightAt, Live, items
+from vizlight.draw.live import Fragments, LightAt, Live, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
-from vizlight.draw.page import Shown
-from vizlight.draw.program import Stroke
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
