@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from cyclopts import CycloptsError
 
 from vizlight._supervise import BAD_INPUT, LACKING
-from vizlight.cli import arguments, filters, light  # noqa: F401 - their commands are in app
-from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.options import HELP, app
+from vizlight.cli import commands, options  # noqa: F401 - the commands are in app
+from vizlight.cli.options import HELP, Backend, app
 from vizlight.cli.output import OK, complain, console, draw, one_line, say
 
 if TYPE_CHECKING:
@@ -90,7 +89,7 @@ def demo(
 
     from vizlight import demo, files
 
-    pixels = arguments.pixels(size)
+    pixels = options.pixels(size)
     files.make_folder("out", out)
     made = demo.light_winds()
     mesh = files.write_mesh(made.globe, out / "flow.vtp")

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from vizlight.filters import relight
 from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.visible import dots, flattened
+from vizlight.observers.samples import dots, flattened
 from vizlight.shading import display
 
 if TYPE_CHECKING:
