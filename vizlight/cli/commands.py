@@ -482,6 +482,7 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
     """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
+    from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
 
     if scalars is not None and scalars == target.contour:
@@ -493,7 +494,8 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
     if target.overlay and scalars is None:
         name = shlex.quote(list(arrays.keys())[-1])
         return f"note     --scalars {name} shows the values over the surface"
-    raises, colors = _varying(arrays), [*_varying(arrays), *_colors(arrays)]
+    raises = _varying(arrays)
+    colors = raises + [shlex.quote(name) for name, one in arrays.items() if are_colors(one)]
     if any(block.GetMaxSpatialDimension() == 3 for block in parts):
         shows = f"; --contour {raises[0]} lights an isosurface of it" if raises else ""
         return f"note     the hull of a volume is lit{shows}" if target.surface and shows else ""
@@ -504,13 +506,6 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
         block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
     )
     return f"note     the mesh is flat; {', '.join(ways)}" if flat and ways else ""
-
-
-def _colors(arrays: pv.DataSetAttributes) -> list[str]:
-    """Return the names of arrays of colours, as a shell takes them."""
-    from vizlight.filters.tint import are_colors
-
-    return [shlex.quote(name) for name, values in arrays.items() if are_colors(values)]
 
 
 def _varying(arrays: pv.DataSetAttributes) -> list[str]:

@@ -335,18 +335,13 @@ class Page:
 
     def add_bars(self, plotter: pv.BasePlotter, shown: Sequence[Shown]) -> None:
         """Add the scalar bars that the plotter shows."""
-        titles = list(plotter.scalar_bars.keys())
-        for one in shown:
-            if one.live.scalars is None or not titles:
-                continue
-            table = one.actor.GetMapper().GetLookupTable()
-            title = next(
-                (t for t in titles if plotter.scalar_bars[t].GetLookupTable() is table), ""
-            )
-            if title:
-                titles.remove(title)
+        colored = [one.actor for one in shown if one.live.scalars is not None]
+        tables = [actor.GetMapper().GetLookupTable() for actor in colored]
+        for title, bar in plotter.scalar_bars.items():
+            table = bar.GetLookupTable()
+            if any(table is own for own in tables):
                 self.bars.append(_bar(title, table))
-                if plotter.scalar_bars[title].GetDrawNanAnnotation():
+                if bar.GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
                     self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
 

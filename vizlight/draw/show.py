@@ -92,8 +92,7 @@ def plot(
     named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
     given = {name: options.pop(name) for name in [*options] if name in named}
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
-    if window_size is not None:
-        window_size = _size(window_size)
+    size = None if window_size is None else _size(window_size)
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     if isinstance(screenshot, str | Path):
@@ -105,7 +104,6 @@ def plot(
             _check.boolean(name, given[name])
     own = inspect.signature(pv.Plotter.__init__).parameters
     window = {name: given.pop(name) for name in [*given] if name in own}
-    size = None if window_size is None else list(window_size)
     plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
         if given.pop("volume", False):
@@ -124,12 +122,12 @@ def plot(
     return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
 
 
-def _size(window_size: object) -> tuple[int, int]:
+def _size(window_size: object) -> list[int]:
     sides = _check.vector("window_size", window_size)
     if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
         expected = "(width, height), each from 1 to 16384 pixels"
         raise ValueError(_check.message("window_size", expected, sides))
-    return int(sides[0]), int(sides[1])
+    return [int(side) for side in sides]
 
 
 def _furnish(plotter: Foreign, given: Keywords) -> None:

@@ -23,7 +23,7 @@ from vizlight.files import check_output, replace_file
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, ColorLike, Foreign
+    from vizlight._types import ColorLike, Foreign
 
     Pixels: TypeAlias = NDArray[np.uint8]
     Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
@@ -176,7 +176,7 @@ def assert_same_picture(
 
 
 def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Difference:
-    from scipy.ndimage import maximum_filter, minimum_filter, uniform_filter
+    from scipy.ndimage import binary_erosion, maximum_filter, minimum_filter, uniform_filter
 
     if got.shape != expected.shape:
         raise ValueError(_check.message("got", f"{_size(expected)} pixels", _size(got)))
@@ -197,7 +197,9 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     high, low = (f(b, size=(3, 3, 1)) for f in (maximum_filter, minimum_filter))
     # An edge or a line that is displaced by part of a pixel changes colours by part of their range.
     outside = np.maximum(np.maximum(a - high, low - a) - 0.25 * (high - low), 0.0)
-    pixels, inside = 0.0, _inside_outlines(a, b, back)
+    # The pixels next to the background are left out, because drivers draw edges differently.
+    apart = [np.any(np.abs(x - back) > 8, axis=-1) for x in (a, b)]
+    pixels, inside = 0.0, binary_erosion(apart[0] & apart[1], np.ones((3, 3), np.bool_))
     if np.mean(inside) >= 1e-2:
         light, wanted = a[inside].sum(axis=0), b[inside].sum(axis=0)
         least = 0.02 * wanted.max() + 1
@@ -207,18 +209,6 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     sides = [min(BLOCK, side) for side in a.shape[:2]]
     block = uniform_filter(outside, (*sides, 1), mode="constant").max()
     return Difference(float(brightness), float(block), pixels)
-
-
-def _inside_outlines(got: Array, expected: Array, back: Array) -> NDArray[np.bool_]:
-    """Return where both pictures differ from the background, but for the pixels next to it.
-
-    Those are left out, because drivers draw edges differently.
-    """
-    from scipy.ndimage import binary_erosion
-
-    drawn = [np.any(np.abs(x - back) > 8, axis=-1) for x in (got, expected)]
-    inside: NDArray[np.bool_] = binary_erosion(drawn[0] & drawn[1], np.ones((3, 3), np.bool_))
-    return inside
 
 
 def _pixels(name: str, picture: Picture) -> Pixels:
