@@ -167,9 +167,7 @@ class Shader(Writer):
         # 1.
         return Symbol(self, *_INPUTS[name])
 
-    def direction(self, name: str) -> Value:
-        """Return the unit vector of an input."""
-        return self.read(name)
+    direction = read
 
     def frame(self, name: str, k: int) -> list[Value]:
         """Return the one tangent."""
@@ -182,9 +180,7 @@ class Shader(Writer):
         """Return a number of the plan."""
         return value
 
-    def wide(self, value: Value) -> Value:
-        """Return a number of the plan."""
-        return value
+    wide = number
 
     def vector(self, values: Value, *, wide: bool = False) -> Value:
         """Return a vector of the plan, which is a uniform."""
