@@ -21,7 +21,8 @@ from differential import by_numpy, by_text
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, cli, files
-from vizlight.draw import html, program
+from vizlight.draw import glsl as program
+from vizlight.draw import html
 from vizlight.mesh import brains, foreign_files
 from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs

@@ -42,11 +42,9 @@ def torus(n=128, r1=1.5, r2=0.75):
 
 def scene_of(mesh):
     """Return the scene of the study."""
-    return Scene(
-        lights=Light(direction=(-1, -0.6, 0.9)),
-        view=View.from_camera(render.camera_on(mesh.bounds, (0.3, -1, 0.8))),
-        material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
-    )
+    view = View.from_camera(render.camera_on(mesh.bounds, (0.3, -1, 0.8)))
+    material = Material(ambient=0.1, diffuse=0.9, specular=0.1)
+    return Scene(lights=Light(direction=(-1, -0.6, 0.9)), view=view, material=material)
 
 
 def along_fibres(segments):

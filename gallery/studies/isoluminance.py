@@ -50,32 +50,23 @@ def ours(mesh):
 
 def theirs(mesh):
     """Return VTK's contours of the light at the points."""
-    lit = vizlight.illuminate(mesh, SCENE)
-    return lit.contour(list(LEVELS), scalars="luminance")
+    return vizlight.illuminate(mesh, SCENE).contour(list(LEVELS), scalars="luminance")
 
 
 def measure(side, repeats):
     """Return the rows of one mesh."""
-    mesh = ball(side)
-    ways = {
-        "isoluminance(mesh)": partial(ours, mesh),
-        "contours of the light, VTK": partial(theirs, mesh),
-    }
-    seconds = take_turns(ways, repeats)
-    return [Row(way, side, off(work()), 1e3 * seconds[way]) for way, work in ways.items()]
+    ways = {"isoluminance(mesh)": ours, "contours of the light, VTK": theirs}
+    return _rows({way: partial(find, ball(side)) for way, find in ways.items()}, side, repeats)
 
 
 def of_solid(repeats):
     """Return the row of the solid, whose contours are circles."""
-    solid = vizlight.Sphere(radius=1.0)
-    seconds = take_turns({"solid": partial(ours, solid)}, repeats)["solid"]
-    return [Row("isoluminance(Sphere)", "", off(ours(solid)), 1e3 * seconds)]
+    return _rows({"isoluminance(Sphere)": partial(ours, vizlight.Sphere(radius=1.0))}, "", repeats)
 
 
-def steps(quick):
-    """Return one function for each mesh, and one for the solid."""
-    sides = (16, 32, 64, 128) if quick else (16, 32, 64, 128, 256, 512)
-    return [*(partial(measure, side, 3) for side in sides), partial(of_solid, 3)]
+def _rows(ways, side, repeats):
+    seconds = take_turns(ways, repeats)
+    return [Row(way, side, off(work()), 1e3 * seconds[way]) for way, work in ways.items()]
 
 
 STUDY = Study(
@@ -84,5 +75,8 @@ STUDY = Study(
     parameter="points along a meridian",
     error="largest error in degrees",
     cost="processor time, ms",
-    steps=steps,
+    steps=lambda quick: [
+        *(partial(measure, 2**i, 3) for i in range(4, 8 if quick else 10)),
+        partial(of_solid, 3),
+    ],
 )

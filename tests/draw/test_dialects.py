@@ -7,7 +7,7 @@ import re
 import pytest
 
 from vizlight import DepthCue, Light, Scene, View
-from vizlight.draw import dialects, program
+from vizlight.draw import dialects, glsl
 from vizlight.shading.engine import plan
 
 NEAR = Light(position=(1, 2, 3), attenuation=(0.5, 0.1, 0))
@@ -25,8 +25,8 @@ SHAPES = {
 def made(shape, dialect, *, turned=False):
     """Return the replacements of a dialect by stage, and what the program is given."""
     own = plan(SCENE, **SHAPES[shape])
-    written = program.write(own, turned=turned)
-    given = program.numbers(SCENE, SCENE.lights, fur=own.fur, tallest=0.0)
+    written = glsl.write(own, turned=turned)
+    given = glsl.numbers(SCENE, SCENE.lights, fur=own.fur, tallest=0.0)
     texts = {}
     for stage, mark, text in dialect.replacements(written, given):
         texts.setdefault(stage, {})[mark] = text

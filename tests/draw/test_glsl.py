@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.draw import glsl, program
+from vizlight.draw import glsl
 from vizlight.model import formulas
 from vizlight.scene.light import WHITE
 from vizlight.shading import display, engine
@@ -111,7 +111,7 @@ def run(body, given):
 
 def uniforms(scene, own, data):
     lights = [light.seen_from(scene.view) for light in scene.lights]
-    found = program.numbers(scene, lights, fur=own.fur, tallest=1.0, data=data)
+    found = glsl.numbers(scene, lights, fur=own.fur, tallest=1.0, data=data)
     values = {}
     for name, kind, value, space in found:
         numbers = np.asarray(value, dtype=np.float64)

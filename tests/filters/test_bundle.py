@@ -11,7 +11,7 @@ from lamps import SHINY, shiny
 
 import vizlight
 from vizlight import _compiled, _pool
-from vizlight.draw import fragments
+from vizlight.draw import live
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.shading import engine
@@ -269,7 +269,7 @@ def test_live_light_takes_the_shares_or_says_why_not():
     sources, used = relight.from_record(lit)
     again = engine.run(sources[0].inputs, used, sources[0].options)
     np.testing.assert_allclose(again.luminance, lit["luminance"], atol=1e-6)
-    assert "bundle" in fragments.unfit(sources[0])
+    assert "bundle" in live.unfit(sources[0])
     head = SCENE.replace(lights=[vizlight.Light.headlight()])
     with pytest.raises(ValueError, match="bundle: expected lights that stay"):
         relight.from_options(mesh, head, LightOptions(bundle=QUICK))

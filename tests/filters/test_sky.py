@@ -10,7 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import _compiled
-from vizlight.draw import fragments
+from vizlight.draw import live
 from vizlight.filters import relight
 from vizlight.mesh import closed_meshes, sky
 from vizlight.shading import engine, loops
@@ -304,7 +304,7 @@ def test_live_light_has_the_sky_of_the_mesh():
     (source,) = relight.from_options(both, SCENE, LightOptions(occlusion="sky"))
     assert source.mesh is both
     assert "sky" not in both.point_data
-    assert fragments.unfit(source) == ""
+    assert live.unfit(source) == ""
     lit = vizlight.illuminate(both, SCENE, occlusion="sky")
     shading = engine.run(source.inputs, SCENE, source.options)
     assert loops.why_not(shading.plan) == ""

@@ -8,15 +8,15 @@ import pyvista as pv
 
 from vizlight.draw.backends import choose_backend
 from vizlight.draw.cameras import camera_on
-from vizlight.observers import visible
-from vizlight.observers.visible import rays, weights
+from vizlight.observers import samples
+from vizlight.observers.samples import rays, weights
 
 pytestmark = pytest.mark.opengl
 
 
 def seen(meshes, camera):
     parts = [(mesh.GetPoints(), mesh.regular_faces) for mesh in meshes]
-    return visible.visible(parts, camera, choose_backend())
+    return samples.visible(parts, camera, choose_backend())
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -69,7 +69,7 @@ def test_more_cells_than_colors_take_several_pictures(monkeypatch):
     ball = pv.Icosphere(nsub=3)
     camera = camera_on(ball)
     whole = seen([ball], camera)
-    monkeypatch.setattr(visible, "BITS", 8)
+    monkeypatch.setattr(samples, "BITS", 8)
     parts = seen([ball], camera)
     np.testing.assert_array_equal(whole.cell, parts.cell)
     assert len(np.unique(whole.cell)) > 300

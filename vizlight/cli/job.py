@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Keywords
-    from vizlight.cli.arguments import Color, Output, Part
+    from vizlight.cli.options import Color, Output, Part
     from vizlight.cli.scenes import Look
 
 

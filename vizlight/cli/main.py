@@ -8,14 +8,13 @@ import shlex
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from cyclopts import CycloptsError
 
 from vizlight._supervise import BAD_INPUT, LACKING
-from vizlight.cli import arguments, filters, light  # noqa: F401 - their commands are in app
-from vizlight.cli.arguments import Backend  # noqa: TC001 - cyclopts reads the annotations
-from vizlight.cli.options import HELP, app
+from vizlight.cli import commands, options  # noqa: F401 - the commands are in app
+from vizlight.cli.options import HELP, Backend, app
 from vizlight.cli.output import OK, complain, console, draw, one_line, say
 
 if TYPE_CHECKING:
@@ -53,14 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return result if isinstance(result, int) else OK
 
 
-def _complain(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,  # noqa: ARG001 - the signature of warnings.showwarning
-    lineno: int,  # noqa: ARG001
-    file: TextIO | None = None,  # noqa: ARG001
-    line: str | None = None,  # noqa: ARG001
-) -> None:
+def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
     # The error of reading says what VTK said.
     if category.__name__ != "VTKExecutionWarning":
         complain(message)
@@ -97,7 +89,7 @@ def demo(
 
     from vizlight import demo, files
 
-    pixels = arguments.pixels(size)
+    pixels = options.pixels(size)
     files.make_folder("out", out)
     made = demo.light_winds()
     mesh = files.write_mesh(made.globe, out / "flow.vtp")

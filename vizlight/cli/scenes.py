@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._words import message, one_of
-from vizlight.cli import arguments
-from vizlight.cli.arguments import Shape
+from vizlight.cli import options
+from vizlight.cli.options import Shape
 from vizlight.cli.script import Step
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Foreign, Given, Keywords, Vector
-    from vizlight.cli.arguments import Color, Common, Lights, Part
+    from vizlight.cli.options import Color, Common, Part
     from vizlight.scene import Scene, View
 
     #: Position, focal point and direction up of a camera that no mesh changes.
@@ -63,7 +63,7 @@ def times(file: Path, target: Part) -> list[float | str | None]:
 
     if target.times is None:
         text = target.time
-        number = arguments.numbers(text or "", (1,))
+        number = options.numbers(text or "", (1,))
         return [*number] if number else [text]
     expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
     there = series.of(vizlight.read(file))
@@ -86,9 +86,8 @@ def data(file: Path, target: Part, time: float | str | None = None) -> Step:
 
     mesh = Step("data", "vizlight.read", file, **known(time=time, overlay=target.overlay))
     mesh.note = "" if time is not None else series.note(mesh.run())
-    warp = target.warp if isinstance(target, Shape) else None
-    if isinstance(target, Shape) and warp is not None:
-        mesh = warped("raised", mesh, warp, target.exaggeration)
+    if isinstance(target, Shape) and target.warp is not None:
+        mesh = warped("raised", mesh, target.warp, target.exaggeration)
     for text in target.threshold or ():
         mesh = _threshold(mesh, text)
     for text in target.clip or ():
@@ -174,7 +173,7 @@ def _moves(mesh: pv.DataSet, name: str) -> bool:
 
 def _threshold(mesh: Step, text: str) -> Step:
     """Return the step that keeps the cells whose values are in a range."""
-    name, low, high = arguments.interval("threshold", text)
+    name, low, high = options.interval("threshold", text)
     found = mesh.run()
     there = [*found.point_data, *found.cell_data]
     if name not in there:
@@ -191,7 +190,7 @@ def _threshold(mesh: Step, text: str) -> Step:
 
 def _cut(name: str, option: str, mesh: Step, text: str) -> Step:
     """Return the step that cuts a mesh by a plane."""
-    normal, offset = arguments.plane(option, text)
+    normal, offset = options.plane(option, text)
     length = math.hypot(*normal)
     origin = tuple(offset * component / length for component in normal)
     step = Step(name, f".{option}", mesh, normal=normal, origin=origin)
@@ -259,12 +258,15 @@ class Look:
             color_table([], cmap=color.cmap)
         self._fill, self._progress = fill, common.out.progress
         self.lights, self._eye = common.lights, common.eye
-        _check_question(self.lights)
-        self.size = arguments.pixels(common.out.size)
+        question = self.lights.question
+        for name in ("light", "light_position", "headlight", "scene"):
+            if question is not None and getattr(self.lights, name):
+                got = f"--{name.replace('_', '-')} beside it"
+                raise ValueError(message("--for", "lights of its own", got, "leave one out"))
+        self.size = options.pixels(common.out.size)
         file = common.lights.scene
         self._file = None if file is None else _scene_of(file)
         base = vizlight.Scene() if self._file is None else self._file
-        question = self.lights.question
         if question is not None:
             base = getattr(vizlight.presets, question)()
         changes = known(**vars(common.finish))
@@ -293,15 +295,15 @@ class Look:
     ) -> Step:
         """Return the step that sets the camera on a mesh by a function with options of its own."""
         eye = self._eye
-        up = None if eye.up is None else arguments.vector("up", eye.up)
+        up = None if eye.up is None else options.vector("up", eye.up)
         if self._fixed is not None:
             return self._fixed_camera(self._fixed, up)
         toward = (self._toward or (MAP if is_map else VIEW))[:3]
         parallel = eye.parallel or (is_map and self._toward is None)
         parallel = parallel or (self._view is not None and self._view.parallel)
-        options = known(up=up, parallel=parallel or None, zoom=None if eye.zoom == 1 else eye.zoom)
+        given = known(up=up, parallel=parallel or None, zoom=None if eye.zoom == 1 else eye.zoom)
         aspect = self.size[0] / self.size[1]
-        return Step("camera", by, mesh, toward, **more, **options, aspect=aspect)
+        return Step("camera", by, mesh, toward, **more, **given, aspect=aspect)
 
     def _fixed_camera(self, fixed: Fixed, up: Vector | None) -> Step:
         """Return the step that sets a camera where it was saved."""
@@ -338,7 +340,7 @@ class Look:
             expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
             raise ValueError(message("--view", expected, repr(self._eye.view)))
         zeros = (0.0,) * (n - len(toward))
-        up = None if self._eye.up is None else arguments.vector("up", self._eye.up)
+        up = None if self._eye.up is None else options.vector("up", self._eye.up)
         shoulder = render.over_shoulder(render.camera_on(BOX, toward[:3], up=up))
         view = Step("", "vizlight.View", direction=(*toward, *zeros))
         return self._scene(view, (*shoulder, *(0.0,) * (n - 3)), n)
@@ -350,12 +352,12 @@ class Look:
         if asked.question is not None:
             made = Step("scene", f"vizlight.presets.{asked.question}", view)
             return Step("scene", ".replace", made, **values) if values else made
-        lights = [
-            Step("", "vizlight.Light", direction=arguments.vector("light", text, n=n))
-            for text in asked.light or ()
-        ]
+        lights = []
+        for text in asked.light or ():
+            toward = options.vector("light", text, n=n)
+            lights.append(Step("", "vizlight.Light", direction=toward))
         for text in asked.light_position or ():
-            place = arguments.vector("light-position", text, n=n, direction=False)
+            place = options.vector("light-position", text, n=n, direction=False)
             lights.append(Step("", "vizlight.Light", position=place))
         if asked.headlight:
             lights.append(Step("", "vizlight.Light.headlight"))
@@ -372,16 +374,6 @@ class Look:
         content = Step("", ".read_text", Step("", "pathlib.Path", asked.scene))
         read = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", content))
         return Step("scene", ".replace", read, **values) if values else read
-
-
-def _check_question(lights: Lights) -> None:
-    """Check that light for a question has no lights beside it."""
-    if lights.question is None:
-        return
-    for name in ("light", "light_position", "headlight", "scene"):
-        if getattr(lights, name):
-            got = f"--{name.replace('_', '-')} beside it"
-            raise ValueError(message("--for", "lights of its own", got, "leave one out"))
 
 
 def check_answers(question: str | None, mesh: Step, color: Color, tangents: object) -> None:
@@ -443,8 +435,8 @@ def _asked_view(view: str | None) -> tuple[Vector | None, Fixed | None]:
     if view.lower().endswith(".json"):
         return None, _saved_camera(view)
     # In n-space the eye has n components.
-    toward = arguments.numbers(view, tuple(range(4, 100)))
-    return toward if any(toward) else arguments.vector("view", view), None
+    toward = options.numbers(view, tuple(range(4, 100)))
+    return toward if any(toward) else options.vector("view", view), None
 
 
 def _file_view(view: View) -> tuple[Vector | None, Fixed | None]:

@@ -72,7 +72,12 @@ def camera_on(
     aspect = _check.number("aspect", aspect, low=1e-3)
     toward, upward = _directions(direction, up)
     zoom = _check.number("zoom", zoom, low=1e-6)
-    box = _box(bounds)
+    given = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
+    box = _check.coordinates("bounds", given)
+    if box.shape != (6,):
+        expected = "a mesh or six finite numbers"
+        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+    box = box.reshape(3, 2)
     centre = box.mean(axis=1)
     if np.any(box[:, 1] < box[:, 0]):
         raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
@@ -166,16 +171,6 @@ def _axes(toward: Array, up: Array) -> Array:
     """Return the unit vectors to the right and up in the picture, and toward the eye."""
     right = np.cross(up, toward)
     return np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
-
-
-def _box(bounds: Mesh | ArrayLike) -> Array:
-    """Return the bounds of a mesh, or validated bounds, as an array of shape (3, 2)."""
-    given = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
-    box = _check.coordinates("bounds", given)
-    if box.shape != (6,):
-        expected = "a mesh or six finite numbers"
-        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
-    return box.reshape(3, 2)
 
 
 def _fit(points: Array, axes: Array, aspect: float) -> tuple[Array, float, float]:

@@ -10,13 +10,11 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
-from vizlight.draw.fragments import Fragments, unfit
-from vizlight.draw.html import write_page
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.html import Shown, write_page
 from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
-from vizlight.draw.live import LightAt, Live, items
+from vizlight.draw.live import Fragments, LightAt, Live, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
-from vizlight.draw.page import Shown
-from vizlight.draw.program import Stroke
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
@@ -57,7 +55,7 @@ class Component:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         # Weak both ways: neither the plotter nor a removed actor is kept alive by its light.
         self._plotter = weakref.ref(plotter)
-        self._holders: weakref.WeakValueDictionary[str, _Holder] = weakref.WeakValueDictionary()
+        self._lives: dict[str, Live] = {}
         self._observed: list[tuple[vtkRenderer, int]] = []
 
     def add_mesh(
@@ -330,13 +328,12 @@ class Component:
             If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
             left out.
         """
-        plotter, shown = self._open_plotter(), self.shown()
-        if not plotter.camera_set:
-            plotter.renderer.view_isometric(render=False)
-        return write_page(path, shown, plotter, title=title, panel=panel, key=key)
+        return write_page(
+            path, self.shown(), self._open_plotter(), title=title, panel=panel, key=key
+        )
 
     def shown(self) -> list[Shown]:
-        """Return the visible meshes with live light, for a page.
+        """Return the visible meshes with live light, for a page whose camera is set.
 
         Returns
         -------
@@ -352,21 +349,19 @@ class Component:
         UserWarning
             If there are actors without live light, which a page leaves out.
         """
-        found: list[Shown] = []
-        others = 0
-        for actor in items(self._open_plotter().renderer.GetActors()):
-            live = self._live_of(actor)
-            if not actor.GetVisibility():
-                continue
-            if live is None:
-                others += 1
-            else:
-                found.append(Shown(live.name or f"mesh {len(found) + 1}", live, actor))
+        plotter = self._open_plotter()
+        visible = [actor for actor in items(plotter.renderer.GetActors()) if actor.GetVisibility()]
+        lit = [(live, actor) for actor in visible if (live := self._live_of(actor)) is not None]
+        found = [
+            Shown(own.name or f"mesh {i}", own, actor) for i, (own, actor) in enumerate(lit, 1)
+        ]
         if not found:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
-        if others:
+        if others := len(visible) - len(found):
             _check.warn(f"{others} actors without light of vizlight are not in the page")
+        if not plotter.camera_set:
+            plotter.renderer.view_isometric(render=False)
         return found
 
     def explain(self, actor: vtkActor, /) -> str:
@@ -411,7 +406,7 @@ class Component:
     @property
     def has_live_light(self) -> bool:
         """Whether the plotter shows a mesh whose light follows the camera."""
-        return any(holder.live is not None for holder in self._holders.values())
+        return bool(self._lives)
 
     def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"
@@ -423,8 +418,7 @@ class Component:
         return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:
-        holder = self._holders.get(_address(actor))
-        return None if holder is None else holder.live
+        return self._lives.get(_address(actor))
 
     def _open_plotter(self) -> pv.BasePlotter:
         plotter = self._plotter()
@@ -486,11 +480,10 @@ class Component:
     def _keep(self, plotter: pv.BasePlotter, live: Live, actor: pv.Actor) -> None:
         """Tie a live light to its actor, and observe the renderers."""
         guard_exports(plotter)
-        # The actor owns its observer: without the actor nothing is left of the light.
-        holder = _Holder(live)
-        actor.AddObserver("DeleteEvent", holder.release)
-        self._holders[_address(actor)] = holder
-        me = weakref.ref(self)
+        # Without the actor nothing is left of the light.
+        lives, address, me = self._lives, _address(actor), weakref.ref(self)
+        lives[address] = live
+        actor.AddObserver("DeleteEvent", lambda *_: lives.pop(address, None))
 
         def update(renderer: vtkRenderer, _: str) -> None:
             component = me()
@@ -510,22 +503,10 @@ class Component:
         for renderer, tag in self._observed:
             renderer.RemoveObserver(tag)
         self._observed.clear()
-        for holder in list(self._holders.values()):
-            holder.release()
-        self._holders.clear()
+        # VTK may keep the actors.
+        self._lives.clear()
 
     __plotter_deep_clean__ = __plotter_close__
-
-
-class _Holder:
-    """What an actor holds of its live light; VTK may keep the actor of a closed plotter."""
-
-    def __init__(self, live: Live) -> None:
-        self.live: Live | None = live
-
-    def release(self, *_: object) -> None:
-        """Let go of the light."""
-        self.live = None
 
 
 def _address(thing: vtkObject) -> str:

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from vizlight.draw import glsl
-from vizlight.draw.program import ALONG, Varying, suffixed
+from vizlight.draw.glsl import ALONG, Varying, suffixed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vtkmodules.vtkRenderingCore import vtkActor
 
-    from vizlight.draw.program import Program, Stroke, Uniform
+    from vizlight.draw.glsl import Program, Stroke, Uniform
 
 #: Matrix from the coordinates of a buffer of VTK to world coordinates.
 WORLD = "MCWCMatrix"

@@ -13,7 +13,7 @@ from vizlight import _check, files
 from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
-from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_of, tinted
+from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_in_scene, tinted
 from vizlight.filters.tint import color_table, map_colors, values_of
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
@@ -99,15 +99,10 @@ def save_gltf(
     of the mesh, which is the translation of the node.
     """
     path = files.check_output(path, (".glb",))
-    blocks.check(mesh)
-    _check.instance("scene", scene, Scene, optional=True)
     for name in options.keys() - LIGHT:
         expected = "an option of vizlight.illuminate"
         raise TypeError(_check.message("options", expected, repr(name)))
-    sources, used = sources_of(mesh, scene, options)
-    if used is None:
-        remedy = "pass a Scene, or a mesh that a filter has lit"
-        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
+    sources, used = sources_in_scene(mesh, scene, options)
     names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
     file, fixed = _File(), set()
     drawn = [_drawn(source.mesh, scalars) for source in sources]
@@ -120,8 +115,7 @@ def save_gltf(
         if here.view is None:
             here = here.replace(view=View.isometric(n))
         lit, seen = fixed_colors(source, here, own, ids)
-        # A control point of a curved cell, which has no index, is not lit.
-        file.add(name or "mesh", surface, np.where(ids[:, np.newaxis] >= 0, lit, np.uint8(0)))
+        file.add(name or "mesh", surface, lit)
         fixed |= {seen} - {""}
     if not file.nodes:
         raise ValueError(_check.message("mesh", "a mesh with points", "none"))

@@ -143,7 +143,7 @@ def colored(
         return _attached(mesh, GIVEN, scalars, rgb=rgb, of_cells=of_cells), GIVEN
     _check.text("scalars", scalars, expected="the name of an array")
     every = list(blocks.all_blocks(mesh))
-    at = [_array(block, scalars, of_cells=of_cells) for block in every]
+    at = [array_of(block, scalars, of_cells=of_cells) for block in every]
     both = any(scalars in block.point_data and scalars in block.cell_data for block in every)
     if not (rgb or (both and of_cells)):
         return mesh, scalars
@@ -163,7 +163,7 @@ def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywor
     """
     if name is None or drawing.get("clim") is not None:
         return {}
-    values = _array(mesh, name, of_cells=False)
+    values = array_of(mesh, name)
     if values is None or values.ndim != 1:
         return {}
     real = values.dtype.kind == "f"
@@ -175,8 +175,8 @@ def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywor
     return {"clim": (float(known.min()), float(known.max()))}
 
 
-def _array(mesh: pv.DataSet, name: str, *, of_cells: bool) -> Raw | None:
-    """Return an array of a mesh, of its points or of its cells."""
+def array_of(mesh: pv.DataSet, name: str, *, of_cells: bool = False) -> Raw | None:
+    """Return an array of a mesh, of its points or else of its cells, or the other way round."""
     places = (mesh.cell_data, mesh.point_data) if of_cells else (mesh.point_data, mesh.cell_data)
     return next((np.asarray(data[name]) for data in places if name in data), None)
 

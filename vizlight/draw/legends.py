@@ -77,7 +77,9 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
         bar.SetVerticalTitleSeparation(letters // 2)
     else:
         right = max(min(right, wide - 0.5 * number - 4), left + 1)
-    words = _lines(str(bar.GetTitle()), left, right, wide, letters)
+    middle = (left + right) / 2
+    room = 2 * min(middle, wide - middle) / (LETTER * letters)
+    words = textwrap.wrap(str(bar.GetTitle()), max(int(room), 1))
     bar.SetTitle("\n".join(words))
     bar.SetPosition(left / wide, bar.GetPosition()[1])
     bar.SetWidth((right - left) / wide)
@@ -102,13 +104,6 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
             if len({f"{tick:.{digits}g}" for tick in ticks}) == len(ticks):
                 bar.SetLabelFormat(f"%-#6.{digits}g")
                 break
-
-
-def _lines(title: str, left: float, right: float, wide: float, letters: float) -> list[str]:
-    """Return the lines of a title that is centred above a bar."""
-    middle = (left + right) / 2
-    room = 2 * min(middle, wide - middle) / (LETTER * letters)
-    return textwrap.wrap(title, max(int(room), 1))
 
 
 def name_no_data(bar: vtkScalarBarActor) -> None:

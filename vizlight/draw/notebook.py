@@ -87,8 +87,6 @@ def _frame(plotter: pv.BasePlotter) -> Frame:
     from vizlight.draw.html import page_text
 
     shown = plotter.vizlight.shown()
-    if not plotter.camera_set:
-        plotter.renderer.view_isometric(render=False)
     height = max(int(plotter.window_size[1]), LOWEST)
     return Frame(page_text(shown, plotter, panel=False), height)
 

@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from vizlight import _check, files
-from vizlight.draw import dialects, program
-from vizlight.draw.fragments import Fragments, unfit, unfit_layout
-from vizlight.draw.live import NORMALS, TANGENTS
-from vizlight.draw.sources import sources_of
+from vizlight.draw import dialects, glsl
+from vizlight.draw.live import NORMALS, TANGENTS, Fragments, unfit, unfit_layout
+from vizlight.draw.sources import sources_in_scene
 from vizlight.filters.tint import color_table
-from vizlight.mesh import blocks
 from vizlight.scene import Scene, View
 from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
@@ -33,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Given
-    from vizlight.draw.program import Program
+    from vizlight.draw.glsl import Program
     from vizlight.shading.options import Exponent, Facing, Model
     from vizlight.shading.plan import Plan
 
@@ -212,7 +210,7 @@ def shader(
     layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
     scalars = _named("scalars", scalars)
     plan = _plan(scene, layout, asked)
-    written = program.write(
+    written = glsl.write(
         plan, turned=False, toward=TOWARD.get(asked.facing, ""), data=scalars is not None
     )
     return _made(scene, plan, written, tangents, normals, scalars)
@@ -257,15 +255,10 @@ def save(
         If a file cannot be written.
     """
     path = files.check_output(path, (SUFFIX,))
-    blocks.check(mesh)
-    _check.instance("scene", scene, Scene, optional=True)
-    sources, used = sources_of(mesh, scene, options)
+    sources, used = sources_in_scene(mesh, scene, options)
     if len(sources) != 1:
         expected, remedy = "one block", "write a script for each"
         raise ValueError(_check.message("mesh", expected, f"{len(sources)} blocks", remedy))
-    if used is None:
-        remedy = "pass a Scene, or a mesh that a filter has lit"
-        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
     (source,) = sources
     if scalars is not None:
         _check.text("scalars", scalars, expected="the name of a point array")
@@ -277,7 +270,7 @@ def save(
     live = Fragments(source, used)
     live.attach()
     live.see(source.inputs, used.view)
-    written = program.write(plan, turned=source.sided is not None, data=scalars is not None)
+    written = glsl.write(plan, turned=source.sided is not None, data=scalars is not None)
     made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
     data = files.write_mesh(live.drawn, beside(path))
     text = made.script(data.resolve())
@@ -338,7 +331,7 @@ def _made(
     shown = ambient, diffuse, material.specular_color or WHITE
     lights = [light for light in scene.lights if light.intensity > 0]
     seen, fixed = scene.replace(view=EYE), [light.seen_from(EYE) for light in lights]
-    given = program.numbers(
+    given = glsl.numbers(
         seen, fixed, *shown, fur=plan.fur, tallest=tallest, data=scalars is not None
     )
     # What stands with the camera has its numbers in view coordinates already.

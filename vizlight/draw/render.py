@@ -20,8 +20,9 @@ from vizlight.draw.backends import (
 )
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.dialects import widen
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.keywords import array_of
 from vizlight.draw.legends import CornerKey, ink_on, name_no_data
-from vizlight.draw.program import Stroke
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -203,17 +204,18 @@ def make_plotter(
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
     tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
-    back = _background_of(shown, background)
+    meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
+    back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:
-        camera = _camera_on_all(shown, aspect=pixels[0] * rows / (pixels[1] * columns))
+        _check.coordinates("panels", common_bounds("panels", [meshes]))
+        camera = camera_on(meshes, aspect=pixels[0] * rows / (pixels[1] * columns))
     ink = ink_on(back)
     with window_class(choose_backend(backend)):
         plotter = pv.Plotter(
             off_screen=True, shape=(rows, columns), window_size=pixels, border=False
         )
     if anti_aliasing == "auto":
-        thin = any(has_lines_only(mesh) for panel in shown for mesh in all_blocks(panel.mesh))
-        anti_aliasing = "ssaa" if thin else "msaa"
+        anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
     # Older VTK puts all supersampled panels where the first one is.
     if anti_aliasing == "ssaa" and len(shown) > 1 and pv.vtk_version_info < (9, 7):
         anti_aliasing = "msaa"
@@ -240,7 +242,7 @@ def make_plotter(
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if key is not None:
-            CornerKey(key, "auto", KEY_SIZE, ink_on(back)).show(plotter.renderer)
+            CornerKey(key, "auto", KEY_SIZE, ink).show(plotter.renderer)
         if bar:
             made = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
@@ -285,14 +287,13 @@ def _check_panels(
             )
         check(panel.mesh)
         for mesh in all_blocks(panel.mesh):
-            if panel.scalars not in mesh.point_data and panel.scalars not in mesh.cell_data:
+            array = array_of(mesh, panel.scalars)
+            if array is None:
                 known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
                 expected = f"a point array or a cell array ({known})"
                 lit = panel.scalars == DEFAULT_NAME
                 remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
                 raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
-            data = mesh.point_data if panel.scalars in mesh.point_data else mesh.cell_data
-            array = data[panel.scalars]
             if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
                 expected = "real numbers of 1 component, or colours of 3 or 4"
                 got = f"{panel.scalars!r} of shape {array.shape} and type {array.dtype}"
@@ -313,20 +314,6 @@ def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: objec
         got = _check.describe(cmap)
         raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
     _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
-
-
-def _background_of(shown: Sequence[Panel], background: ColorLike | None) -> pv.Color:
-    """Return the requested background, otherwise the one on which the meshes stand out."""
-    if (channels := _check.color("background", background)) is not None:
-        return pv.Color(channels)
-    return pv.Color(backdrop(mesh for panel in shown for mesh in all_blocks(panel.mesh)))
-
-
-def _camera_on_all(shown: Sequence[Panel], aspect: float) -> pv.Camera:
-    """Return a camera that shows the meshes of all panels."""
-    _check.coordinates("panels", common_bounds("panels", [panel.mesh for panel in shown]))
-    meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
-    return camera_on(meshes, aspect=aspect)
 
 
 def save_png(
@@ -440,7 +427,7 @@ def _draw(
             shown["vizlight along"] = polylines.line_tangents(mesh).astype(np.float32)
             shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data
-        values = np.asarray((mesh.point_data if of_points else mesh.cell_data)[panel.scalars])
+        values: Foreign = array_of(mesh, panel.scalars)
         colour = values.ndim == 2
         if colour and values.dtype != np.uint8:
             # VTK wraps around above 1, so a bright highlight would turn black.

@@ -16,7 +16,7 @@ from vizlight.filters.sky import SKY
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Function, Given, Keywords
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.draw.live import LightAt
     from vizlight.scene import Scene
 
@@ -92,8 +92,7 @@ def plot(
     named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
     given = {name: options.pop(name) for name in [*options] if name in named}
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
-    if window_size is not None:
-        window_size = _size(window_size)
+    size = None if window_size is None else _size(window_size)
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     if isinstance(screenshot, str | Path):
@@ -103,8 +102,8 @@ def plot(
     for name in ("off_screen", "notebook"):
         if given.get(name) is not None:
             _check.boolean(name, given[name])
-    window = _taken(given, pv.Plotter.__init__)
-    size = None if window_size is None else list(window_size)
+    own = inspect.signature(pv.Plotter.__init__).parameters
+    window = {name: given.pop(name) for name in [*given] if name in own}
     plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
         if given.pop("volume", False):
@@ -123,18 +122,12 @@ def plot(
     return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
 
 
-def _size(window_size: object) -> tuple[int, int]:
+def _size(window_size: object) -> list[int]:
     sides = _check.vector("window_size", window_size)
     if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
         expected = "(width, height), each from 1 to 16384 pixels"
         raise ValueError(_check.message("window_size", expected, sides))
-    return int(sides[0]), int(sides[1])
-
-
-def _taken(given: Keywords, function: Function) -> Keywords:
-    """Take from keywords those of a function."""
-    known = inspect.signature(function).parameters
-    return {name: given.pop(name) for name in [*given] if name in known}
+    return [int(side) for side in sides]
 
 
 def _furnish(plotter: Foreign, given: Keywords) -> None:

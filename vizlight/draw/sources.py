@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw.live import lifted
+from vizlight.draw.live import lifted, on_screen
 from vizlight.filters import lighting, relight
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
@@ -19,7 +19,7 @@ from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.scene import Light, Scene, View
-from vizlight.shading.display import NO_DATA, displayable, on_colors
+from vizlight.shading.display import on_colors
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import GHOSTS
@@ -28,13 +28,11 @@ from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:
-    from vizlight._types import Indices, Keywords, Rows
+    from vizlight._types import Indices, Keywords
     from vizlight.filters.relight import Source
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import FeatureAngle
 
-#: Rows of all points.
-EVERY = slice(None)
 #: What is left out, for a page, a file and its reader.
 LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"
 
@@ -71,6 +69,25 @@ def sources_of(
         # Which side of an open surface is lit is then the camera's to say.
         provisional = provisional.replace(view=seen.view)
     return relight.from_options(mesh, provisional, asked), scene
+
+
+def sources_in_scene(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: Keywords
+) -> tuple[list[Source], Scene]:
+    """Return what is lit, and its scene, for a file, which has no lights of a plotter.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit, or there is neither a scene nor the record of one.
+    """
+    blocks.check(mesh)
+    _check.instance("scene", scene, Scene, optional=True)
+    sources, used = sources_of(mesh, scene, options)
+    if used is None:
+        remedy = "pass a Scene, or a mesh that a filter has lit"
+        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
+    return sources, used
 
 
 def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
@@ -179,7 +196,7 @@ def _side(size: Indices, axis: int, end: int) -> Indices:
 
 
 def fixed_colors(
-    source: Source, scene: Scene, colors: Bytes | None, ids: Rows = EVERY
+    source: Source, scene: Scene, colors: Bytes | None, ids: Indices
 ) -> tuple[Bytes, str]:
     """Return colours in light that stays as it is when the eye moves.
 
@@ -190,8 +207,8 @@ def fixed_colors(
         Scene; its view is used only where ambient and diffuse light cannot do without one.
     colors : ndarray of uint8, shape (M, 4), or None
         Colours of data; None for the material's.
-    ids : ndarray of int, shape (M,), optional
-        Point of the source that each colour belongs to. Default: all points, one after the other.
+    ids : ndarray of int, shape (M,)
+        Point of the source that each colour belongs to, -1 for none.
 
     Returns
     -------
@@ -220,18 +237,18 @@ def fixed_colors(
     return lit_colors(_on_one_side(source, bare.view), bare, colors, ids), " and ".join(seen)
 
 
-def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Rows = EVERY) -> Bytes:
+def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Indices) -> Bytes:
     """Return colours of data, or of the material, in light, as bytes of shape (M, 4)."""
     if colors is not None:
         light, valid = light_on_colors([source], scene)[0]
-        return on_colors(colors, light[ids], valid[ids])
-    inputs = source.seen_from(scene.view, source.inputs)
-    parts = [(inputs, source.options)]
-    (shading,), _ = lighting.light(parts, scene, progress_bar=False)
-    rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
-    shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
-    shown[~shading.valid] = NO_DATA
-    return np.insert(255.0 * shown + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
+        lit = on_colors(colors, light[ids], valid[ids])
+    else:
+        parts = [(source.seen_from(scene.view, source.inputs), source.options)]
+        (shading,), _ = lighting.light(parts, scene, progress_bar=False)
+        lit = np.insert(255.0 * on_screen(shading) + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
+    # A control point of a curved cell, which has no index, is not lit.
+    lit[ids < 0] = 0
+    return lit
 
 
 def _on_one_side(source: Source, view: View | None) -> Source:

@@ -23,7 +23,7 @@ from vizlight.files import check_output, replace_file
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, ColorLike, Foreign
+    from vizlight._types import ColorLike, Foreign
 
     Pixels: TypeAlias = NDArray[np.uint8]
     Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
@@ -176,7 +176,7 @@ def assert_same_picture(
 
 
 def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Difference:
-    from scipy.ndimage import maximum_filter, minimum_filter
+    from scipy.ndimage import binary_erosion, maximum_filter, minimum_filter, uniform_filter
 
     if got.shape != expected.shape:
         raise ValueError(_check.message("got", f"{_size(expected)} pixels", _size(got)))
@@ -197,35 +197,18 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     high, low = (f(b, size=(3, 3, 1)) for f in (maximum_filter, minimum_filter))
     # An edge or a line that is displaced by part of a pixel changes colours by part of their range.
     outside = np.maximum(np.maximum(a - high, low - a) - 0.25 * (high - low), 0.0)
-    pixels, inside = 0.0, _inside_outlines(a, b, back)
+    # The pixels next to the background are left out, because drivers draw edges differently.
+    apart = [np.any(np.abs(x - back) > 8, axis=-1) for x in (a, b)]
+    pixels, inside = 0.0, binary_erosion(apart[0] & apart[1], np.ones((3, 3), np.bool_))
     if np.mean(inside) >= 1e-2:
         light, wanted = a[inside].sum(axis=0), b[inside].sum(axis=0)
         least = 0.02 * wanted.max() + 1
         brightness = max(brightness, np.max(np.abs(light - wanted) / np.maximum(wanted, least)))
         pixels = float(np.mean(outside[inside].max(axis=-1) > 7))
-    return Difference(float(brightness), _largest_mean(outside), pixels)
-
-
-def _inside_outlines(got: Array, expected: Array, back: Array) -> NDArray[np.bool_]:
-    """Return where both pictures differ from the background, but for the pixels next to it.
-
-    Those are left out, because drivers draw edges differently.
-    """
-    from scipy.ndimage import binary_erosion
-
-    drawn = [np.any(np.abs(x - back) > 8, axis=-1) for x in (got, expected)]
-    inside: NDArray[np.bool_] = binary_erosion(drawn[0] & drawn[1], np.ones((3, 3), np.bool_))
-    return inside
-
-
-def _largest_mean(errors: Array) -> float:
-    """Return the largest mean over a block, for blocks that start at any pixel."""
-    rows, columns = (min(BLOCK, n) for n in errors.shape[:2])
-    total = np.zeros((errors.shape[0] + 1, errors.shape[1] + 1, 3))
-    total[1:, 1:] = errors.cumsum(axis=0).cumsum(axis=1)
-    sums = total[rows:, columns:] - total[:-rows, columns:]
-    sums = sums - (total[rows:, :-columns] - total[:-rows, :-columns])
-    return float(sums.max() / (rows * columns))
+    # Beside the picture there is no error: a block that reaches beyond it has no larger mean.
+    sides = [min(BLOCK, side) for side in a.shape[:2]]
+    block = uniform_filter(outside, (*sides, 1), mode="constant").max()
+    return Difference(float(brightness), float(block), pixels)
 
 
 def _pixels(name: str, picture: Picture) -> Pixels:

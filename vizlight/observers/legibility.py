@@ -19,12 +19,12 @@ from vizlight.scene import Scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import pyvista as pv
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Vector
+    from vizlight._types import Array, Function, Keywords, Vector
     from vizlight.filters.tint import ColorMap
     from vizlight.observers.samples import Part, Sample
     from vizlight.scene.conversion import AnyView
@@ -193,13 +193,14 @@ class Legibility:
     notes: tuple[str, ...] = ()
 
     def _rows(self) -> list[tuple[str, ...]]:
-        found: dict[str, list[tuple[str, ...]]] = {}
+        rows, last = list[tuple[str, ...]](), ""
         for question, name, words, form, chance in ROWS:
             value = getattr(getattr(self, question), name, None)
             if value is not None:
-                own = found.setdefault(question, [])
-                own.append(("" if own else question, words, form.format(value), chance))
-        return [row for own in found.values() for row in own]
+                shown = "" if question == last else question
+                rows.append((shown, words, form.format(value), chance))
+                last = question
+        return rows
 
     def _lines(self) -> list[str]:
         where = "visible pixels" if self.drawn else "points that face the eye; no picture was drawn"
@@ -230,15 +231,8 @@ class Legibility:
         return dataclasses.asdict(self)
 
 
-def of_direction(
-    samples: list[Sample], seed: int, noise: float, notes: list[str]
-) -> Direction | None:
-    """Return the figures of direction; what has none, or was left out, is added to the notes."""
-    asked = [one for one in samples if one.kind != "line" and one.has_one_tangent]
-    own = _with_data(asked, "direction", "tangents or normals", notes)
-    if not own:
-        return None
-    random = np.random.default_rng(seed)
+def of_direction(own: list[Sample], random: np.random.Generator, noise: float) -> Direction:
+    """Return the figures of direction."""
     found = [readers.find_direction(one, random, noise) for one in own]
     middle = np.concatenate([one.points for one in own]).mean(axis=0)
     by_key = np.concatenate([readers.by_key(one, middle, random, noise) for one in own])
@@ -265,13 +259,8 @@ def _with_data(samples: list[Sample], question: str, what: str, notes: list[str]
     return [one for one in kept if len(one)]
 
 
-def of_slope(samples: list[Sample], seed: int, noise: float, notes: list[str]) -> Slope | None:
-    """Return the figures of slope; what has none, or was left out, is added to the notes."""
-    asked = [one for one in samples if one.kind == "line" and one.has_one_tangent]
-    own = _with_data(asked, "slope", "tangents", notes)
-    if not own:
-        return None
-    random = np.random.default_rng(seed)
+def of_slope(own: list[Sample], random: np.random.Generator, noise: float) -> Slope:
+    """Return the figures of slope."""
     seen = [readers.seen(one.own_light(), random, noise) for one in own]
     lightness = np.concatenate([readers.lab(colors)[:, 0] for colors in seen])
     steepness = np.concatenate([readers.steepness(one) for one in own])
@@ -285,13 +274,8 @@ def of_slope(samples: list[Sample], seed: int, noise: float, notes: list[str]) -
     )
 
 
-def of_shape(samples: list[Sample], seed: int, noise: float, notes: list[str]) -> Shape | None:
-    """Return the figures of shape; what has none, or was left out, is added to the notes."""
-    asked = [one for one in samples if one.kind != "line" and one.normals is not None]
-    own = _with_data(asked, "shape", "tangents or normals", notes)
-    if not own:
-        return None
-    random = np.random.default_rng(seed)
+def of_shape(own: list[Sample], random: np.random.Generator, noise: float) -> Shape:
+    """Return the figures of shape."""
     few = [np.sort(random.permutation(len(one))[: readers.most(one)]) for one in own]
     some = [one.take(rows) for one, rows in zip(own, few, strict=True)]
     found = [readers.find_normal(one, random, noise) for one in some]
@@ -301,6 +285,22 @@ def of_shape(samples: list[Sample], seed: int, noise: float, notes: list[str]) -
         bits=float(np.concatenate([each.bits for each in found]).mean()),
         samples=len(error),
     )
+
+
+#: What measures each question of light, where it has an answer, and the data of it.
+QUESTIONS: dict[str, tuple[Function, Callable[[Sample], bool], str]] = {
+    "direction": (
+        of_direction,
+        lambda one: one.kind != "line" and one.has_one_tangent,
+        "tangents or normals",
+    ),
+    "slope": (of_slope, lambda one: one.kind == "line" and one.has_one_tangent, "tangents"),
+    "shape": (
+        of_shape,
+        lambda one: one.kind != "line" and one.normals is not None,
+        "tangents or normals",
+    ),
+}
 
 
 def of_value(
@@ -481,11 +481,13 @@ def legibility(
             got, remedy = "colours of three or four bytes", "name the array that they show"
             raise ValueError(_check.message("scalars", "values to read", got, remedy))
         table = color_table(values, cmap=cmap, clim=clim)
+    found: Keywords = {}
+    for question, (measure, has_it, what) in QUESTIONS.items():
+        own = _with_data([one for one in asked if has_it(one)], question, what, notes)
+        found[question] = measure(own, np.random.default_rng(seed), noise) if own else None
     toward = -np.array(camera.GetDirectionOfProjection())
     return Legibility(
-        direction=of_direction(asked, seed, noise, notes),
-        slope=of_slope(asked, seed, noise, notes),
-        shape=of_shape(asked, seed, noise, notes),
+        **found,
         value=None if table is None else of_value(taken, table, notes),
         pixels=pixels,
         drawn=drawn,

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from vizlight.filters import relight
 from vizlight.filters.tint import light_on_colors, map_colors
 from vizlight.model.kernels import unit_rows
+from vizlight.observers.samples import dots, flattened
 from vizlight.shading import display
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ def find_direction(sample: Sample, random: np.random.Generator, noise: float) ->
     if sample.normals is not None:
         # Interpolation leaves a tangent a little off the surface.
         tangent, axis = _single(sample), sample.normals
-        flat = unit_rows(tangent - _dots(tangent, axis) * axis)
+        flat = unit_rows(flattened(tangent, axis))
         own = dataclasses.replace(sample, tangents=flat[:, np.newaxis])
     return _find_turned(own, axis, random, noise)
 
@@ -160,13 +161,13 @@ def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise
         rows = slice(start, start + PLACES)
         own, axis = sample.take(rows), axes[rows]
         tangent = _single(own)
-        along = _dots(tangent, axis) * axis
+        along = dots(tangent, axis)[:, np.newaxis] * axis
         flat = tangent - along
         # Candidates start anywhere: ties must not favour the true one.
         offset = random.uniform(0.0, 180.0, len(own))
         turn = np.radians(np.arange(ANGLES) + offset[:, np.newaxis])[..., np.newaxis]
-        across = np.cross(axis, flat)[:, np.newaxis]
-        every = np.cos(turn) * flat[:, np.newaxis] + np.sin(turn) * across + along[:, np.newaxis]
+        side = np.cross(axis, flat)[:, np.newaxis]
+        every = np.cos(turn) * flat[:, np.newaxis] + np.sin(turn) * side + along[:, np.newaxis]
         likely = posterior(seen(own.own_light(), random, noise), _lit(own, every), noise)
         off = (likely.argmax(axis=1) + offset) % 180
         errors.append(np.minimum(off, 180 - off))
@@ -177,11 +178,6 @@ def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise
 def _single(sample: Sample) -> Array:
     assert sample.tangents is not None
     return sample.tangents[:, 0]
-
-
-def _dots(a: Array, b: Array) -> Array:
-    """Return dot products of rows, as a column."""
-    return np.asarray(np.einsum("ij,ij->i", a, b))[:, np.newaxis]
 
 
 def _lit(sample: Sample, tangents: Array) -> Array:
@@ -213,7 +209,7 @@ def by_key(sample: Sample, middle: Array, random: np.random.Generator, noise: fl
         that have a length there.
     """
     tangent = _single(sample)
-    x, y = (_dots(tangent, axis)[:, 0] for axis in (sample.right, sample.up))
+    x, y = (dots(tangent, axis) for axis in (sample.right, sample.up))
     long = np.hypot(x, y) > SHORTEST
     own = sample.take(long)
     if not len(own):
@@ -242,7 +238,7 @@ def _hue(rgb: Array, random: np.random.Generator) -> Array:
 
 def steepness(sample: Sample) -> Array:
     """Return the cosine, 0 or more, of the angle between tangents and the line of sight."""
-    return np.abs(_dots(_single(sample), sample.eye)[:, 0])
+    return np.abs(dots(_single(sample), sample.eye))
 
 
 def rank_correlation(a: Array, b: Array) -> float:
@@ -292,7 +288,7 @@ def find_slope(sample: Sample, random: np.random.Generator, noise: float) -> Arr
         with the same course; of tangents that are not along the line of sight.
     """
     tangent = _single(sample)
-    apart = np.abs(_dots(tangent, sample.eye)[:, 0]) < 1 - 1e-9
+    apart = steepness(sample) < 1 - 1e-9
     own = sample.take(apart)
     # A turn about what stands across the line of sight leaves the course as it is.
     return _find_turned(own, unit_rows(np.cross(tangent[apart], own.eye)), random, noise).error

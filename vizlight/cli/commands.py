@@ -1,4 +1,4 @@
-"""``vizlight light`` and ``vizlight view``: a lit mesh, a picture, a page, or pieces."""
+"""The commands that light files: a lit mesh, a picture, a page, or pieces."""
 
 from __future__ import annotations
 
@@ -16,18 +16,22 @@ from cyclopts import Parameter
 import vizlight
 from vizlight._words import message
 from vizlight.cli import scenes
-from vizlight.cli.arguments import (
+from vizlight.cli.job import HTML, Job, carry_out, drawing
+from vizlight.cli.options import (
     GROUPS,
     Color,
     Common,
     Flag,
     Output,
+    Part,
     Pieces,
+    Shape,
     Target,
     fraction,
-)  # fmt: skip
-from vizlight.cli.job import HTML, Job, carry_out, drawing
-from vizlight.cli.options import keywords, takes, words
+    keywords,
+    takes,
+    words,
+)
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.cli.script import Step, source
 
@@ -37,7 +41,274 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Keywords
+    from vizlight.scene import Light
     from vizlight.shading.options import LightOptions
+
+
+@takes("streamlines", "Streamlines", example="flow.vtu --vectors V --model cylinder --diffuse 0.8")
+def streamlines(
+    files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
+) -> int:
+    """Trace streamlines of a vector field, free or on a surface, and light them.
+
+    With --contour the isosurface conditions the light of the lines, and --confined keeps them
+    on it.
+
+    Parameters
+    ----------
+    files
+        Mesh with vectors; of several each is lit by itself.
+    """
+    look = scenes.Look(common, part, color)
+    given = keywords(how)
+    if given.get("line_field") and "," in given.get("vectors", ""):
+        given["vectors"] = tuple(given["vectors"].split(","))
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.joined(scenes.data(path, part, time), given.get("vectors"))
+        scenes.check_flow(path, mesh.run(), given.get("vectors"))
+        # The lines that are traced are the tangents that light for a question needs.
+        scenes.check_answers(common.lights.question, mesh, color, "lines")
+        if color.scalars in mesh.run().cell_data and color.scalars not in mesh.run().point_data:
+            # Lines have the arrays of points alone.
+            mesh = Step("averaged", ".cell_data_to_point_data", mesh)
+        on = {} if part.contour is None else {"surface": scenes.surface(mesh, part)}
+        camera = look.camera(on.get("surface", mesh) if given.get("confined") else mesh)
+        lit = look.step("lit", "streamlines", mesh, look.scene(camera), **given, **on)
+        made = Job(lit, look, camera)
+        made.tint(mesh, color)
+        return made
+
+    return carry_out(files, job, common.out, "streamlines", part)
+
+
+# Heights are exaggerated, and lit, as they are shown.
+@takes(
+    "relief_shadow",
+    "Relief",
+    example="terrain.dem --depth 60 --light 315,20",
+    without=("exaggeration", "lit"),
+)
+def relief(
+    files: list[Path],
+    /,
+    *,
+    shape: Shape,
+    how: object,
+    lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
+    common: Common,
+    sky: Annotated[Flag, Parameter(group=GROUPS["Light"])] = False,
+) -> int:
+    """Cast shadows on a height field or a closed surface: the cos-theta shadow t.
+
+    Parameters
+    ----------
+    files
+        Height field, or closed surface; of several each is lit by itself.
+    lit
+        Show the light with its shadow; otherwise the shadow t alone.
+    sky
+        Take the ambient light from an even sky.
+    """
+    # The shadow is cast by one light.
+    look = scenes.Look(common, shape, raised=True, fill=False)
+    # A shadow alone answers no question.
+    given: Keywords = {"lit": lit or common.lights.question is not None}
+    given |= keywords(how)
+    given |= {"lit": True, "occlusion": "sky"} if sky else {}
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, shape, time)
+        field, on, raised = _is_field(mesh, shape), dict[str, object](), None
+        if field:
+            raised = _raised(mesh, given.get("elevation"), shape.exaggeration)
+        else:
+            mesh = scenes.surface(mesh, shape)
+            scenes.check_target(shape)
+            if "raster" not in given:
+                on["feature_angle"] = "auto"
+        if raised is not None and raised.arguments[2] != 1:
+            on["exaggeration"] = raised.arguments[2]
+        camera = look.camera(raised or mesh, is_map=field)
+        scene = look.scene(camera)
+        shaded = look.step("shaded", "relief_shadow", mesh, scene, **(on | given))
+        made = _shared(shaded, look, camera, mesh, raised, field=field)
+        made.suffix = made.suffix or ".vtp"
+        if given["lit"]:
+            made.scalars = "rgb" if look.colored else "luminance"
+        elif field and (white := 3 * _level_light(scene.run().lights)) < 1:
+            made.clim = (0.0, round(white, 3))
+            text = (
+                f"note     white in the picture is t = {white:.2f}, 3 times the t of level ground"
+            )
+            made.tell.append(lambda _: text)
+        return made
+
+    return carry_out(files, job, common.out, "relief", shape)
+
+
+@takes("sky", "Sky", example="terrain.dem --error 0.01 -o sky.png", up="sky_up")
+def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+    """Find the share of a uniform sky that each point sees.
+
+    Parameters
+    ----------
+    files
+        Height field, surface or lines; of several each is taken by itself.
+    """
+    look = scenes.Look(common, shape)
+    given = keywords(how)
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, shape, time)
+        field = _is_field(mesh, shape)
+        if shape.contour is not None or shape.slice is not None:
+            mesh = scenes.surface(mesh, shape)
+        # The sky belongs to the heights as they are.
+        raised = _raised(mesh, None, 1.0) if field else None
+        camera = look.camera(raised or mesh, is_map=field)
+        lit = look.step("skylit", "sky", mesh, **given)
+        return _shared(lit, look, camera, mesh, raised, field=field)
+
+    return carry_out(files, job, common.out, "sky", shape)
+
+
+def _raised(mesh: Step, elevation: str | None, factor: float | None) -> Step | None:
+    """Return the step that raises a flat grid by its heights in a picture, if it has some."""
+    from vizlight.mesh.height_grids import heights_name
+
+    field = mesh.run()
+    name = elevation or heights_name(field)
+    if name not in field.point_data or field.bounds.z_min != field.bounds.z_max:
+        return None
+    return scenes.warped("raised", mesh, str(name), factor)
+
+
+def _shared(
+    lit: Step, look: scenes.Look, camera: Step, mesh: Step, raised: Step | None, *, field: bool
+) -> Job:
+    """Return the job of a share of light at the points of a mesh, of a map as it was raised."""
+    from vizlight import files
+
+    made = Job(lit, look, camera, kind=mesh)
+    made.scalars = made.name
+    made.suffix = files.FORMATS[type(mesh.run()).__name__][0] if field else ""
+    if raised is not None:
+        made.shown = Step("shown", raised.path, lit, *raised.arguments[1:])
+        made.shown.note = raised.note
+    return made
+
+
+def _level_light(lights: Sequence[Light]) -> float:
+    """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
+    import numpy as np
+
+    fixed = [light for light in lights if not light.follows_view]
+    ways = [np.asarray(light.direction) for light in fixed if light.direction is not None]
+    sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
+    return max((sine for sine in sines if sine > 0), default=1.0)
+
+
+@takes("fur", "Fur", example="bunny.ply --absorption 0.7 --fibres 200000")
+def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+    """Cover a surface with fibres, and light them and the skin below.
+
+    Parameters
+    ----------
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
+    """
+    from vizlight.filters.fur import MATERIAL
+
+    names = ("ambient", "diffuse", "specular")
+    look = scenes.Look(common, shape, material={name: getattr(MATERIAL, name) for name in names})
+    given: Keywords = {"feature_angle": "auto"}
+    given |= keywords(how)
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
+        camera = look.camera(_tips(mesh, given.get("length")))
+        lit = look.step("furry", "fur", mesh, look.scene(camera), **given)
+        return Job(lit, look, camera, parts=("fibres", "skin"))
+
+    return carry_out(files, job, common.out, "fur", shape)
+
+
+# The tolerance is for solids, which no file holds.
+@takes(
+    "isoluminance", "Contours", example="part.stl --levels 8 --specular 0", without=("tolerance",)
+)
+def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+    """Find the contours of equal luminance of a surface, and the bands between them.
+
+    Parameters
+    ----------
+    files
+        Surface, or a mesh with one; of several each is lit by itself.
+    """
+    look = scenes.Look(common, shape)
+    # In a picture a crease is seen as one.
+    given: Keywords = {"feature_angle": "auto"}
+    given |= keywords(how)
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.surface(scenes.data(path, shape, time), shape)
+        camera = look.camera(mesh)
+        lit = look.step("found", "isoluminance", mesh, look.scene(camera), **given)
+        bands = Step("", "[]", lit, "bands")
+        return Job(lit, look, camera, shown=bands, parts=("bands", "contours"))
+
+    return carry_out(files, job, common.out, "contours", shape)
+
+
+@takes("project", "Projection", example="torus.vtp --rotation xw:0.5 --distance 3", light="when")
+def project(files: list[Path], /, *, how: object, common: Common) -> int:
+    """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
+
+    Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
+    computed for an eye at infinity.
+
+    Parameters
+    ----------
+    files
+        Mesh with positions and tangents in n-space; of several each is lit by itself.
+    """
+    from vizlight.mesh.nspace import POSITION
+
+    look = scenes.Look(common)
+    given = keywords(how)
+
+    def job(path: Path, time: float | str | None) -> Job:
+        mesh = scenes.data(path, Part(), time)
+        found = mesh.run()
+        rows = found.point_data.get(given.get("positions", POSITION))
+        n = 3 if given.get("light") == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
+        lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
+        return Job(lit, look, look.camera(lit), kind=None, suffix=".vtk")
+
+    return carry_out(files, job, common.out, "projected", Part())
+
+
+def _tips(mesh: Step, length: float | str | None) -> Step:
+    """Return the step that moves the points of a surface to where straight fur ends."""
+    from vizlight.filters.fur import LENGTH
+    from vizlight.mesh import blocks
+
+    found: pv.PolyData = blocks.surface(mesh.run(), "mesh")
+    length = LENGTH * found.length if length is None else length
+    if isinstance(length, str):
+        known = length in found.point_data and found.n_points
+        length = float(found.point_data[length].max()) if known else 0.0
+    normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
+    return Step("tips", ".warp_by_vector", normals, "Normals", factor=length)
+
+
+def _is_field(mesh: Step, shape: Shape) -> bool:
+    """Tell whether a mesh, of which no part is taken, is a grid of one layer."""
+    sizes: tuple[int, ...] = getattr(mesh.run(), "dimensions", ())
+    whole = shape.contour is None and shape.slice is None
+    return whole and sum(size > 1 for size in sizes) == 2
+
 
 #: Questions whose light needs the self-shadow of a surface where tangents are lit.
 CONDITIONED = ("shape", "value")
@@ -168,7 +439,13 @@ def _builder(
     asked = LightOptions(**given)
     lights, place = "illuminate", dict[str, object](inplace=True)
     if refine is not None:
-        lights, place = "refine", {"error": _finest(refine)}
+        from vizlight.filters.refine import FINEST
+
+        expected = f"a number of at least {FINEST:g}, such as 1/255"
+        error = float(fraction("refine", refine, expected))
+        if error < FINEST:
+            raise ValueError(message("--refine", expected, refine))
+        lights, place = "refine", {"error": error}
 
     def job(path: Path, time: float | str | None) -> Job:
         data = scenes.joined(scenes.data(path, target, time), given.get("tangents"))
@@ -193,29 +470,19 @@ def _builder(
     return job
 
 
-def _finest(text: str) -> float:
-    """Return the error between points that is asked for."""
-    from vizlight.filters.refine import FINEST
-
-    expected = f"a number of at least {FINEST:g}, such as 1/255"
-    error = float(fraction("refine", text, expected))
-    if error < FINEST:
-        raise ValueError(message("--refine", expected, text))
-    return error
-
-
 def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
     """Return the step that measures what a reader can read back from the picture."""
-    names = [field for field in inspect.signature(vizlight.legibility).parameters if field in given]
-    known = {name: given[name] for name in names}
+    asked = inspect.signature(vizlight.legibility).parameters
+    known = {name: value for name, value in given.items() if name in asked}
     if made.shown is not None and made.shown.path == "vizlight.tint":
         known["scalars"] = made.shown.arguments[1]
-        known |= {name: made.shown.keywords[name] for name in made.shown.keywords.keys() & {"cmap"}}
+        known |= scenes.known(cmap=made.shown.keywords.get("cmap"))
     return Step("", "vizlight.legibility", made.lit, scene, **known, view=made.camera)
 
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
     """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
+    from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
 
     if scalars is not None and scalars == target.contour:
@@ -227,7 +494,8 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
     if target.overlay and scalars is None:
         name = shlex.quote(list(arrays.keys())[-1])
         return f"note     --scalars {name} shows the values over the surface"
-    raises, colors = _varying(arrays), [*_varying(arrays), *_colors(arrays)]
+    raises = _varying(arrays)
+    colors = raises + [shlex.quote(name) for name, one in arrays.items() if are_colors(one)]
     if any(block.GetMaxSpatialDimension() == 3 for block in parts):
         shows = f"; --contour {raises[0]} lights an isosurface of it" if raises else ""
         return f"note     the hull of a volume is lit{shows}" if target.surface and shows else ""
@@ -238,13 +506,6 @@ def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None)
         block.GetMaxSpatialDimension() == 2 and not min(block.bounds_size) for block in parts
     )
     return f"note     the mesh is flat; {', '.join(ways)}" if flat and ways else ""
-
-
-def _colors(arrays: pv.DataSetAttributes) -> list[str]:
-    """Return the names of arrays of colours, as a shell takes them."""
-    from vizlight.filters.tint import are_colors
-
-    return [shlex.quote(name) for name, values in arrays.items() if are_colors(values)]
 
 
 def _varying(arrays: pv.DataSetAttributes) -> list[str]:
@@ -358,8 +619,8 @@ def _runs(pieces: Pieces) -> dict[str, Step]:
 
         _check.integer("--workers", pieces.workers, low=1)
     if pieces.scheduler is None:
-        several = pieces.workers is not None and pieces.workers > 1
-        return {"map": Step("work", "vizlight.pieces.Processes", pieces.workers)} if several else {}
+        processes = Step("work", "vizlight.pieces.Processes", pieces.workers)
+        return {"map": processes} if (pieces.workers or 1) > 1 else {}
     if pieces.workers is not None:
         raise ValueError(message("--workers", "--workers or --scheduler", "both"))
     if importlib.util.find_spec("distributed") is None:
