@@ -163,3 +163,19 @@ def test_a_volume_costs_its_surface():
     tracemalloc.stop()
     plotter.close()
     assert most < 60 * grid.n_points
+
+
+@pytest.mark.parametrize("effect", ["shadows", "ssao"])
+def test_effects_that_do_not_show_are_said(effect):
+    name = {"shadows": "shadows", "ssao": "ambient occlusions"}[effect]
+    with pytest.warns(UserWarning, match=f"the {name} .*do not show"):
+        picture(ball(), color="white", prepare=lambda p: getattr(p, f"enable_{effect}")())
+
+
+def test_a_copy_of_an_actor_is_said_to_stay():
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    actor = plotter.vizlight.add_mesh(ball(), color="white")
+    plotter.add_actor(actor.copy(deep=True))
+    with pytest.warns(UserWarning, match="a copy of an actor has light that does not follow"):
+        plotter.screenshot(return_img=True)
+    plotter.close()

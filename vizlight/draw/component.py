@@ -13,7 +13,7 @@ from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.html import Shown, write_page
 from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
-from vizlight.draw.live import Fragments, LightAt, Live, items, unfit
+from vizlight.draw.live import Fragments, LightAt, Live, draws_light, has_pass, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
@@ -41,6 +41,8 @@ __all__ = ["Component", "add_recorded"]
 
 #: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
 UNTOUCHED = (0.0, 1.0, 0.0)
+#: Passes of VTK that need its own light or normals, and what they draw.
+UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient occlusions (SSAO)"}
 
 
 class Component:
@@ -57,6 +59,8 @@ class Component:
         self._plotter = weakref.ref(plotter)
         self._lives: dict[str, Live] = {}
         self._observed: list[tuple[vtkRenderer, int]] = []
+        #: What was said to be lost.
+        self._lost: set[str] = set()
 
     def add_mesh(
         self,
@@ -487,16 +491,34 @@ class Component:
 
         def update(renderer: vtkRenderer, _: str) -> None:
             component = me()
-            for each in items(renderer.GetActors()):
-                own = None if component is None else component._live_of(each)
-                if own is not None:
-                    own.update(renderer, each)
+            if component is not None:
+                component._update(renderer)
 
         observed = {_address(renderer) for renderer, _ in self._observed}
         for renderer in plotter.renderers:
             if _address(renderer) not in observed:
                 # PyVista's own render callbacks come after the frame is drawn.
                 self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
+
+    def _update(self, renderer: vtkRenderer) -> None:
+        """Light what a renderer is about to draw, and say once what does not show."""
+        lost, any_live = set(), False
+        for actor in items(renderer.GetActors()):
+            live = self._live_of(actor)
+            if live is not None:
+                any_live = True
+                live.update(renderer, actor)
+            elif draws_light(actor):
+                lost.add("a copy of an actor has light that does not follow; add its mesh instead")
+        if any_live:
+            lost |= {
+                f"{name} of PyVista do not show on meshes with live light"
+                for kind, name in UNLIT_PASSES.items()
+                if has_pass(renderer.GetPass(), kind)
+            }
+        for text in sorted(lost - self._lost):
+            _check.warn(text)
+        self._lost |= lost
 
     def __plotter_close__(self) -> None:
         """Let go of everything when the plotter closes."""

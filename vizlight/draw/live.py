@@ -415,6 +415,25 @@ def items(collection: vtkCollection) -> Iterator[Foreign]:
         yield collection.GetItemAsObject(i)
 
 
+def draws_light(actor: vtkActor) -> bool:
+    """Return whether an actor draws what was made for a live light."""
+    mapper: Foreign = actor.GetMapper()
+    data: Foreign = None if mapper is None else mapper.GetInputDataObject(0, 0)
+    arrays = data.GetPointData() if hasattr(data, "GetPointData") else None
+    return arrays is not None and any(map(arrays.HasArray, (NORMALS, TANGENTS, COLORS)))
+
+
+def has_pass(step: Foreign, kind: str) -> bool:
+    """Return whether a pass of VTK is of a class, or holds one that is: passes nest."""
+    if step is None or step.IsA(kind):
+        return step is not None
+    held = [*items(step.GetPasses())] if step.IsA("vtkSequencePass") else []
+    held += [
+        getattr(step, name)() for name in ("GetDelegatePass", "GetSequence") if hasattr(step, name)
+    ]
+    return any(has_pass(one, kind) for one in held)
+
+
 def matrix_of(matrix: vtkMatrix4x4) -> Array:
     """Return a matrix of VTK in float64."""
     return np.asarray(pv.array_from_vtkmatrix(matrix), np.float64)
