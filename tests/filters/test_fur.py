@@ -533,3 +533,10 @@ def test_what_does_not_go_with_a_bundle(options, words):
             Scene(**HEADLIT, view=View(direction=(0, 0, 1))),
             **{"bundle": True} | options,
         )
+
+
+def test_a_closed_surface_is_covered_on_its_outer_side():
+    ball = pv.Sphere()
+    ball.point_data["Normals"] *= -1
+    tips = vizlight.fur(ball, length=0.2, fibres=200)["fibres"].points
+    assert np.linalg.norm(tips, axis=1).max() > 0.6

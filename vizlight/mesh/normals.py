@@ -25,7 +25,7 @@ from vizlight.vtk.cells import (
     triangles,
 )
 from vizlight.vtk.corners import numbered, split_faces
-from vizlight.vtk.normals import Sided, computed_normals, given_normals
+from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
 from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.topology import Owners, coincident
 
@@ -330,7 +330,11 @@ def with_normals(
     for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    found = normals_of(own, None, 3, view, warn=angle is None)
+    if given_normals(own, None, 3) is None:
+        found = normals_of(own, None, 3, view, warn=angle is None)
+    else:
+        # Closed surfaces have an outer side, whatever their normals say.
+        found = sided_normals(own, None, 3, "auto").vectors
     kind = np.result_type(found.dtype, np.float32)
     triangles.point_data[NORMALS] = kernels.unit_rows(found).astype(kind, copy=False)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
