@@ -1,7 +1,5 @@
 """What tests ask of bands: closed, outward, volume, area, and the error at random places."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Cases whose answers are known: each function raises AssertionError if the meter errs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vizlight import Light, Material, Scene, View

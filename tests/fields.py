@@ -1,7 +1,5 @@
 """Height fields, places on them, directions to the sun; swatches; cells of several kinds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 

@@ -3,8 +3,6 @@
 Inputs are taken as the exact numbers that the floats are.
 """
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 

@@ -1,7 +1,5 @@
 """Stated bounds beside those of the stability suite and of the tests that mirror a file."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Full disks, limits, kills, closed streams and drawing libraries that are broken."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Files in and out: clear errors, whole files or none."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

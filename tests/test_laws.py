@@ -1,7 +1,5 @@
 """Laws of light in n-space that no formula of this package is needed to state."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ Two comparisons: pytest-pyvista's, which also finds pictures that no test draws 
 otherwise, and not light 5 % too bright. A scene with limits of its own says why.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

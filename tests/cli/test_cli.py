@@ -1,7 +1,5 @@
 """The command line as a user meets it: one line on standard error, an exit code, whole files."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Light in fragments is that of the filters on fine meshes, and right between coarse points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

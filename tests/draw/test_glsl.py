@@ -1,7 +1,5 @@
 """The text of a fragment, run number by number in Python, gives the light of the points."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re

@@ -1,7 +1,5 @@
 """A turning torus as pictures and as movies: one camera, whole files, clear words."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 import types

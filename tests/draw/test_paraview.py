@@ -1,7 +1,5 @@
 """ParaView without a plugin shows the light of a plotter in each fragment, from every side."""
 
-from __future__ import annotations
-
 import json
 import re
 

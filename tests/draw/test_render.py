@@ -3,8 +3,6 @@
 Each picture test has limits of its own, with the reason. Numbers are asserted as numbers.
 """
 
-from __future__ import annotations
-
 import inspect
 import os
 import subprocess

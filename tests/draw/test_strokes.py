@@ -1,7 +1,5 @@
 """Lines of a diameter are as wide as the projection says, and the light across them is right."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Light inside a bundle as a filter: what multiplies what, what is used again, surfaces, errors."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fur as numbers: where it stands, what attenuates it, what is told of it; illustration 3."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """The filter on every kind of mesh, with good and bad arrays."""
 
-from __future__ import annotations
-
 import contextlib
 import warnings
 

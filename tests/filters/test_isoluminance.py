@@ -1,7 +1,5 @@
 """Bands on meshes and solids: right, closed, the input untouched; errors that say what to do."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Positions and frames turn, are cut and projected together; light comes before or after."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Shadows as point scalars: every kind of grid, several lights, real terrain."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

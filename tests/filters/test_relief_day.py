@@ -1,7 +1,5 @@
 """A day of shadows: hours, directions, what does not fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from fields import grids, level

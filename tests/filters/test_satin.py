@@ -1,7 +1,5 @@
 """The satin ball, as numbers: terminator, brightest point, dark side."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """The sky as a filter: kinds of meshes, records, marks, and what the ambient light makes of it."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

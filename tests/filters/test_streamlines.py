@@ -1,7 +1,5 @@
 """Streamlines: on the field, on the surface, lit by their tangents, conditioned by normals."""
 
-from __future__ import annotations
-
 import os
 from contextlib import nullcontext
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Shadows of closed meshes as point scalars: closed forms, occluders, any size and place."""
 
-from __future__ import annotations
-
 import contextlib
 
 import numpy as np

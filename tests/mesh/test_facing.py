@@ -1,7 +1,5 @@
 """The side of a surface that is lit, its sharp edges, and normals that stay with a result."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

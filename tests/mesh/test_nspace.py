@@ -1,7 +1,5 @@
 """Cells of every kind are cut, without cracks, and arrays go along."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

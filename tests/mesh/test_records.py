@@ -1,7 +1,5 @@
 """What made an array is kept with it, through files, and makes it again."""
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 

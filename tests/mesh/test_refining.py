@@ -1,7 +1,5 @@
 """Refined meshes against light computed at many places, by formulas of this file alone."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

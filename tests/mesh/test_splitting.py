@@ -1,7 +1,5 @@
 """Splits of segments and triangles: what is covered, what is shared, what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

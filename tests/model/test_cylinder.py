@@ -1,7 +1,5 @@
 """The exact line light: laws, then derivatives by a complex step."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

@@ -1,7 +1,5 @@
 """Distance and depth: the Lecture's functions against their formulas in 50 digits."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

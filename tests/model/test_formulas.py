@@ -1,7 +1,5 @@
 """The scalar formulas, and the manifolds that are made of them, are the oracle's."""
 
-from __future__ import annotations
-
 import math
 
 import bounds

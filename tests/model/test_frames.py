@@ -1,7 +1,5 @@
 """Frames: rank, orthonormality and splitting, on vectors that break careless code."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

@@ -1,7 +1,5 @@
 """Phong and Blinn: the printed tables, the bounds that all rests on, the better rule."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

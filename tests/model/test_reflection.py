@@ -1,7 +1,5 @@
 """Diffuse and specular light of k-manifolds: laws first, then 50 digits."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

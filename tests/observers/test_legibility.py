@@ -1,7 +1,5 @@
 """The meter on meshes: laws, kinds of data, views, and input that does not fit."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 

@@ -1,7 +1,5 @@
 """Pieces are lit as the whole, whatever the cut; finished ones are kept, faulty ones are named."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

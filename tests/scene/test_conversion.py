@@ -1,7 +1,5 @@
 """A material in VTK: the pixels that it renders against the light computed here."""
 
-from __future__ import annotations
-
 import warnings
 from functools import cache
 

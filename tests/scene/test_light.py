@@ -1,7 +1,5 @@
 """Lights: what they accept, where they stand, how VTK's are read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Material, view, depth cue and scene: plain values in, plain values out."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 

@@ -4,8 +4,6 @@ The text of kernels runs as Python for most plans, which takes milliseconds; a f
 ``python tests/differential.py`` compares many more plans, all compiled.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

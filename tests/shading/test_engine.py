@@ -1,7 +1,5 @@
 """The engine against one point at a time in 50 digits, and against its own laws."""
 
-from __future__ import annotations
-
 import functools
 import os
 import platform

@@ -1,7 +1,5 @@
 """How each highlight is computed."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

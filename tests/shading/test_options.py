@@ -1,7 +1,5 @@
 """One list of options: keywords, fields, signatures and documentation agree."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import re

@@ -1,7 +1,5 @@
 """The plan holds what a scene needs and nothing else, and says so."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from lamps import HEADLIT, SHINY, shiny

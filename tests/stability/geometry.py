@@ -1,7 +1,5 @@
 """The checks of curves, projections, cuts and height fields for the stability suite."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Inputs on which careless code loses its digits: directed at each singularity, and at random."""
 
-from __future__ import annotations
-
 import numpy as np
 
 #: Names of the ways in which a direction stands to a tangent space.

@@ -1,7 +1,5 @@
 """The checks of :mod:`vizlight.model` for the stability suite."""
 
-from __future__ import annotations
-
 import itertools
 from functools import partial
 

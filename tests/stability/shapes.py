@@ -1,7 +1,5 @@
 """The checks of shapes for the stability suite: manifolds in n-space, contours of solids."""
 
-from __future__ import annotations
-
 import itertools
 from functools import partial
 

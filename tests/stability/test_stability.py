@@ -1,7 +1,5 @@
 """The stability suite: it passes, its claims are tight, and it can fail."""
 
-from __future__ import annotations
-
 import ast
 import collections
 import itertools

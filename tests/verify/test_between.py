@@ -1,7 +1,5 @@
 """The error between points: its places, its reference, and the resolution that it takes."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

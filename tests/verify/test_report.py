@@ -1,7 +1,5 @@
 """What light cost and how wrong it is: of every filter, by formulas that share no code with it."""
 
-from __future__ import annotations
-
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,7 +1,5 @@
 """The outer surface of a mesh: which nodes of curved cells are on it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """The filter of pipelines gives the light of the mesh filter, when it is asked for, on any cut."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 import subprocess

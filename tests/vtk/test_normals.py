@@ -1,7 +1,5 @@
 """Normals of a mesh: outward where it is closed, else toward the eye."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

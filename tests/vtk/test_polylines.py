@@ -1,7 +1,5 @@
 """Lines are lit by their own tangents, whatever cells they come in."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

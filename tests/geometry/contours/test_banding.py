@@ -1,7 +1,5 @@
 """The cutter: polygons tile their triangles, contours join, closed stays closed."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest

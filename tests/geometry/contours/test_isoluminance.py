@@ -1,7 +1,5 @@
 """Circles on a sphere: contours against 50 digits, bands against the law itself."""
 
-from __future__ import annotations
-
 import math
 
 import banded

@@ -1,7 +1,5 @@
 """Rulings of a truncus against 50 digits; a near light against the law and a closed form."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Steps: the worst error is half a step, and no count below the one returned keeps it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

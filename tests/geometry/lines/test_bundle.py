@@ -1,7 +1,5 @@
 """Light inside a bundle: closed forms of a slab and a ball, real tubes, both paths of the grid."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

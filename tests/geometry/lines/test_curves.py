@@ -1,7 +1,5 @@
 """Tangents of polylines: exact where theory says so, right where lines are odd."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

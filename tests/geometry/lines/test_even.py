@@ -1,7 +1,5 @@
 """Evenly spaced curves: no gaps, no crowds, everywhere, closed where they are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """The largest gap between evenly spaced lines is that of the farthest place, found by halving."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Seeds uniform in area, and fibres that grow as told."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

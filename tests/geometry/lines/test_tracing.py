@@ -1,7 +1,5 @@
 """Curves on triangles and tetrahedra: places stay in cells, order of the error, line fields."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

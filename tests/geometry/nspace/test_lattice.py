@@ -1,7 +1,5 @@
 """Closed directions have no seam; the skin of a cube is a sphere, or a projective space."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shapes in n-space: no seams, laws of each shape."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

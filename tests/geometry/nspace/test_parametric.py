@@ -1,7 +1,5 @@
 """Tangents of any function: the complex step, central differences, closed directions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

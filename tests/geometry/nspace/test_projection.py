@@ -1,7 +1,5 @@
 """Rotations are rotations; projections and their derivatives against 50 digits."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

@@ -1,7 +1,5 @@
 """A hyperplane cuts simplices without cracks, and frames to what lies in it."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

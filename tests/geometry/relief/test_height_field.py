@@ -1,7 +1,5 @@
 """Height fields as arguments: nodes, holes, small fields, what does not fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from fields import sun

@@ -1,7 +1,5 @@
 """The ratio t on planes, ridges and domes, whose shadows are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from fields import sun, unit

@@ -1,7 +1,5 @@
 """Hits of parallel rays against a product of signs in exact numbers, and through edges."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Solids of planes and rings, moved and turned, and closed meshes as operands."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest

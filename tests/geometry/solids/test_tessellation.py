@@ -1,7 +1,5 @@
 """Solids combined: closed, outward, volume and area against closed forms, bands kept."""
 
-from __future__ import annotations
-
 import functools
 
 import banded
