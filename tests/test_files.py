@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
@@ -120,25 +121,24 @@ def test_warp():
     np.testing.assert_allclose(files.warped(plane, "z", 2.0).points[:, 2], 2 * np.arange(9))
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r', 'C'\], got 's'"),
-        (
-            lambda g: files.surface_of(pv.Sphere(), "s"),
-            "contour: expected .* of one component, but the mesh has none, got 's'",
-        ),
-        (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
-        (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
-        (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
-        (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
-    ],
-)
-def test_bad_arrays(call, words):
+def bad_arrays(call):
     grid = volume()
     grid.cell_data["C"] = np.ones(grid.n_cells)
-    with pytest.raises(ValueError, match=words):
-        call(grid)
+    call(grid)
+
+
+test_bad_arrays = refusals(
+    bad_arrays,
+    (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r', 'C'\], got 's'"),
+    (
+        lambda g: files.surface_of(pv.Sphere(), "s"),
+        "contour: expected .* of one component, but the mesh has none, got 's'",
+    ),
+    (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
+    (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
+    (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
+    (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
+)
 
 
 @pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])

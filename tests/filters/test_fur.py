@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 import vtk
 from lamps import HEADLIT, SHINY, SHOULDER, shiny
+from refusals import refusals
 
 import vizlight
 from studies import fur as study
@@ -516,18 +517,12 @@ def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypat
     assert (fibres["luminance"] <= plain["fibres"]["luminance"] + 1e-6).all()
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"density": 0.3}, "bundle: expected no absorption or density"),
-        ({"bundle": 3}, "bundle: expected True, False"),
-        ({"bundle": Bundle(lines=pv.Line())}, r"Bundle\(lines=\): expected the fibres"),
-    ],
+test_what_does_not_go_with_a_bundle = refusals(
+    lambda options: fur(
+        pv.Sphere(), Scene(**HEADLIT, view=View(direction=(0, 0, 1))), **{"bundle": True} | options
+    ),
+    ({"density": 0.3}, "bundle: expected no absorption or density"),
+    ({"bundle": 3}, "bundle: expected True, False"),
+    ({"bundle": Bundle(lines=pv.Line())}, r"Bundle\(lines=\): expected the fibres"),
+    kind=(TypeError, ValueError),
 )
-def test_what_does_not_go_with_a_bundle(options, words):
-    with pytest.raises((TypeError, ValueError), match=words):
-        fur(
-            pv.Sphere(),
-            Scene(**HEADLIT, view=View(direction=(0, 0, 1))),
-            **{"bundle": True} | options,
-        )

@@ -8,6 +8,7 @@ import pytest
 import pyvista as pv
 from fields import several_kinds
 from lamps import SHINY, SHOULDER, shiny
+from refusals import refusals
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
@@ -479,22 +480,17 @@ def test_nodes_of_curved_volumes_have_the_light_of_their_place(cell, random):
     assert np.ptp(lit["luminance"]) > 0.1
 
 
-@pytest.mark.parametrize(
-    ("mesh", "options", "error", "words"),
-    [
-        (pv.MultiBlock([pv.Table(np.eye(3)), pv.Sphere()]), {}, TypeError, "block /.* got Table"),
-        (pv.PointSet(np.eye(3)), {}, ValueError, "mesh: expected a surface"),
-        (
-            pv.PolyData(np.eye(3)),
-            {"tangents": np.eye(3), "conditioned": np.eye(3)},
-            TypeError,
-            "conditioned: expected True, False or the name",
-        ),
-    ],
+test_what_cannot_be_lit_is_named = refusals(
+    lambda mesh, options: illuminate(mesh, SCENE, **options),
+    (pv.MultiBlock([pv.Table(np.eye(3)), pv.Sphere()]), {}, "block /.* got Table", TypeError),
+    (pv.PointSet(np.eye(3)), {}, "mesh: expected a surface"),
+    (
+        pv.PolyData(np.eye(3)),
+        {"tangents": np.eye(3), "conditioned": np.eye(3)},
+        "conditioned: expected True, False or the name",
+        TypeError,
+    ),
 )
-def test_what_cannot_be_lit_is_named(mesh, options, error, words):
-    with pytest.raises(error, match=words):
-        illuminate(mesh, SCENE, **options)
 
 
 @pytest.mark.parametrize("kind", [pv.PolyData, pv.PointSet])

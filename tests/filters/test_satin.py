@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -104,19 +105,18 @@ def test_options_go_to_the_panels_that_they_fit():
         vizlight.satin(ball, SCENE, tangents="way", conditioned=True)
 
 
-@pytest.mark.parametrize(
-    ("tangents", "error", "words"),
-    [
-        ("T", ValueError, "tangents: expected the name of a point array .*, got 'T'"),
-        (np.ones((842, 3)), TypeError, "tangents: expected the name of a point array, got an arr"),
-        ("one", ValueError, "tangents: expected vectors"),
-    ],
-)
-def test_errors_name_the_argument(tangents, error, words):
+def errors_name_the_argument(tangents):
     ball = pv.Sphere()
     ball["one"] = np.ones(ball.n_points)
-    with pytest.raises(error, match=words):
-        vizlight.satin(ball, SCENE, tangents=tangents)
+    vizlight.satin(ball, SCENE, tangents=tangents)
+
+
+test_errors_name_the_argument = refusals(
+    errors_name_the_argument,
+    ("T", "tangents: expected the name of a point array .*, got 'T'"),
+    (np.ones((842, 3)), "tangents: expected the name of a point array, got an arr", TypeError),
+    ("one", "tangents: expected vectors"),
+)
 
 
 @pytest.mark.filterwarnings("ignore:2 of 3482 points could not be lit")

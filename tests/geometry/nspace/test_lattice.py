@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 from vizlight.geometry.nspace import lattice
 
@@ -110,18 +111,13 @@ def test_cells_are_boxes_of_neighbours():
         assert np.all(cells[:, a] != cells[:, b])
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "words"),
-    [
-        (2, ValueError, "resolution: expected an integer of at least 3"),
-        ((5, 1), ValueError, "resolution: expected an integer of at least 2"),
-        ((5, 6, 7), ValueError, "resolution: expected 1 or 2 integers, got 3"),
-        (5.0, TypeError, "resolution: expected an integer"),
-    ],
+test_bad_resolution = refusals(
+    lambda value: lattice.resolution(value, 2, (True, False)),
+    (2, "resolution: expected an integer of at least 3"),
+    ((5, 1), "resolution: expected an integer of at least 2"),
+    ((5, 6, 7), "resolution: expected 1 or 2 integers, got 3"),
+    (5.0, "resolution: expected an integer", TypeError),
 )
-def test_bad_resolution(value, error, words):
-    with pytest.raises(error, match=words):
-        lattice.resolution(value, 2, (True, False))
 
 
 def test_resolution():

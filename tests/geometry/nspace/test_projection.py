@@ -3,6 +3,7 @@
 import numpy as np
 import oracles
 import pytest
+from refusals import refusals
 from scipy.stats import special_ortho_group
 
 from vizlight.geometry import manifolds, projection
@@ -30,32 +31,27 @@ def test_turns_one_after_the_other(random):
     np.testing.assert_allclose(projection.turn(x, other), np.einsum("ij,abj->abi", other, x))
 
 
-@pytest.mark.parametrize(
-    ("turns", "error", "words"),
-    [
-        (("xx", 0.1), ValueError, "plane: expected two different axes of 4-space"),
-        (("xyz", 0.1), ValueError, "plane: expected two different axes"),
-        (("xv", 0.1), ValueError, "plane: expected two different axes"),
-        (((0, 4), 0.1), ValueError, "plane: expected two different axes"),
-        (((0, -1), 0.1), ValueError, "plane: expected an integer of at least 0"),
-        (((0.0, 1.0), 0.1), TypeError, "plane: expected two different axes"),
-        ((3, 0.1), TypeError, "plane: expected two different axes"),
-        (("xw", np.nan), ValueError, "angle: expected a finite number"),
-        (("xw", np.inf), ValueError, "angle: expected a finite number"),
-        ("xw", TypeError, r"rotation: expected a matrix of shape \(4, 4\)"),
-        (None, TypeError, "rotation: expected a matrix"),
-        ([], ValueError, "rotation: expected a matrix"),
-        ([("xw", 0.1), 3], ValueError, "rotation: expected a matrix"),
-        (np.eye(3), ValueError, r"rotation: .*got shape \(3, 3\)"),
-        (np.eye(4) * 1.001, ValueError, "rotation: expected an orthogonal.*scipy.linalg.polar"),
-        (np.full((4, 4), 1e300), ValueError, "rotation: expected an orthogonal"),
-        (np.full((4, 4), np.nan), ValueError, "rotation: expected finite numbers"),
-        (np.diag([1, 1, 1, -1]), ValueError, "rotation: expected a rotation, got a reflection"),
-    ],
+test_bad_rotations = refusals(
+    lambda turns: projection.rotation(4, turns),
+    (("xx", 0.1), "plane: expected two different axes of 4-space"),
+    (("xyz", 0.1), "plane: expected two different axes"),
+    (("xv", 0.1), "plane: expected two different axes"),
+    (((0, 4), 0.1), "plane: expected two different axes"),
+    (((0, -1), 0.1), "plane: expected an integer of at least 0"),
+    (((0.0, 1.0), 0.1), "plane: expected two different axes", TypeError),
+    ((3, 0.1), "plane: expected two different axes", TypeError),
+    (("xw", np.nan), "angle: expected a finite number"),
+    (("xw", np.inf), "angle: expected a finite number"),
+    ("xw", r"rotation: expected a matrix of shape \(4, 4\)", TypeError),
+    (None, "rotation: expected a matrix", TypeError),
+    ([], "rotation: expected a matrix"),
+    ([("xw", 0.1), 3], "rotation: expected a matrix"),
+    (np.eye(3), r"rotation: .*got shape \(3, 3\)"),
+    (np.eye(4) * 1.001, "rotation: expected an orthogonal.*scipy.linalg.polar"),
+    (np.full((4, 4), 1e300), "rotation: expected an orthogonal"),
+    (np.full((4, 4), np.nan), "rotation: expected finite numbers"),
+    (np.diag([1, 1, 1, -1]), "rotation: expected a rotation, got a reflection"),
 )
-def test_bad_rotations(turns, error, words):
-    with pytest.raises(error, match=words):
-        projection.rotation(4, turns)
 
 
 def test_planes_and_space_stay(random):
@@ -151,18 +147,13 @@ def test_depth():
 ROWS = np.zeros((2, 4))
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: projection.perspective([1.0]), "points: expected vectors"),
-        (lambda: projection.perspective(ROWS, distance=0), "distance: expected a number above 0"),
-        (lambda: projection.perspective(ROWS, distance=np.nan), "distance: expected"),
-        (lambda: projection.push_forward(ROWS, ROWS), "vectors: expected shape"),
-        (lambda: projection.push_forward(ROWS[:, None], ROWS[:, :3]), "points: expected vectors"),
-        (lambda: projection.turn(ROWS, np.eye(3)), r"matrix: expected shape \(4, 4\)"),
-        (lambda: projection.plane_rotation(1, (0, 1), 0.1), "n: expected an integer"),
-    ],
+test_bad_projections = refusals(
+    lambda call: call(),
+    (lambda: projection.perspective([1.0]), "points: expected vectors"),
+    (lambda: projection.perspective(ROWS, distance=0), "distance: expected a number above 0"),
+    (lambda: projection.perspective(ROWS, distance=np.nan), "distance: expected"),
+    (lambda: projection.push_forward(ROWS, ROWS), "vectors: expected shape"),
+    (lambda: projection.push_forward(ROWS[:, None], ROWS[:, :3]), "points: expected vectors"),
+    (lambda: projection.turn(ROWS, np.eye(3)), r"matrix: expected shape \(4, 4\)"),
+    (lambda: projection.plane_rotation(1, (0, 1), 0.1), "n: expected an integer"),
 )
-def test_bad_projections(call, words):
-    with pytest.raises(ValueError, match=words):
-        call()

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import oracles
 import pytest
+from refusals import refusals
 from scipy.sparse import csr_array
 
 from vizlight.geometry import slices
@@ -154,28 +155,18 @@ def test_where_the_manifold_touches_the_hyperplane_there_is_no_frame():
     np.testing.assert_allclose(np.abs(found[1]), [[1, 0, 0, 0]], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("values", "simplices", "words"),
-    [
-        ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
-        ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
-        ([1.0, -1], [[0, 2]], "simplices: expected indices of values from 0 to 1"),
-        ([1.0, -1], [[-1, 0]], "simplices: expected indices of values"),
-    ],
+test_bad_simplices = refusals(
+    slices.cut,
+    ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
+    ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
+    ([1.0, -1], [[0, 2]], "simplices: expected indices of values from 0 to 1"),
+    ([1.0, -1], [[-1, 0]], "simplices: expected indices of values"),
 )
-def test_bad_simplices(values, simplices, words):
-    with pytest.raises(ValueError, match=words):
-        slices.cut(values, simplices)
 
 
-@pytest.mark.parametrize(
-    ("frame", "normal", "words"),
-    [
-        (np.eye(4)[:1], (0, 0, 0, 1), "frame: expected 2 tangents or more"),
-        (np.eye(4)[:2], (0, 0, 1), "normal: expected 4 components"),
-        (np.eye(4)[:2], (0, 0, 0, 0), "normal: expected a direction of non-zero length"),
-    ],
+test_bad_slices = refusals(
+    slices.slice_frame,
+    (np.eye(4)[:1], (0, 0, 0, 1), "frame: expected 2 tangents or more"),
+    (np.eye(4)[:2], (0, 0, 1), "normal: expected 4 components"),
+    (np.eye(4)[:2], (0, 0, 0, 0), "normal: expected a direction of non-zero length"),
 )
-def test_bad_slices(frame, normal, words):
-    with pytest.raises(ValueError, match=words):
-        slices.slice_frame(frame, normal)
