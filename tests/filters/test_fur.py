@@ -332,35 +332,32 @@ def test_no_fibres():
     assert vizlight.illuminate(pv.PolyData(), red).n_points == 0
 
 
-@pytest.mark.parametrize(
-    ("options", "error", "words"),
-    [
-        ({"density": 1.5}, ValueError, "density: expected a number from 0 to 1, got 1.5"),
-        ({"density": -0.1}, ValueError, "density: expected a number from 0 to 1"),
-        ({"length": -0.1}, ValueError, r"length: expected a number from 0 to 1e\+30, got -0.1"),
-        ({"length": "hair"}, ValueError, "length: expected a point array of one component"),
-        ({"length": np.ones(3)}, ValueError, "length: expected 2304 lengths of 0 or more"),
-        ({"fibres": -1}, ValueError, "fibres: expected an integer of at least 0"),
-        ({"segments": 0}, ValueError, "segments: expected an integer of at least 1"),
-        ({"vectors": "U"}, ValueError, "vectors: expected the name of a point array"),
-        ({"bend": 1.0}, ValueError, "toward: expected the direction of the bend"),
-        (
-            {"bend": 1.0, "toward": (0, 0, 0)},
-            ValueError,
-            "toward: expected a direction of non-zero",
-        ),
-        ({"bend": 1.0, "toward": (0, 1)}, ValueError, "toward: expected 3 components"),
-        ({"seed": -1}, ValueError, "seed: expected an integer of at least 0"),
-        ({"vectors": np.ones((2304, 3))}, TypeError, "vectors: expected the name of a point"),
-        ({"curl": np.nan}, ValueError, "curl: expected a number from"),
-    ],
-)
-def test_bad_input(options, error, words):
+def bad_input(options):
     mesh = torus()
     before = mesh.copy()
-    with pytest.raises(error, match=words):
+    try:
         fur(mesh, SCENE, **{"density": 0.02, "fibres": 10, **options})
-    assert mesh == before
+    finally:
+        assert mesh == before
+
+
+test_bad_input = refusals(
+    bad_input,
+    ({"density": 1.5}, "density: expected a number from 0 to 1, got 1.5"),
+    ({"density": -0.1}, "density: expected a number from 0 to 1"),
+    ({"length": -0.1}, r"length: expected a number from 0 to 1e\+30, got -0.1"),
+    ({"length": "hair"}, "length: expected a point array of one component"),
+    ({"length": np.ones(3)}, "length: expected 2304 lengths of 0 or more"),
+    ({"fibres": -1}, "fibres: expected an integer of at least 0"),
+    ({"segments": 0}, "segments: expected an integer of at least 1"),
+    ({"vectors": "U"}, "vectors: expected the name of a point array"),
+    ({"bend": 1.0}, "toward: expected the direction of the bend"),
+    ({"bend": 1.0, "toward": (0, 0, 0)}, "toward: expected a direction of non-zero"),
+    ({"bend": 1.0, "toward": (0, 1)}, "toward: expected 3 components"),
+    ({"seed": -1}, "seed: expected an integer of at least 0"),
+    ({"vectors": np.ones((2304, 3))}, "vectors: expected the name of a point", TypeError),
+    ({"curl": np.nan}, "curl: expected a number from"),
+)
 
 
 def test_bad_surfaces_and_scenes():
