@@ -157,13 +157,6 @@ def test_the_type_of_the_data_does_not_matter():
         assert other[name] == pytest.approx(value, rel=0.03, abs=0.05), name
 
 
-def test_input_is_unchanged():
-    mesh = bumps()
-    before = mesh.copy()
-    vizlight.legibility(mesh, ring(), tangents="swirl", scalars="height", **FEW)
-    assert mesh == before
-
-
 @pytest.mark.parametrize(
     "scene",
     [

@@ -4,6 +4,9 @@ The text of kernels runs as Python for most plans, which takes milliseconds; a f
 ``python tests/differential.py`` compares many more plans, all compiled.
 """
 
+# A formula that is changed in a test is read as in its file.
+from __future__ import annotations
+
 import dataclasses
 import math
 
