@@ -8,11 +8,6 @@ from vizlight.geometry.relief import height_field, walks
 X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
 
 
-def unit(v):
-    v = np.asarray(v, dtype=float)
-    return v / np.linalg.norm(v)
-
-
 def sun(elevation, azimuth):
     """Return a direction from angles in degrees, azimuth from x toward y."""
     e, a = np.radians([elevation, azimuth])

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from vectors import unit
 
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.draw import glsl, program
@@ -117,10 +118,6 @@ def uniforms(scene, own, data):
             numbers[:3] /= np.linalg.norm(numbers[:3])
         values[name] = float(numbers[0]) if kind == "float" else Vec(numbers.tolist())
     return values
-
-
-def unit(vectors):
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 @pytest.mark.parametrize("data", [False, True])

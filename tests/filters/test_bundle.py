@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import _compiled, _pool
@@ -27,8 +28,7 @@ QUICK = vizlight.Bundle(grid=24)
 def lines(count=300, points=12, seed=1):
     """Return straight lines at random in a ball."""
     random = np.random.default_rng(seed)
-    way = random.normal(size=(count, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    way = unit(random.normal(size=(count, 3)))
     middle = random.uniform(-0.7, 0.7, (count, 3))
     places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
     mesh = pv.PolyData()

@@ -9,6 +9,7 @@ import pyvista as pv
 from fields import several_kinds
 from lamps import SHINY, SHOULDER, shiny
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, engine, illuminate
@@ -122,8 +123,7 @@ def test_normals_of_points_that_float32_rounds_are_warned_of():
         lamp = Light(position=offset + np.array([1.5, 1, 2]))
         scene = Scene(lights=lamp, material=Material(ambient=0.3, diffuse=0.7, specular=0))
         given = illuminate(at, scene)["luminance"]
-        way = np.array(lamp.position) - np.asarray(at.points, float)
-        way /= np.linalg.norm(way, axis=1, keepdims=True)
+        way = unit(np.array(lamp.position) - np.asarray(at.points, float))
         cosine = np.einsum("ij,ij->i", way, np.asarray(ball["Normals"], float))
         np.testing.assert_allclose(given, 0.3 + 0.7 * np.maximum(cosine, 0), atol=1e-6)
         at.point_data.clear()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -71,8 +72,7 @@ def test_brightest_point_is_on_the_cone_of_reflection(made):
 
 def test_curves_have_the_light_of_the_field(made):
     curves = made[1]["curves"]
-    outward = np.asarray(curves.points, float)
-    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    outward = unit(np.asarray(curves.points, float))
     tangent = np.array([0, 0, 1.0]) - outward[:, 2:] * outward
     mesh = pv.PolyData(np.asarray(curves.points))
     mesh["T"] = tangent

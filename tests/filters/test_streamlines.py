@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View, streamlines
@@ -341,8 +342,7 @@ def test_confined_lines_are_lit_by_the_field_and_not_by_their_chords():
     errors = []
     for n in (20, 40, 80):
         lines = streamlines(ball(n), SCENE, vectors="V", seeds=30, conditioned=False)
-        outward = np.asarray(lines.points, float)
-        outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+        outward = unit(np.asarray(lines.points, float))
         lines["exact"] = np.array([0, 0, 1.0]) - outward[:, 2:] * outward
         exact = vizlight.illuminate(lines, SCENE, tangents="exact", name="by_field")["by_field"]
         chords = vizlight.illuminate(lines, SCENE, name="by_chords")["by_chords"]

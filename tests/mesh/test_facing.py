@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Scene, View, illuminate
@@ -54,8 +55,7 @@ def test_an_open_surface_faces_the_eye_point_by_point(position):
     wave.clear_data()
     scene = HEAD.replace(view=View(position=position), material=MATTE)
     lit = illuminate(wave, scene)
-    toward = np.asarray(position) - wave.points
-    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    toward = unit(np.asarray(position) - wave.points)
     slope = np.stack([-2 * np.cos(2 * x) * np.cos(y), np.sin(2 * x) * np.sin(y), 1 + 0 * x], axis=1)
     exact = np.abs(dots(slope / np.linalg.norm(slope, axis=1, keepdims=True), toward))
     inner = np.abs(wave.points[:, :2]).max(axis=1) < 2.9

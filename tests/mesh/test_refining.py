@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate, refine, streamlines
@@ -14,10 +15,6 @@ from vizlight.mesh import refining
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
 SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
 PIXEL = 1 / 255
-
-
-def unit(v):
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
 def phong(normals, shininess=20.0):

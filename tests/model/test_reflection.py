@@ -6,14 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refusals
+from vectors import unit
 
 from vizlight.model import frames, reflection
 
 SIZES = [(1, 2), (1, 3), (2, 3), (1, 4), (2, 4), (3, 4), (3, 8)]
-
-
-def unit(v):
-    return np.asarray(v, dtype=float) / np.linalg.norm(v)
 
 
 @pytest.mark.parametrize("model", ["phong", "blinn"])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -53,8 +54,7 @@ def arcs(n=40, seed=0):
     """Return straight lines in all directions."""
     random = np.random.default_rng(seed)
     start = random.uniform(-1, 1, (n, 3))
-    way = random.normal(size=(n, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    way = unit(random.normal(size=(n, 3)))
     points = start[:, np.newaxis] + np.linspace(0, 0.7, 8)[:, np.newaxis] * way[:, np.newaxis]
     cells = np.insert(np.arange(8 * n).reshape(n, 8), 0, 8, axis=1)
     return pv.PolyData(points.reshape(-1, 3), lines=cells.ravel())

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import oracles
 import pytest
+from vectors import unit
 
 import vizlight
 from stability import checks, hard, model, suite
@@ -127,8 +128,7 @@ def test_loose_claims_are_named():
 def test_hard_directions_are_where_they_say(random):
     frame = hard.frames(random, 200, 2, 4, np.float32)
     for kind, low, high in (("along the tangent", 0, 1e-6), ("one ulp off it", 1e-9, 1e-6)):
-        x = hard.directions(random, frame, kind).astype(float)
-        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        x = unit(hard.directions(random, frame, kind).astype(float))
         sine = np.linalg.norm(
             x - np.einsum("bkn,bk->bn", frame, np.einsum("bkn,bn->bk", frame, x)), axis=1
         )

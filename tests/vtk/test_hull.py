@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -24,8 +25,7 @@ def test_control_points_are_not_lit():
     np.testing.assert_array_equal(lit["luminance_valid"], [1, 1, 1, 0, 0, 0])
     np.testing.assert_allclose(lit["luminance"][3:], 0.1)
     # The flat triangles at the corners rise by 0.4 to the middles of the edges.
-    normals = np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit(np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]]))
     np.testing.assert_allclose(lit["luminance"][:3], 0.1 + 0.8 * normals @ toward, rtol=1e-5)
 
 

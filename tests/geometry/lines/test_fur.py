@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
+from vectors import unit
 
 from vizlight.geometry import fur
 
@@ -109,8 +110,7 @@ def grown(directions, lengths, toward=None, **options):
 
 
 def test_straight_fibres(random):
-    direction = random.standard_normal((20, 3))
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    direction = unit(random.standard_normal((20, 3)))
     length = random.uniform(0.1, 2, 20)
     strand = grown(direction, length, segments=4)
     assert strand.shape == (20, 5, 3)

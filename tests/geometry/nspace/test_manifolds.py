@@ -137,16 +137,6 @@ def test_clifford_torus_lies_in_the_sphere():
     np.testing.assert_allclose(np.linalg.norm(points, axis=1), 2, rtol=1e-15)
 
 
-def test_hopf_map_takes_a_fibre_to_its_point(random):
-    base = random.standard_normal((20, 3))
-    shape = manifolds.hopf_fibres(base, resolution=7)
-    z = shape.points.view(np.complex128).reshape(20, 7, 2)
-    cross = 2 * z[..., 0] * np.conj(z[..., 1])
-    image = np.stack([cross.real, cross.imag, np.abs(z[..., 0]) ** 2 - np.abs(z[..., 1]) ** 2], -1)
-    unit = base / np.linalg.norm(base, axis=1, keepdims=True)
-    np.testing.assert_allclose(image, np.repeat(unit[:, None], 7, axis=1), atol=1e-14)
-
-
 def test_veronese_surface_is_the_projective_plane():
     """V - E + F = 1, and the metric is that of a map that takes opposite points to one."""
     shape = manifolds.veronese(resolution=5)

@@ -80,20 +80,6 @@ def test_a_circle_is_cut_in_two_points():
     np.testing.assert_allclose(x, 0.3, atol=1e-15)
 
 
-def test_frames_of_a_slice(random):
-    for k, n in [(2, 3), (2, 4), (3, 4), (5, 8)]:
-        frame = oracles.frames(random, 40, k, n, np.float64)
-        normal = random.standard_normal(n)
-        found = slices.slice_frame(frame, normal)
-        assert found.shape == (40, k - 1, n)
-        gram = np.einsum("bki,bli->bkl", found, found)
-        worst = np.abs(gram - np.eye(k - 1)).max() / oracles.eps(float)
-        assert worst <= 8
-        assert np.abs(found @ normal).max() < 1e-14
-        inside = np.einsum("bki,bji,bjm->bkm", found, frame, frame)
-        np.testing.assert_allclose(inside, found, atol=1e-14)
-
-
 def projector(frame):
     return np.einsum("bki,bkj->bij", frame, frame)
 
@@ -112,16 +98,6 @@ def test_mean_frames_do_not_depend_on_the_basis_at_a_point(k, n, random):
     np.testing.assert_allclose(projector(one), projector(other), atol=1e-14)
     gram = np.einsum("bki,bli->bkl", one, one)
     np.testing.assert_allclose(gram, np.tile(np.eye(k), (20, 1, 1)), atol=1e-14)
-
-
-def test_mean_frame_between_two_lines_is_between_them():
-    """Shares of unit vectors that may point either way, and the order 2 of the mean."""
-    for size, bound in ((0.1, 2e-4), (0.01, 2e-7)):
-        angles = np.array([0.3, 0.3 + size])
-        frame = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)[:, np.newaxis]
-        frame[1] *= -1
-        found = slices.mean_frame(frame, csr_array([[0.7, 0.3]]))[0, 0]
-        assert abs(np.arctan(found[1] / found[0]) - (0.3 + 0.3 * size)) < bound
 
 
 def test_spaces_without_a_mean_have_none():
