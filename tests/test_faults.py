@@ -76,16 +76,6 @@ def command(*words, **how):
     return subprocess.run(line, check=False, timeout=300, env=environment, **how)
 
 
-def test_nobody_reads_the_output(ball, tmp_path):
-    reader, writer = os.pipe()
-    os.close(reader)
-    out = tmp_path / "lit.vtp"
-    done = command("light", ball, "-o", out, stdout=writer, stderr=subprocess.PIPE)
-    os.close(writer)
-    assert (done.returncode, done.stderr) == (0, b"")
-    assert "luminance" in files.read(out).point_data
-
-
 BROKEN = {
     "no vendor": {"__EGL_VENDOR_LIBRARY_DIRS": "/none", "LIBGL_DRIVERS_PATH": "/none"},
     "no such window": {"VTK_DEFAULT_OPENGL_WINDOW": "vtkNoOpenGLRenderWindow"},

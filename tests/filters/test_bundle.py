@@ -152,16 +152,6 @@ def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
     assert vizlight.sky(lines(20), error=0.2)["sky"].min() > 0.7
 
 
-def test_a_record_repeats_the_light():
-    mesh = lines(100)
-    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, name="light")
-    assert "light_transmittance" in lit.point_data
-    record = vizlight.provenance(lit, "light")
-    scene = vizlight.Scene.from_dict(record["scene"])
-    again = vizlight.illuminate(mesh, scene, **record["options"])
-    assert np.array_equal(again["light"], lit["light"])
-
-
 def test_a_surface_is_dimmed_by_the_lines_above_it():
     """Lines above a plate: dark below their middle, bright beside, like the lines' own medium."""
     mesh = lines(3000)

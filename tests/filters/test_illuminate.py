@@ -335,13 +335,6 @@ def test_empty_meshes(kind):
     assert "luminance" in lit.point_data
 
 
-def test_a_shared_result_does_not_hold_the_input_in_memory_twice():
-    plane = meshes()["PolyData"]
-    lit = illuminate(plane.copy(deep=False), SCENE, tangents="V", inplace=True)
-    assert np.shares_memory(lit["V"], plane["V"])
-    assert np.shares_memory(lit.points, plane.points)
-
-
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [

@@ -388,23 +388,6 @@ def test_provenance(torus):
     np.testing.assert_array_equal(again.points, one.points)
 
 
-@pytest.mark.parametrize(("light", "scene"), [("before", SCENE4), ("after", SCENE3)])
-def test_light_is_made_again_from_what_is_told(torus, light, scene):
-    turns = [("xw", 0.3), ((1, 2), 1.1)]
-    options = {"rotation": turns, "distance": 4.0, "light": light, "exponent": 1}
-    lit = project(torus, scene=scene, name="glow", **options)
-    told = vizlight.provenance(lit, "glow")
-    assert told["filter"] == "project"
-    again = project(torus, scene=Scene.from_dict(told["scene"]), **told["options"])
-    np.testing.assert_array_equal(again["glow"], lit["glow"])
-    np.testing.assert_array_equal(again.points, lit.points)
-    assert vizlight.provenance(again, "glow") == told
-    cut = project(torus, hyperplane=((0, 0, 0, 1), 0.1), scene=scene, light=light)
-    told = vizlight.provenance(cut)
-    again = project(torus, scene=Scene.from_dict(told["scene"]), **told["options"])
-    np.testing.assert_array_equal(again["luminance"], cut["luminance"])
-
-
 @pytest.mark.parametrize(("light", "n"), [("before", 3), ("after", 4)])
 def test_a_scene_of_another_space_is_refused_with_the_remedy(torus, light, n):
     other = "after" if light == "before" else "before"

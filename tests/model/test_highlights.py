@@ -292,16 +292,3 @@ def test_shapes_that_do_not_fit_are_told_by_name():
     with pytest.raises(ValueError, match="light_eye_angle, r: expected shapes that broadcast"):
         highlights.simple_factor([1, 2], [1, 2, 3])
     assert highlights.phong_from_blinn(highlights.blinn_from_phong(1e9)) == 1e9
-
-
-def test_the_error_over_a_sphere_is_that_of_its_normals(random):
-    beta, r = np.deg2rad(30.0), 10.0
-    normals = random.normal(size=(400_000, 3))
-    normals /= np.linalg.norm(normals, axis=1)[:, np.newaxis]
-    wi, wo = ((np.sin(a), 0.0, np.cos(a)) for a in (beta, -beta))
-    seen = normals[(normals @ wi > 0) & (normals @ wo > 0)]
-    mirrored = 2 * (seen @ wi)[:, np.newaxis] * seen - wi
-    error = 255 * (np.maximum(mirrored @ wo, 0) ** r - seen[:, 2] ** (4 * r))
-    found = [highlights.sphere_error(2 * beta, r, by=by) for by in ("rms", "volume")]
-    expected = [np.sqrt(np.mean(error**2)), np.mean(np.abs(error))]
-    np.testing.assert_allclose(found, expected, rtol=0.02)

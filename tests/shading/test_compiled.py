@@ -405,20 +405,6 @@ def compiled_inputs(points, normals):
     return ShadingInputs(points=points, normals=normals)
 
 
-def test_seven_lights_of_two_kinds(fast, random):
-    points, _, normals = cloud(random, 500, float)
-    lamps = [Light(position=random.standard_normal(3) * 4, intensity=0.2) for _ in range(4)]
-    suns = [Light(direction=random.standard_normal(3), intensity=0.3) for _ in range(3)]
-    mixed = [lamps[0], suns[0], lamps[1], suns[1], lamps[2], suns[2], lamps[3]]
-    scene = Scene(lights=mixed, view=NEAR, material=SHINY)
-    shadow = random.random((500, 7))
-    lit = engine.shade(points, None, scene, normals=normals, shadow=shadow)
-    assert lit.plan.compiled
-    with _compiled.setting("0"):
-        same = engine.shade(points, None, scene, normals=normals, shadow=shadow)
-    np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=1e-13)
-
-
 def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):
     """Near 1 the logarithm is taken of what is missing from 1."""
     normals = random.normal(size=(500, 3)) * 0.05 + (0, 0, 1)

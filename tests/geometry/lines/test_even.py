@@ -94,6 +94,7 @@ def test_the_last_gaps_are_filled():
     assert gap <= 1.3 * spacing
     assert np.percentile(near, 5) >= 0.5 * spacing
     assert lines.field_data["largest_gap"][0] == pytest.approx(gap / spacing, abs=0.1)
+    assert "Normals" not in lines.point_data
 
 
 def test_a_spiral_is_not_closed():
@@ -136,19 +137,6 @@ def test_two_sides_of_a_sheet_are_apart():
     places = np.random.default_rng(0).uniform((0.1, 0.1, 0.03), (0.9, 0.9, 0.03), (400, 3))
     gap = cKDTree(np.asarray(lines.points)[z > 0.029]).query(places)[0].max()
     assert gap < 0.13
-
-
-def test_in_a_volume():
-    grid = pv.ImageData(dimensions=(12, 12, 12), spacing=(0.1, 0.1, 0.1))
-    x, y, _ = grid.points.T - 0.55
-    grid["V"] = np.stack([-y, x, 0.1 + 0 * x], axis=1)
-    spacing = 0.25
-    lines = streamlines(grid, SCENE, vectors="V", spacing=spacing)
-    places = 1.1 * np.random.default_rng(1).random((2000, 3))
-    gap, near, _ = evenness(lines, places)
-    assert gap <= 1.3 * spacing
-    assert np.percentile(near, 5) >= 0.5 * spacing
-    assert "Normals" not in lines.point_data
 
 
 def test_seeds_come_first_and_lines_keep_their_distance():

@@ -67,17 +67,6 @@ def test_no_pattern_runs_over_the_triangles_of_a_grid():
     assert power.max() < 25
 
 
-def test_reproducible_by_seed():
-    points, faces = square(3)
-    for one, other in zip(
-        fur.seeds(points, faces, 500), fur.seeds(points, faces, 500), strict=True
-    ):
-        np.testing.assert_array_equal(one, other)
-    assert not np.array_equal(
-        fur.seeds(points, faces, 500, seed=1)[1], fur.seeds(points, faces, 500)[1]
-    )
-
-
 def test_more_than_a_block():
     points, faces = square(4)
     face, weights = fur.seeds(points, faces, fur.SEED_BLOCK + 100)

@@ -44,12 +44,7 @@ def test_each_way_to_the_tangents():
 
 
 def test_central_differences_are_of_order_2_and_within_the_bound():
-    exact = manifolds.torus(1.5, 0.75, resolution=16)
     steps, errors = np.array([1e-1, 3e-2, 1e-2, 3e-3, 1e-3]), []
-    for step in steps / (2 * np.pi):
-        found = parametric(lambda t: (np.cos(t), np.sin(t)), [TURN], 2, step=step)
-        # The direction of a circle's chord is exact, so a curve of more terms is measured too.
-        assert np.abs(found.frame[:, 0] + 1j * 0).max() <= 1 + 1e-15
 
     def wavy(t):
         return np.cos(t), np.sin(t), np.sin(3 * t) / 3
@@ -66,7 +61,6 @@ def test_central_differences_are_of_order_2_and_within_the_bound():
     assert abs(np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) < 0.2
     assert error(parametric(wavy, [TURN], 3, resolution=50), true) < 1e-9
     assert CENTRAL_STEP * 2 * np.pi == pytest.approx(np.finfo(float).eps ** (1 / 3), rel=0.3)
-    assert exact.k == 2
 
 
 def test_closed_directions_are_found():
