@@ -57,7 +57,7 @@ def test_a_kernel_that_loses_digits_fails(monkeypatch):
 def test_not_a_number_fails():
     nan = oracles.mp.nan
     for values, true in (([1.0, np.nan], [1, 2]), ([1.0, 2.0], [1, nan]), ([0.0, 0.0], [nan, 1])):
-        check = checks.Check("a", np.array(values), true, np.array(5.0), 1.0)
+        check = checks.Check("a", np.array(values), true, np.array(5.0))
         (row,) = checks.rows_of("kernel", np.float64, iter([check]))
         assert row.error == np.inf
         assert row.more[""] == "FAIL"
@@ -84,7 +84,7 @@ def test_defined_values_are_exact():
 
 def test_a_claim_of_more_than_the_result_shows_no_tightness():
     """An error of half the claim does not make it tight where any number is within it."""
-    check = checks.Check("a", np.array([1.0]), [0.5], np.array(1 / oracles.eps(float)), 1.0)
+    check = checks.Check("a", np.array([1.0]), [0.5], np.array(1 / oracles.eps(float)))
     (row,) = checks.rows_of("kernel", np.float64, iter([check]))
     assert (row.more[""], row.more["seen / claimed"]) == ("pass", 0)
     assert suite.loosest([row])["kernel", "float64"] == np.inf
@@ -113,8 +113,8 @@ def test_the_kept_table_is_whole():
 def test_loose_claims_are_named():
     many = suite.ENOUGH
     made = [
-        checks.Check("a", np.ones(many), [1 - 1e-15] * many, 9.0, 1.0),
-        checks.Check("a", np.ones(many), [1 - 1e-15] * many, 500.0, 1.0, "steep"),
+        checks.Check("a", np.ones(many), [1 - 1e-15] * many, 9.0),
+        checks.Check("a", np.ones(many), [1 - 1e-15] * many, 500.0, "steep"),
     ]
     rows = checks.rows_of("slack", np.float64, iter(made))
     loose = suite.loosest(rows)
