@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from hostile import runner
+from lamps import far
 
 import vizlight
 from vizlight import Light, Material, Scene, View, files
@@ -105,11 +106,7 @@ def test_a_picture_is_drawn_or_refused_where_the_library_is_broken(name, ball, t
 def test_light_at_every_scale_is_the_same_or_marked(power):
     t = np.linspace(0, 3, 20)
     points = np.stack([np.cos(t), np.sin(t), t], axis=1)
-    scene = Scene(
-        lights=Light(direction=(0.3, 0.2, 1)),
-        view=View(direction=(0, 0, 1)),
-        material=Material(specular=0.4),
-    )
+    scene = far((0.3, 0.2, 1), (0, 0, 1), Material(specular=0.4))
     line, ball = pv.lines_from_points(points), pv.Sphere(theta_resolution=9, phi_resolution=9)
     ball.clear_data()
     ball.points = np.asarray(ball.points, dtype=np.float64)

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from lamps import far
 from vectors import unit
 
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -197,11 +198,7 @@ def test_normals_turn_to_the_eye_unless_they_lean_away_by_little(lean):
 
 
 def test_only_what_the_plan_needs_is_written():
-    scene = Scene(
-        lights=Light(direction=(1, 0, 0)),
-        material=Material(specular=0),
-        view=View(direction=(0, 0, 1)),
-    )
+    scene = far((1, 0, 0), (0, 0, 1), Material(specular=0))
     functions, body = glsl.fragment(plan(scene, normals=True))
     assert not functions
     assert "vizFade" not in body

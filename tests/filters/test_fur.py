@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import vtk
-from lamps import HEADLIT, SHINY, SHOULDER, shiny
+from lamps import HEADLIT, SHINY, SHOULDER, far, shiny
 from refusals import refusals
 
 import vizlight
@@ -15,11 +15,7 @@ from vizlight.model import cylinder
 
 TOWARD = np.array([-1.0, -0.6, 0.9]) / np.linalg.norm([-1.0, -0.6, 0.9])
 EYE = np.array([0.3, -1, 0.8]) / np.linalg.norm([0.3, -1, 0.8])
-SCENE = Scene(
-    lights=Light(direction=TOWARD),
-    view=View(direction=EYE),
-    material=Material(ambient=0.1, diffuse=0.9, specular=0.1),
-)
+SCENE = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.9, specular=0.1))
 
 
 def torus(n=48):
@@ -489,9 +485,7 @@ def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypat
     monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
     ball = pv.Sphere(radius=1.0, theta_resolution=30, phi_resolution=30)
     ball.points = np.asarray(ball.points, float) + np.array(origin)
-    scene = Scene(
-        lights=Light(direction=(0, 0, 1)), view=View(direction=(0, -1, 0.4)), material=SHINY
-    )
+    scene = far((0, 0, 1), (0, -1, 0.4))
     asked = Bundle(diameter=0.01, grid=48)
     coat = fur(ball, scene, fibres=4000, length=0.3, bundle=asked)
     fibres, skin = coat["fibres"], coat["skin"]

@@ -4,7 +4,7 @@ import banded
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import shiny
+from lamps import far, shiny
 from refusals import refusals
 from scipy.spatial import cKDTree
 from vectors import unit
@@ -17,11 +17,7 @@ from vizlight.geometry.contours import banding
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
 EYE = np.array([0.2, -1, 0.5]) / np.linalg.norm([0.2, -1, 0.5])
 DULL = Scene(lights=Light(direction=TOWARD), material=shiny(diffuse=0.8, specular=0))
-SHINY = Scene(
-    lights=Light(direction=TOWARD),
-    view=View(direction=EYE),
-    material=Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20),
-)
+SHINY = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20))
 
 
 def polygons(mesh):

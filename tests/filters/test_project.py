@@ -3,23 +3,17 @@
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY
+from lamps import far
 from scipy.stats import special_ortho_group
 from vectors import unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View, engine, illuminate, project
+from vizlight import Material, engine, illuminate, project
 from vizlight.geometry import manifolds, projection
 
 TURN = special_ortho_group.rvs(4, random_state=3)
-SCENE4 = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38, 0.1)),
-    view=View(direction=(0, 0.3, 1, 0.2)),
-    material=SHINY,
-)
-SCENE3 = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38)), view=View(direction=(0, 0.3, 1)), material=SHINY
-)
+SCENE4 = far((0.7, 0.6, 0.38, 0.1), (0, 0.3, 1, 0.2))
+SCENE3 = far((0.7, 0.6, 0.38), (0, 0.3, 1))
 
 
 @pytest.fixture
@@ -65,11 +59,7 @@ def test_light_before_is_the_light_in_four_space(torus):
     turned = project(torus, rotation=TURN)
     expected = illuminate(turned, SCENE4, tangents="frame", positions="position")
     np.testing.assert_array_equal(lit["luminance"], expected["luminance"])
-    back = Scene(
-        lights=Light(direction=TURN.T @ SCENE4.lights[0].direction),
-        view=View(direction=TURN.T @ SCENE4.view.direction),
-        material=SHINY,
-    )
+    back = far(TURN.T @ SCENE4.lights[0].direction, TURN.T @ SCENE4.view.direction)
     still = illuminate(torus, back, tangents="frame", positions="position")
     np.testing.assert_allclose(lit["luminance"], still["luminance"], atol=1e-12)
 

@@ -3,19 +3,16 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
 from refusals import refusals
 from vectors import unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View
+from vizlight import Material
 
 TOWARD = np.array([1.0, -1, 0.6]) / np.linalg.norm([1.0, -1, 0.6])
 EYE = np.array([0.0, -1, 0.3]) / np.linalg.norm([0, -1, 0.3])
-SCENE = Scene(
-    lights=Light(direction=TOWARD),
-    view=View(direction=EYE),
-    material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
-)
+SCENE = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)))
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,11 @@ import contextlib
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
 from vectors import unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View, _progress, relief_shadow
+from vizlight import Light, Material, Scene, _progress, relief_shadow
 from vizlight.geometry.relief import shadowing
 from vizlight.mesh import closed_meshes
 
@@ -18,11 +19,7 @@ SCENE = Scene(lights=Light(direction=TOWARD), material=Material(ambient=0.1, spe
 
 def test_highlight_keeps_the_share_that_t_has_of_the_cosine():
     mesh = pv.Sphere(theta_resolution=40, phi_resolution=40)
-    scene = Scene(
-        lights=Light(direction=(1, 0, 1)),
-        material=Material(ambient=0, diffuse=0, specular=1),
-        view=View(direction=(1, 0, 1)),
-    )
+    scene = far((1, 0, 1), (1, 0, 1), Material(ambient=0, diffuse=0, specular=1))
     wall = pv.Cube(center=(2, 0.2, 2), x_length=0.5, y_length=0.4, z_length=0.5).triangulate()
     free = vizlight.illuminate(mesh, scene)["luminance"]
     out = relief_shadow(mesh, scene, depth=0.01, lit=True, occluders=[wall])

@@ -14,7 +14,7 @@ import differential
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
@@ -369,11 +369,7 @@ def test_where_it_does_not_pay_numpy_runs(random):
 )
 def test_what_has_no_compiled_form_says_why(given, words):
     n = given.get("n", 3)
-    scene = Scene(
-        lights=Light(direction=np.ones(n)),
-        view=View(direction=np.arange(n) + 1.0),
-        material=shiny(shininess=5),
-    )
+    scene = far(np.ones(n), np.arange(n) + 1.0, shiny(shininess=5))
     assert words in engine.plan(scene, **given).explain()
     assert "code: where" in engine.plan(SCENE, k=1).explain()
 

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
 
 import vizlight
 from vizlight import (
@@ -56,11 +56,7 @@ def torus():
     return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
 
 
-SCENE_4 = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38, 0)),
-    view=View(direction=(0, -1, 0.5, 0)),
-    material=SHINY,
-)
+SCENE_4 = far((0.7, 0.6, 0.38, 0), (0, -1, 0.5, 0))
 SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
 FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
@@ -151,9 +147,7 @@ def test_points_of_a_lit_shadow_count_once():
 @pytest.mark.parametrize("what", [Sphere(), Sphere() - Frustum(axis=(0, 0, 4)), pv.Sphere()])
 def test_bands_are_one_run(what, specular, levels):
     material = shiny(diffuse=0.5, specular=specular, color="tomato")
-    scene = Scene(
-        lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)), material=material
-    )
+    scene = far((1, 1, 1), (0, 0, 1), material)
     with vizlight.report() as told:
         found = vizlight.isoluminance(what, scene, levels=levels)
     (run,) = told.runs
