@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
-from vectors import unit
+from vectors import parts, unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View, streamlines
@@ -316,12 +316,6 @@ def test_seeds_on_a_surface_are_uniform_in_its_area():
     number, _, _ = np.histogram2d(*seeds[:, :2].T, bins=4, range=[[-0.5, 0.5]] * 2)
     chi2 = np.sum((number - len(seeds) / 16) ** 2) / (len(seeds) / 16)
     assert chi2 < 15 + 5 * np.sqrt(2 * 15)
-
-
-def parts(lines):
-    """Return the points of each line."""
-    ends = np.cumsum([lines.get_cell(i).n_points for i in range(lines.n_cells)])
-    return np.split(np.asarray(lines.points, dtype=float), ends[:-1])
 
 
 def test_the_array_of_vectors_stays_as_it_was_on_confined_lines():

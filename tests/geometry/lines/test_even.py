@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 from refusals import refusals
 from scipy.spatial import cKDTree
+from vectors import parts, waves
 
 from vizlight import Light, Scene, View, streamlines
 
@@ -18,11 +19,6 @@ def ball(n=40, **options):
     normals = np.asarray(mesh["Normals"], float)
     mesh["spiral"] = up - normals[:, 2:] * normals + np.cross(up, normals)
     return mesh
-
-
-def parts(lines):
-    ends = np.cumsum([lines.get_cell(i).n_points for i in range(lines.n_cells)])
-    return np.split(np.asarray(lines.points, float), ends[:-1])
 
 
 def evenness(lines, places):
@@ -73,16 +69,6 @@ def test_orbits_are_closed():
         around *= np.sinc(1 / (len(piece) - 1))  # a polygon in the circle
         length = np.linalg.norm(np.diff(piece, axis=0), axis=1).sum()
         assert length == pytest.approx(around, rel=0.05)
-
-
-def waves(points, frequency, seed):
-    """Return a smooth field with saddles and vortices."""
-    random = np.random.default_rng(seed)
-    return sum(
-        np.cos(points @ (frequency * random.normal(size=3)) + 6 * random.random())[:, np.newaxis]
-        * random.normal(size=3)
-        for _ in range(5)
-    )
 
 
 def test_the_last_gaps_are_filled():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from refusals import refusals
-from vectors import unit
+from vectors import projector, unit
 
 from vizlight.geometry import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP, parametric
@@ -13,10 +13,6 @@ TURN = (0, 2 * np.pi)
 
 def torus(t, f):
     return 1.5 * np.cos(t), 1.5 * np.sin(t), 0.75 * np.cos(f), 0.75 * np.sin(f)
-
-
-def projector(frame):
-    return np.einsum("bki,bkj->bij", frame, frame)
 
 
 def error(shape, exact):

@@ -7,6 +7,7 @@ import oracles
 import pytest
 from refusals import refusals
 from scipy.sparse import csr_array
+from vectors import areas, projector
 
 from vizlight.geometry import slices
 
@@ -34,12 +35,7 @@ def test_every_pattern_of_a_tetrahedron():
             ring = [*shared, *(set(a) ^ set(b))]
             p, q, r, s = points[[ring[0], ring[2], ring[1], ring[3]]]
             whole = 0.5 * np.linalg.norm(np.cross(r - p, s - q))
-            assert area(points, cells) == pytest.approx(whole, rel=1e-12)
-
-
-def area(points, cells):
-    a, b, c = (points[cells[:, i]] for i in range(3))
-    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+            assert areas(points[cells]).sum() == pytest.approx(whole, rel=1e-12)
 
 
 def test_a_corner_at_zero_is_one_point():
@@ -78,10 +74,6 @@ def test_a_circle_is_cut_in_two_points():
     assert cells.shape == (2, 1)
     x = (1 - weights) * np.cos(t)[edges[:, 0]] + weights * np.cos(t)[edges[:, 1]]
     np.testing.assert_allclose(x, 0.3, atol=1e-15)
-
-
-def projector(frame):
-    return np.einsum("bki,bkj->bij", frame, frame)
 
 
 @pytest.mark.parametrize(("k", "n"), [(1, 3), (2, 4), (3, 5)])
