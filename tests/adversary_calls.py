@@ -4,8 +4,6 @@ A call has the arguments that are required and those in `OFTEN`, whose values go
 what a callable needs beside or in place of these is in `OWN`.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 import inspect

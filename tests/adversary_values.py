@@ -1,7 +1,5 @@
 """Adversarial values by the kind of an argument, which its annotation states."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,8 +1,7 @@
 """What tests ask of bands: closed, outward, volume, area, and the error at random places."""
 
-from __future__ import annotations
-
 import numpy as np
+from vectors import areas
 
 
 def directed_edges(bands):
@@ -33,14 +32,13 @@ def volume(bands):
 
 
 def area(bands):
-    t, _ = corners(bands)
-    return np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum() / 2
+    return areas(corners(bands)[0]).sum()
 
 
 def places(bands, random, count=4):
     """Return random places in the polygons, and the polygon of each."""
     t, owner = corners(bands)
-    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+    size = areas(t)
     # What has no area to speak of cannot be seen.
     t, owner = t[size > 1e-9 * size.max()], owner[size > 1e-9 * size.max()]
     weight = random.dirichlet([1, 1, 1], (count, len(t)))
@@ -50,7 +48,7 @@ def places(bands, random, count=4):
 def spread(bands, random, count):
     """Return random places spread evenly over the area, and the polygon of each."""
     t, owner = corners(bands)
-    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+    size = areas(t)
     chosen = random.choice(len(t), count, p=size / size.sum())
     weight = random.dirichlet([1, 1, 1], count)
     return np.einsum("ti,tij->tj", weight, t[chosen]), owner[chosen]

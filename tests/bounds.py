@@ -1,7 +1,5 @@
 """Stated bounds of the terms, in float32 and float64."""
 
-from __future__ import annotations
-
 import math
 
 

@@ -1,7 +1,5 @@
 """Chromium, drawn by software, for tests of pages; and what a page asks for and complains of."""
 
-from __future__ import annotations
-
 import importlib.util
 import shutil
 

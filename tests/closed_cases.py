@@ -1,8 +1,7 @@
 """Cases whose answers are known: each function raises AssertionError if the meter errs."""
 
-from __future__ import annotations
-
 import numpy as np
+from vectors import unit
 
 from vizlight import Light, Material, Scene, View
 from vizlight.observers import readers
@@ -23,10 +22,6 @@ def case(function):
 
 def near(got, want, slack):
     assert abs(got - want) <= slack, f"{got:.4f}, expected {want:.4f} within {slack:g}"
-
-
-def unit(vectors):
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def scene_of(lights, material=MATTE):

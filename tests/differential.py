@@ -168,7 +168,7 @@ def _inputs(form, scene, offset, size, random):
     if light.position is not None and random.random() < 0.1:
         points[0] = light.position
     if random.random() < 0.1:
-        points[1] = np.nan
+        points[1], points[2] = np.nan, np.inf
     kind, given = form.kind, {}
     if kind in ("conditioned", "fur", "surface", "shadow", "free"):
         given["normals"] = normals

@@ -4,8 +4,6 @@ Python without assertions, warnings as errors, the C locale, and a home that can
 each of them the command line gives the same exit codes and lines.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from pathlib import Path

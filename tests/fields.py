@@ -1,18 +1,11 @@
 """Height fields, places on them, directions to the sun; swatches; cells of several kinds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.relief import height_field, walks
 
 X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
-
-
-def unit(v):
-    v = np.asarray(v, dtype=float)
-    return v / np.linalg.norm(v)
 
 
 def sun(elevation, azimuth):

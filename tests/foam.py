@@ -1,7 +1,5 @@
 """A small OpenFOAM case as text: a box of hexahedra, and fields of its cells at several times."""
 
-from __future__ import annotations
-
 import numpy as np
 
 HEAD = """FoamFile

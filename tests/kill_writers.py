@@ -6,8 +6,6 @@ after SIGTERM, SIGINT and SIGHUP; SIGKILL may leave one hidden folder, which no 
 a result.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from vizlight import Light, Material
+from vizlight import Light, Material, Scene, View
 
 
 def shiny(**changes: Any) -> Material:
@@ -24,3 +24,8 @@ SHOULDER = (
 #: A material with every term, and one lamp at the eye with it.
 SHINY = shiny()
 HEADLIT = {"lights": Light.headlight(), "material": SHINY}
+
+
+def far(light: Any, eye: Any, material: Material = SHINY) -> Scene:
+    """Return a scene with a lamp and an eye at infinity."""
+    return Scene(lights=Light(direction=light), view=View(direction=eye), material=material)

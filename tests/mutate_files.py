@@ -7,8 +7,6 @@ file. A file that is merely cut is lit only if the result is that of the whole f
 counts are exempt, see ``UNCOUNTED``. What failed is kept in ``failed_files/``.
 """
 
-from __future__ import annotations
-
 import collections
 import re
 import shutil

@@ -3,8 +3,6 @@
 Inputs are taken as the exact numbers that the floats are.
 """
 
-from __future__ import annotations
-
 import mpmath
 import numpy as np
 
@@ -102,11 +100,6 @@ def quadrature(wi, wo, tangent, shininess):
     return mp.quad(lambert, [low, high]), mp.quad(blinn, cuts)
 
 
-def toward(owner, point):
-    """Return direction and distance to a light or an eye; None at infinity."""
-    return digits.toward(owner, point)
-
-
 def shade(point, tangents, normal, scene, **options):
     """Return (ambient, diffuse, specular, luminance, rgb) of one point, term by term."""
     lit = digits.light(point, tangents, normal, scene, apart=0.0, **options)
@@ -115,11 +108,6 @@ def shade(point, tangents, normal, scene, **options):
 
 def eps(dtype):
     return float(np.finfo(dtype).eps)
-
-
-def units(value, reference, dtype):
-    """Return |value - reference| in eps of the type."""
-    return float(abs(exact(value) - reference)) / eps(dtype)
 
 
 def frames(random, count, k, n, dtype):

@@ -1,7 +1,5 @@
 """Scripts that a real ParaView runs, in one process or as ranks of MPI."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

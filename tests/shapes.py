@@ -1,7 +1,5 @@
 """A ring with its normals and a field of tangents, and lines on it: what pictures are made of."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 

@@ -1,7 +1,5 @@
 """Random trees of solids with degenerate positions, and what must hold for each of them."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 

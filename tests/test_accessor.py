@@ -1,7 +1,5 @@
 """``mesh.vizlight`` is there without an import, on every kind of mesh."""
 
-from __future__ import annotations
-
 import inspect
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Every public callable refuses adversarial values by name, or returns finite numbers."""
 
-from __future__ import annotations
-
 import re
 import warnings
 

@@ -1,7 +1,5 @@
 """Stated bounds beside those of the stability suite and of the tests that mirror a file."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -102,4 +100,6 @@ def test_the_mean_error_of_highlights_over_a_sphere(random):
         off = 255 * (mirror - np.maximum(normal[..., 2], 0) ** (4 * r))
         area = np.outer(weights, weights) * np.cos(t)
         rms = np.sqrt(np.sum(area * off**2) / np.sum(area))
-        assert highlights.sphere_error(angle, r) == pytest.approx(rms, rel=1e-4)
+        volume = np.sum(area * np.abs(off)) / np.sum(area)
+        found = [highlights.sphere_error(angle, r, by=by) for by in ("rms", "volume")]
+        assert found == pytest.approx([rms, volume], rel=1e-4)

@@ -1,7 +1,5 @@
 """Every validator lets good values pass and refuses bad ones by name."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

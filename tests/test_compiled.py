@@ -1,7 +1,5 @@
 """Compiled functions: what they need, when they pay, and where they are kept."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

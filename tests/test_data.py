@@ -1,7 +1,5 @@
 """The embedded data are those whose provenance is told, and small."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

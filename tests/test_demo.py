@@ -1,7 +1,5 @@
 """The demo: its light is right, and its picture can be read where a white lamp's cannot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

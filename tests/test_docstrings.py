@@ -1,7 +1,5 @@
 """The examples of docstrings give what they say."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 from pathlib import Path

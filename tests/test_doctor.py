@@ -1,7 +1,5 @@
 """The doctor reports versions, extras, data and what draws."""
 
-from __future__ import annotations
-
 from importlib.metadata import version
 
 from vizlight import doctor, render

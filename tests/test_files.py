@@ -1,7 +1,5 @@
 """Files in and out: clear errors, whole files or none."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -13,11 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import vizlight
 from vizlight import files, pieces
+
+PLY = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\n%s\nend_header\n"
 
 
 def volume():
@@ -28,25 +29,29 @@ def volume():
 
 
 @pytest.mark.parametrize(
-    ("name", "content"),
+    ("name", "content", "words"),
     [
-        ("a.vtp", b"garbage"),
-        ("b.vtk", b"garbage"),
-        ("c.stl", b"solid x"),
-        ("d.nothing", b"q"),
-        ("e.ply", b"ply\nfoo"),
-        ("f.vtu", b'<?xml version="1.0"?><VTKFile type="UnstructuredGrid"><UnstructuredGrid>'),
-        ("g.ex2", b"x"),
-        ("h.vtp", b""),
+        ("a.vtp", b"garbage", "no points: Error parsing XML"),
+        ("b.vtk", b"garbage", ""),
+        ("c.stl", b"solid x", ""),
+        ("d.nothing", b"q", ""),
+        ("e.ply", b"ply\nfoo", ""),
+        ("f.vtu", b'<?xml version="1.0"?><VTKFile type="UnstructuredGrid"><UnstructuredGrid>', ""),
+        ("g.ex2", b"x", ""),
+        ("h.vtp", b"", ""),
+        ("i.las", b"x", "no reader takes '.las' files; convert it to"),
+        ("j.dae", b"x", "no reader takes '.dae' files; convert it to"),
+        ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),
+        # Headers that break off within a line.
+        ("l.ply", PLY % b"property" + bytes(100), "its header cannot be read"),
+        ("m.ply", PLY % b"property list uchar" + bytes(100), "its header cannot be read"),
     ],
 )
-def test_damaged_files_give_one_clear_error(name, content, tmp_path, capfd):
+def test_damaged_files_give_one_clear_error(name, content, words, tmp_path, capfd):
     path = tmp_path / name
     path.write_bytes(content)
-    with pytest.raises(
-        files.FileError,
-        match=rf"file: expected a (mesh that|file that) .*, got .*{name}. \(",
-    ):
+    expected = rf"file: expected a (mesh that|file that) .*, got .*{name}. \(.*{words}"
+    with pytest.raises(files.FileError, match=expected):
         files.read(path)
     assert capfd.readouterr() == ("", "")
 
@@ -56,23 +61,6 @@ def test_missing_file(tmp_path):
         files.read(tmp_path / "no.vtp")
     with pytest.raises(files.FileError, match=r"file: expected a file, got .*\(a folder\)"):
         files.read(tmp_path)
-
-
-def test_the_reason_of_a_damaged_file_is_told(tmp_path):
-    path = tmp_path / "a.vtp"
-    path.write_text("garbage")
-    with pytest.raises(files.FileError, match="no points: Error parsing XML"):
-        files.read(path)
-
-
-@pytest.mark.parametrize(
-    ("suffix", "way"),
-    [(".las", "convert it to"), (".dae", "convert it to"), (".gz", "unpack it first")],
-)
-def test_files_that_no_reader_takes_tell_what_to_do_with_them(suffix, way, tmp_path):
-    (tmp_path / f"a{suffix}").write_text("x")
-    with pytest.raises(files.FileError, match=rf"no reader takes '{suffix}' files; {way}"):
-        files.read(tmp_path / f"a{suffix}")
 
 
 def test_a_full_disk_is_seen_before_writing(tmp_path, monkeypatch):
@@ -122,25 +110,24 @@ def test_warp():
     np.testing.assert_allclose(files.warped(plane, "z", 2.0).points[:, 2], 2 * np.arange(9))
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r', 'C'\], got 's'"),
-        (
-            lambda g: files.surface_of(pv.Sphere(), "s"),
-            "contour: expected .* of one component, but the mesh has none, got 's'",
-        ),
-        (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
-        (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
-        (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
-        (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
-    ],
-)
-def test_bad_arrays(call, words):
+def bad_arrays(call):
     grid = volume()
     grid.cell_data["C"] = np.ones(grid.n_cells)
-    with pytest.raises(ValueError, match=words):
-        call(grid)
+    call(grid)
+
+
+test_bad_arrays = refusals(
+    bad_arrays,
+    (lambda g: files.surface_of(g, "s"), r"contour: .*one of \['r', 'C'\], got 's'"),
+    (
+        lambda g: files.surface_of(pv.Sphere(), "s"),
+        "contour: expected .* of one component, but the mesh has none, got 's'",
+    ),
+    (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
+    (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
+    (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
+    (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
+)
 
 
 @pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])
@@ -433,15 +420,6 @@ def test_what_meshio_says_is_a_warning_or_left_to_the_error(tmp_path, capfd):
     with pytest.raises(files.FileError, match="section not found"):
         files.read(path)
     assert capfd.readouterr() == ("", "")
-
-
-@pytest.mark.parametrize("line", ["property", "property list uchar"])
-def test_a_header_that_breaks_off_within_a_line_is_refused(line, tmp_path):
-    path = tmp_path / "a.ply"
-    head = f"ply\nformat binary_little_endian 1.0\nelement vertex 3\n{line}\nend_header\n"
-    path.write_bytes(head.encode() + bytes(100))
-    with pytest.raises(files.FileError, match="its header cannot be read"):
-        files.read(path)
 
 
 @pytest.mark.parametrize("suffix", [".vtu", ".vtk"])

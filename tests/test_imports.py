@@ -1,7 +1,5 @@
 """What an import loads: the mathematics needs no PyVista, and the package is quick to import."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import inspect

@@ -1,17 +1,13 @@
 """Laws of light in n-space that no formula of this package is needed to state."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-import oracles
 import pytest
-from lamps import SHINY, shiny
+from lamps import shiny
 from scipy.stats import special_ortho_group
 
 from vizlight import Light, Material, Scene, View, engine
-from vizlight.geometry import manifolds
 from vizlight.model import brightness
 
 #: Gauss nodes from 0 to a right angle, close together at both ends, where powers have kinks.
@@ -53,37 +49,6 @@ def test_turning_object_light_and_eye_changes_nothing(k, n, model):
         assert np.abs(light[1] - light[0]).max() < 1e-12
 
 
-@pytest.mark.parametrize(("k", "n"), PAIRS)
-def test_another_dimension_changes_nothing_while_light_and_eye_stay(k, n, random):
-    points, tangents = random.standard_normal((300, n)), random.standard_normal((300, k, n))
-    scene = scene_of(random, n, np.eye(n), near=True)
-    wider = Scene(
-        lights=[
-            Light(position=(*scene.lights[0].position, 0), attenuation=(1, 0.1, 0)),
-            Light(direction=(*scene.lights[1].direction, 0)),
-        ],
-        view=View(position=(*scene.view.position, 0)),
-        material=scene.material,
-    )
-    one = engine.shade(points, tangents, scene, exponent=1).luminance
-    pad = np.pad(points, [(0, 0), (0, 1)]), np.pad(tangents, [(0, 0), (0, 0), (0, 1)])
-    other = engine.shade(*pad, wider, exponent=1).luminance
-    np.testing.assert_allclose(other, one, atol=1e-13)
-
-
-@pytest.mark.parametrize("n", [2, 3, 4, 8])
-def test_codimension_1_is_two_sided_lambert(n, random):
-    tangents = random.standard_normal((300, n - 1, n))
-    normal = np.linalg.svd(tangents)[2][:, -1]
-    toward = random.standard_normal(n)
-    scene = Scene(lights=Light(direction=toward), material=MATTE)
-    light = engine.shade(np.zeros((300, n)), tangents, scene, exponent=1).luminance
-    # The normal is known to eps over the angle between the tangents.
-    worst = np.linalg.cond(tangents).max()
-    lambert = np.abs(normal @ toward) / np.linalg.norm(toward)
-    np.testing.assert_allclose(light, lambert, atol=1e-14 * worst)
-
-
 @pytest.mark.parametrize("n", range(2, 13))
 def test_the_exponent_gives_a_mean_of_one_half(n):
     """Quadrature and uniform directions, each for all k < n up to 12."""
@@ -109,19 +74,6 @@ def test_the_exponent_for_large_n(k):
         assert error < 5 * k / n
 
 
-def test_the_mean_over_lights_is_one_half_on_the_torus_too():
-    """Whatever the frame: each point sees uniform light with a mean of 1/2."""
-    random = np.random.default_rng(4)
-    shape = manifolds.torus(1.5, 0.75, resolution=8)
-    means, count = [], 4000
-    for toward in random.standard_normal((count, 4)):
-        scene = Scene(lights=Light(direction=toward), material=MATTE)
-        means.append(engine.shade(shape.points, shape.frame, scene).luminance[:8])
-    means = np.array(means)
-    sigma = means.std(axis=0) / math.sqrt(count)
-    assert np.all(np.abs(means.mean(axis=0) - 0.5) < 5 * sigma)
-
-
 def test_a_field_takes_the_brightness_of_what_carries_it(random):
     """Light of the field alone times that of the carrier alone, light by light."""
     n = 4
@@ -140,19 +92,6 @@ def test_a_field_takes_the_brightness_of_what_carries_it(random):
     found = engine.shade(points, field, scene, base_tangents=carrier)
     np.testing.assert_allclose(found.luminance, expected, rtol=1e-12)
     assert "base tangents: brightness |wi_N| to the power 2" in found.plan.explain()
-
-
-def test_in_codimension_1_the_carrier_is_the_surface_seen_from_both_sides(random):
-    frame = oracles.frames(random, 300, 2, 3, np.float64)
-    normal = np.cross(frame[:, 0], frame[:, 1])
-    field = np.einsum("bk,bkn->bn", random.standard_normal((300, 2)), frame)
-    scene = Scene(
-        lights=Light(direction=(1, 0.4, 0.8)), view=View(direction=(0, 0.3, 1)), material=SHINY
-    )
-    points = np.zeros((300, 3))
-    by_frame = engine.shade(points, field, scene, base_tangents=frame)
-    by_normal = engine.shade(points, field, scene, normals=normal, two_sided=True)
-    np.testing.assert_allclose(by_frame.luminance, by_normal.luminance, atol=1e-13)
 
 
 @pytest.mark.parametrize(

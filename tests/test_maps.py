@@ -1,7 +1,5 @@
 """The map of data: one lightness, one chroma, even steps for two kinds of readers."""
 
-from __future__ import annotations
-
 import matplotlib as mpl
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Damaged files of all kinds are refused, or lit as what they hold."""
 
-from __future__ import annotations
-
 import re
 import sys
 

@@ -4,8 +4,6 @@ The fields are taken from the classes themselves: a new one needs a line below, 
 algebra, the oracle, the filter, the page or the command line ignores it.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import json

@@ -1,7 +1,5 @@
 """The page on peers: its scripts still run, and its table and pictures are those of the scripts."""
 
-from __future__ import annotations
-
 import csv
 import importlib
 import json

@@ -5,14 +5,12 @@ Two comparisons: pytest-pyvista's, which also finds pictures that no test draws 
 otherwise, and not light 5 % too bright. A scene with limits of its own says why.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY
+from lamps import SHINY, far
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, render, testing
@@ -96,10 +94,10 @@ def highlights_of_two_laws():
         for degrees in (0, 90, 135):
             angle = np.deg2rad(degrees)
             factor = float(highlights.simple_factor(angle)) if rule == "rule" else rule or 1.0
-            scene = Scene(
-                lights=Light(direction=(-np.sin(angle), 0, np.cos(angle))),
-                view=View(direction=(0, 0, 1)),
-                material=Material(ambient=0.1, diffuse=0, specular=0.9, shininess=8 * factor),
+            scene = far(
+                (-np.sin(angle), 0, np.cos(angle)),
+                (0, 0, 1),
+                Material(ambient=0.1, diffuse=0, specular=0.9, shininess=8 * factor),
             )
             lit.append(vizlight.illuminate(ball(), scene, model=model))
     # In fragments the highlight of Blinn's model ends sharply where the light does.
@@ -191,11 +189,7 @@ def turning():
     """A torus of 4-space turning: lit before and after the projection."""
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=96))
     camera = render.camera_on((-3, 3, -2, 2, -1, 1), (0.3, -1, 0.8), zoom=1.4)
-    four = Scene(
-        lights=Light(direction=(0.2, -0.8, 0.9, 0.3)),
-        view=View(direction=(0.3, -1, 0.8, 0)),
-        material=SHINY,
-    )
+    four = far((0.2, -0.8, 0.9, 0.3), (0.3, -1, 0.8, 0))
     three = Scene(
         lights=Light(direction=(0.2, -0.8, 0.9)), view=View.from_camera(camera), material=SHINY
     )
@@ -209,11 +203,7 @@ def turning():
 
 def complex_curve():
     curve = manifolds.complex_curve(lambda z: z**3 / 3 - z / 2, resolution=120)
-    scene = Scene(
-        lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)),
-        view=View(direction=(0.5, -1, 0.7, 0)),
-        material=SHINY,
-    )
+    scene = far((-0.4, -0.9, 0.9, 0.4), (0.5, -1, 0.7, 0))
     lit = vizlight.manifold(curve, scene=scene, rotation=("xw", 1.0))
     camera = render.camera_on(lit.bounds, (0.5, -1, 0.7), zoom=1.0)
     return plot(lit, camera, background="#203048")
@@ -225,11 +215,7 @@ def field_in_4_space():
     )
     frame = np.asarray(torus["frame"]).reshape(-1, 2, 4)
     torus["field"] = frame[:, 0] + frame[:, 1]
-    scene = Scene(
-        lights=Light(direction=(0.5, -0.7, 0.6, 0.2)),
-        view=View(direction=(0.3, -1, 0.8, 0)),
-        material=SHINY,
-    )
+    scene = far((0.5, -0.7, 0.6, 0.2), (0.3, -1, 0.8, 0))
     lit = [
         vizlight.illuminate(
             torus, scene, positions="position", tangents="field", conditioned=conditioned

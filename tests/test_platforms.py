@@ -1,7 +1,5 @@
 """Where the names of POSIX are missing, as on Windows, every module loads and the main job runs."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

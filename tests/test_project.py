@@ -1,7 +1,5 @@
 """What is imported is declared in pyproject.toml, and what is declared there is used."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

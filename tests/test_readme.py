@@ -1,7 +1,5 @@
 """README and pages: code runs, commands and files exist, maps of the folders are true."""
 
-from __future__ import annotations
-
 import operator
 import re
 import runpy

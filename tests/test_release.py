@@ -1,7 +1,5 @@
 """What is released: the same bytes from every build, all that runs, and nothing twice."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """The parent of the command line: signals and limits become one line and an exit code."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

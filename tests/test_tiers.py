@@ -1,7 +1,5 @@
 """Imports point one way: tiers, no circles, no private name of another package."""
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 from graphlib import CycleError, TopologicalSorter

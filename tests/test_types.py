@@ -3,8 +3,6 @@
 ``VIZLIGHT_PYRIGHT`` names the folder of pyright's commands, such as ``node_modules/.bin``, if any.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os

@@ -1,7 +1,5 @@
 """The patches for PyVista apply to the one that is installed, and their tests pass there."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

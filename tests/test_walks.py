@@ -1,7 +1,5 @@
 """A sample of the random walks of ``python tests/walks.py``, and faults that they find."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

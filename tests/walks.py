@@ -7,8 +7,6 @@ was given has changed, if light is not finite or beyond what can be white, or if
 A walk is repeated by its seed and number.
 """
 
-from __future__ import annotations
-
 import collections
 import contextlib
 import functools

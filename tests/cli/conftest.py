@@ -1,7 +1,5 @@
 """The command line as the tests call it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

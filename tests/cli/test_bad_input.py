@@ -1,7 +1,5 @@
 """Bad input is one line on standard error that says what was expected, and leaves nothing."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,5 @@
 """The command line as a user meets it: one line on standard error, an exit code, whole files."""
 
-from __future__ import annotations
-
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -163,33 +160,6 @@ def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):
     assert run.returncode == 0
     assert run.stderr == ""
     assert "luminance" in pv.read(tmp_path / "lit.vtp").point_data
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Linux starts a child")
-def test_a_reader_that_crashes_is_one_line(tmp_path):
-    pv.Sphere().save(tmp_path / "ball.ply", binary=True)
-    os.truncate(tmp_path / "ball.ply", (tmp_path / "ball.ply").stat().st_size * 7 // 10)
-    run = subprocess.run(
-        [sys.executable, "-m", "vizlight", "light", "ball.ply", "--specular", "0", "-o", "a.vtp"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 2
-    assert run.stderr.count("\n") == 1
-    assert "vizlight: file: expected a" in run.stderr
-    assert [p.name for p in tmp_path.iterdir()] == ["ball.ply"]
-
-
-@pytest.mark.filterwarnings("default")
-def test_a_file_that_vtk_warns_of_is_refused_in_one_line(tmp_path, capfd):
-    path = tmp_path / "a.vtk"
-    path.write_text("# vtk DataFile Version g.1\nwords\nASCII\nDATASET NONE\n")
-    assert cli.main(["light", str(path), "-o", str(tmp_path / "b.vtk")]) == 2
-    err = capfd.readouterr().err
-    assert "Cannot read file version" in err
-    assert err.count("\n") == 1
 
 
 def counted(folder, *words):

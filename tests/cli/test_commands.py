@@ -1,7 +1,5 @@
 """The commands beside ``light``: what they write, and the script that does the same."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import warnings

@@ -1,7 +1,5 @@
 """``vizlight light`` of pieces, and ``vizlight view``: one private page from disk, no server."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

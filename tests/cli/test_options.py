@@ -1,7 +1,5 @@
 """The options that the source of a filter declares are those of the filter itself."""
 
-from __future__ import annotations
-
 import inspect
 import subprocess
 import sys

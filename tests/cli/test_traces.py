@@ -1,7 +1,5 @@
 """No command opens a way in, or leaves what other users could read, while it runs or after."""
 
-from __future__ import annotations
-
 import os
 import socket
 import sys

@@ -1,7 +1,5 @@
 """Cameras that see all of a mesh: where they stand, what is up, what is clipped."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

@@ -1,7 +1,5 @@
 """``plotter.vizlight``: light at the points equals the filter's, and nothing stays behind."""
 
-from __future__ import annotations
-
 import gc
 import warnings
 import weakref

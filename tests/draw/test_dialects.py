@@ -1,7 +1,5 @@
 """One program serves all renderers: only names and qualifiers differ."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,13 +1,13 @@
 """The text of a fragment, run number by number in Python, gives the light of the points."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re
 
 import numpy as np
 import pytest
+from lamps import far
+from vectors import unit
 
 from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.draw import glsl
@@ -42,51 +42,24 @@ KINDS = {
 }
 
 
-class Vec(tuple):
-    """A vector of GLSL."""
-
-    __slots__ = ()
-
-    def _each(self, other, apply):
-        others = other if isinstance(other, Vec) else [other] * len(self)
-        return Vec(apply(a, b) for a, b in zip(self, others, strict=True))
-
-    def __add__(self, other):
-        return self._each(other, lambda a, b: a + b)
-
-    def __sub__(self, other):
-        return self._each(other, lambda a, b: a - b)
-
-    def __mul__(self, other):
-        return self._each(other, lambda a, b: a * b)
-
-    def __truediv__(self, other):
-        return self._each(other, lambda a, b: a / b)
-
-    __rmul__ = __mul__
-
-    def __neg__(self):
-        return self * -1.0
+class Vec(np.ndarray):
+    """A vector of GLSL: an array whose components have letters."""
 
     def __getattr__(self, axes):
         if not set(axes) <= set("xyzwrgb"):
             raise AttributeError(axes)
-        found = Vec(self[{"r": 0, "g": 1, "b": 2}.get(a, "xyzw".find(a))] for a in axes)
-        return found if len(axes) > 1 else found[0]
+        found = [self[("rgb" if a in "rgb" else "xyzw").index(a)] for a in axes]
+        return vec(*found) if len(axes) > 1 else found[0]
 
 
-def dot(a, b):
-    return math.fsum(x * y for x, y in zip(a, b, strict=True))
-
-
-def _most(a, b):
-    return a._each(b, max) if isinstance(a, Vec) else max(a, b)
+def vec(*numbers):
+    return np.array(numbers, dtype=np.float64).view(Vec)
 
 
 LANGUAGE = {
-    "dot": dot, "length": lambda v: math.sqrt(dot(v, v)), "max": _most, "min": min, "abs": abs,
+    "dot": np.dot, "length": np.linalg.norm, "max": np.maximum, "min": np.minimum, "abs": np.abs,
     "sqrt": math.sqrt, "inversesqrt": lambda x: x**-0.5, "pow": lambda x, e: x**e,
-    "exp": math.exp, "atan": math.atan2, "vec3": lambda *x: Vec(x), "vec4": lambda *x: Vec(x),
+    "exp": math.exp, "atan": math.atan2, "vec3": vec, "vec4": vec,
     "viz_power": lambda x, d, e: math.exp(e * math.log1p(-d)) if x > 0 else float(e == 0),
 }  # fmt: skip
 
@@ -117,12 +90,8 @@ def uniforms(scene, own, data):
         numbers = np.asarray(value, dtype=np.float64)
         if space == "direction":
             numbers[:3] /= np.linalg.norm(numbers[:3])
-        values[name] = float(numbers[0]) if kind == "float" else Vec(numbers.tolist())
+        values[name] = float(numbers[0]) if kind == "float" else vec(*numbers)
     return values
-
-
-def unit(vectors):
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 @pytest.mark.parametrize("data", [False, True])
@@ -149,33 +118,17 @@ def test_the_text_gives_the_light_of_the_engine(scene, kind, model, data):
         **asked,
     )
     given = uniforms(scene, own, data)
-    given |= {"ambientColor": Vec((0.9, 0.8, 0.7)), "diffuseColor": Vec((0.9, 0.8, 0.7))}
+    given |= {"ambientColor": vec(0.9, 0.8, 0.7), "diffuseColor": vec(0.9, 0.8, 0.7)}
     if data:
         # A factor on the colour of the data, which stands twice in what the renderer holds.
         luma = lit.luminance if lit.rgb is None else lit.rgb @ formulas.LUMA
         expected = np.clip(luma, display.LEAST, 1)[:, np.newaxis] * [0.9, 0.8, 0.7]
     else:
         expected = lit.rgb / np.maximum(lit.rgb.max(axis=1, keepdims=True), 1)
-    got = [
-        run(
-            body,
-            given
-            | {
-                "vizGood": True,
-                "vizP": Vec(p),
-                "vizN": Vec(n),
-                "vizT": Vec(t),
-                "vizHeight": h,
-            },
-        )
-        for p, n, t, h in zip(
-            points.tolist(),
-            unit(normals).tolist(),
-            unit(tangents).tolist(),
-            heights.tolist(),
-            strict=True,
-        )
-    ]
+    given["vizGood"], got = True, []
+    for p, n, t, h in zip(points, unit(normals), unit(tangents), heights, strict=True):
+        own = {"vizP": vec(*p), "vizN": vec(*n), "vizT": vec(*t), "vizHeight": h}
+        got.append(run(body, given | own))
     np.testing.assert_allclose(got, expected, rtol=0, atol=1e-6)
 
 
@@ -183,8 +136,8 @@ def test_a_fragment_without_data_is_grey():
     own = plan(SCENES["far"], normals=True)
     _, body = glsl.fragment(own)
     given = uniforms(SCENES["far"], own, data=False)
-    given |= {"ambientColor": Vec(WHITE), "diffuseColor": Vec(WHITE), "vizGood": False}
-    given |= {"vizP": Vec((0.0, 0.0, 0.0)), "vizN": Vec((0.0, 0.0, 1.0))}
+    given |= {"ambientColor": vec(*WHITE), "diffuseColor": vec(*WHITE), "vizGood": False}
+    given |= {"vizP": vec(0.0, 0.0, 0.0), "vizN": vec(0.0, 0.0, 1.0)}
     np.testing.assert_allclose(run(body, given), display.NO_DATA)
 
 
@@ -193,20 +146,16 @@ def test_normals_turn_to_the_eye_unless_they_lean_away_by_little(lean):
     own = plan(SCENES["far"], normals=True)
     _, body = glsl.fragment(own, turned=True)
     given = uniforms(SCENES["far"], own, data=False)
-    given |= {"ambientColor": Vec(WHITE), "diffuseColor": Vec(WHITE), "vizGood": True}
-    away = Vec((0.0, 0.0, -1.0))
-    given |= {"vizP": Vec((0.0, 0.0, 0.0)), "vizN": away, "vizLean": lean}
+    given |= {"ambientColor": vec(*WHITE), "diffuseColor": vec(*WHITE), "vizGood": True}
+    away = vec(0.0, 0.0, -1.0)
+    given |= {"vizP": vec(0.0, 0.0, 0.0), "vizN": away, "vizLean": lean}
     turned = run(body, given)
     expected = run(body, given | {"vizN": -away if lean < 0 else away, "vizLean": 1.0})
     np.testing.assert_array_equal(turned, expected)
 
 
 def test_only_what_the_plan_needs_is_written():
-    scene = Scene(
-        lights=Light(direction=(1, 0, 0)),
-        material=Material(specular=0),
-        view=View(direction=(0, 0, 1)),
-    )
+    scene = far((1, 0, 0), (0, 0, 1), Material(specular=0))
     functions, body = glsl.fragment(plan(scene, normals=True))
     assert not functions
     assert "vizFade" not in body

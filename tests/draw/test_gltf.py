@@ -1,7 +1,5 @@
 """glTF files hold the light that does not depend on the eye, linear, and are valid."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

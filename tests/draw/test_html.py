@@ -1,7 +1,5 @@
 """A page by itself shows the light of the engine as the eye moves, and says what it cannot."""
 
-from __future__ import annotations
-
 import base64
 import functools
 import http.server

@@ -1,7 +1,5 @@
 """A mesh with live light takes the keywords that PyVista takes, and shows what they ask for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

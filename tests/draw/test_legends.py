@@ -1,7 +1,5 @@
 """Words of scalar bars in the picture; a key in the corner: its colours and its place."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Pictures of lit meshes: in fragments from the record, or the array as it is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,13 +1,11 @@
 """Light in fragments is that of the filters on fine meshes, and right between coarse points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
 import shapes
 from fields import swatches
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -154,9 +152,7 @@ def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_p
 
 @pytest.mark.filterwarnings("ignore:light='fragments'")
 def test_fur_within_four():
-    scene = Scene(
-        lights=Light(direction=(1, 0.5, 0.3)), view=View(direction=(1, 0, 0)), material=SHINY
-    )
+    scene = far((1, 0.5, 0.3), (1, 0, 0))
     coat = vizlight.fur(
         pv.Sphere(theta_resolution=90, phi_resolution=90), scene, density=0.6, fibres=300,
         length=0.2, segments=40,

@@ -1,7 +1,5 @@
 """A turning torus as pictures and as movies: one camera, whole files, clear words."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 import types
@@ -9,17 +7,16 @@ import types
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
 from PIL import Image
 
 import vizlight
-from vizlight import Light, Material, Scene, View, movie, project, render
+from vizlight import Material, Scene, View, movie, project, render
 from vizlight.files import FileError
 from vizlight.geometry import manifolds, projection
 
-SCENE = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38, 0.2)),
-    view=View(direction=(0, -1, 0.5, 0.3)),
-    material=Material(ambient=0.1, diffuse=0.6, specular=0.3),
+SCENE = far(
+    (0.7, 0.6, 0.38, 0.2), (0, -1, 0.5, 0.3), Material(ambient=0.1, diffuse=0.6, specular=0.3)
 )
 SMALL = {"size": (80, 60), "anti_aliasing": None}
 
@@ -37,11 +34,7 @@ def test_light_moves_over_the_surface_as_over_a_rigid_body(torus):
     """Turning the torus is turning light and eye the other way, at every step of the turn."""
     for angle in np.linspace(0, 2 * np.pi, 7):
         back = projection.plane_rotation(4, "xw", -angle)
-        still = Scene(
-            lights=Light(direction=back @ SCENE.lights[0].direction),
-            view=View(direction=back @ SCENE.view.direction),
-            material=SCENE.material,
-        )
+        still = far(back @ SCENE.lights[0].direction, back @ SCENE.view.direction, SCENE.material)
         expected = vizlight.illuminate(torus, still, tangents="frame", positions="position")
         found = lit(torus, angle, distance=3.0)
         assert np.abs(found["luminance"] - expected["luminance"]).max() < 1e-12

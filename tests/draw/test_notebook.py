@@ -1,7 +1,5 @@
 """Notebooks: the server keeps the light live, and the browser is not left to draw it."""
 
-from __future__ import annotations
-
 import io
 import json
 import subprocess

@@ -1,7 +1,5 @@
 """No name or text of a page is read as HTML, script or command, and what is copied draws it."""
 
-from __future__ import annotations
-
 import ast
 import base64
 import io

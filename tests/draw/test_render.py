@@ -3,8 +3,6 @@
 Each picture test has limits of its own, with the reason. Numbers are asserted as numbers.
 """
 
-from __future__ import annotations
-
 import inspect
 import os
 import subprocess
@@ -14,7 +12,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known
-from lamps import HEADLIT, SHINY, shiny
+from lamps import HEADLIT, far, shiny
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
@@ -383,9 +381,7 @@ def test_holes_of_a_height_field_are_grey(tmp_path):
     height[15:26, 15:26] = np.nan
     grid = pv.ImageData(dimensions=(40, 40, 1))
     grid["height"] = height.ravel()
-    scene = Scene(
-        lights=Light(direction=(-1, 1, 1)), view=View(direction=(0, 0, 1)), material=SHINY
-    )
+    scene = far((-1, 1, 1), (0, 0, 1))
     with pytest.warns(UserWarning, match="121 of 1600 points have no height"):
         lit = vizlight.relief_shadow(grid, scene, elevation="height", lit=True)
     camera = render.camera_on(lit, (0, 0, 1), parallel=True)

@@ -1,7 +1,5 @@
 """``mesh.vizlight.plot`` takes what ``pyvista.plot`` takes."""
 
-from __future__ import annotations
-
 import inspect
 
 import numpy as np

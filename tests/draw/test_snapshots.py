@@ -1,7 +1,5 @@
 """A project of its own takes the fixture by one line of its conftest.py."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from PIL import Image

@@ -1,7 +1,5 @@
 """The sides of a grid are its outer surface, split at the edges of the box."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

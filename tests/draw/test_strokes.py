@@ -1,13 +1,12 @@
 """Lines of a diameter are as wide as the projection says, and the light across them is right."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
 
 import vizlight
-from vizlight import Light, Material, Scene, View, render
+from vizlight import Material, Scene, View, render
 
 pytestmark = pytest.mark.opengl
 
@@ -67,10 +66,10 @@ def test_the_mean_across_a_line_is_the_light_of_its_cylinder(seed):
     random = np.random.default_rng(seed)
     way, toward = random.normal(size=(2, 3)) * [1, 1, 0.5]
     way /= np.linalg.norm(way)
-    scene = Scene(
-        lights=Light(direction=(*toward[:2], abs(toward[2]))),
-        view=View(direction=(0, 0, 1)),
-        material=Material(ambient=0.1, diffuse=0.5, specular=0.3, shininess=10),
+    scene = far(
+        (*toward[:2], abs(toward[2])),
+        (0, 0, 1),
+        Material(ambient=0.1, diffuse=0.5, specular=0.3, shininess=10),
     )
     line = vizlight.illuminate(pv.Line(-9 * way, 9 * way, resolution=5), scene, model="cylinder")
     picture = shot(line, looking_down(parallel=True), size=(300, 300), line_diameter=0.8,

@@ -1,7 +1,5 @@
 """The comparison of pictures sees wrong light and is blind to how edges are drawn."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """A bas-relief of a surface: its heights, upright, what does not fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,13 +1,12 @@
 """Light inside a bundle as a filter: what multiplies what, what is used again, surfaces, errors."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import _compiled, _pool
@@ -29,8 +28,7 @@ QUICK = vizlight.Bundle(grid=24)
 def lines(count=300, points=12, seed=1):
     """Return straight lines at random in a ball."""
     random = np.random.default_rng(seed)
-    way = random.normal(size=(count, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    way = unit(random.normal(size=(count, 3)))
     middle = random.uniform(-0.7, 0.7, (count, 3))
     places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
     mesh = pv.PolyData()
@@ -152,16 +150,6 @@ def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
     record = vizlight.provenance(few)["bundle"]
     assert record["diameter"] == pytest.approx(lines(20).length / 500, rel=1e-6)
     assert vizlight.sky(lines(20), error=0.2)["sky"].min() > 0.7
-
-
-def test_a_record_repeats_the_light():
-    mesh = lines(100)
-    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, name="light")
-    assert "light_transmittance" in lit.point_data
-    record = vizlight.provenance(lit, "light")
-    scene = vizlight.Scene.from_dict(record["scene"])
-    again = vizlight.illuminate(mesh, scene, **record["options"])
-    assert np.array_equal(again["light"], lit["light"])
 
 
 def test_a_surface_is_dimmed_by_the_lines_above_it():

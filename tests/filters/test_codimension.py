@@ -1,7 +1,5 @@
 """Illustration 1 of Banks as numbers: what compensation does to brightness and contrast."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,13 +1,13 @@
 """Bands on meshes and solids: right, closed, the input untouched; errors that say what to do."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import shiny
+from lamps import far, shiny
+from refusals import refusals
 from scipy.spatial import cKDTree
+from vectors import unit
 
 import vizlight
 from studies import fur
@@ -17,11 +17,7 @@ from vizlight.geometry.contours import banding
 TOWARD = np.array([1.0, -0.6, 0.8]) / np.linalg.norm([1.0, -0.6, 0.8])
 EYE = np.array([0.2, -1, 0.5]) / np.linalg.norm([0.2, -1, 0.5])
 DULL = Scene(lights=Light(direction=TOWARD), material=shiny(diffuse=0.8, specular=0))
-SHINY = Scene(
-    lights=Light(direction=TOWARD),
-    view=View(direction=EYE),
-    material=Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20),
-)
+SHINY = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.5, specular=0.4, shininess=20))
 
 
 def polygons(mesh):
@@ -79,8 +75,7 @@ def test_a_highlight_on_a_cylinder(model, random):
     found = isoluminance(Frustum(axis=axis), scene, levels=[0.3, 0.6], model=model)
     lines, bands = found["contours"], found["bands"]
     along = np.asarray(lines.points, float) @ axis
-    normal = lines.points - np.outer(along, axis)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = unit(lines.points - np.outer(along, axis))
     half = (TOWARD + EYE) / np.linalg.norm(TOWARD + EYE)
     mirror = 2 * (normal @ TOWARD) * (normal @ EYE) - TOWARD @ EYE
     value = 0.1 + 0.9 * np.maximum(mirror if model == "phong" else normal @ half, 0) ** 12
@@ -100,8 +95,7 @@ def test_solids_with_several_lights(random):
     found = isoluminance(Sphere(), scene, levels=10)["bands"]
     place, polygon = banded.places(polygons(found), random, 4)
     normal = place / np.linalg.norm(place, axis=1, keepdims=True)
-    toward = np.array([-3, 1, 2]) - normal
-    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    toward = unit(np.array([-3, 1, 2]) - normal)
     expected = 0.05 + 0.9 * (
         0.6 * np.maximum(normal @ TOWARD, 0)
         + 0.5 * np.maximum(np.einsum("ij,ij->i", normal, toward), 0)
@@ -157,8 +151,7 @@ def test_the_error_on_a_mesh_falls_with_subdivision():
     np.testing.assert_allclose(order, 2, atol=0.2)
     # A ball's normals, interpolated and made unit, are exact: so are its contours.
     lines = isoluminance(sphere_mesh(24), DULL, levels=6)["contours"]
-    normal = np.asarray(lines.points, float)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = unit(np.asarray(lines.points, float))
     expected = 0.1 + 0.8 * np.maximum(normal[lines.lines[1::3]] @ TOWARD, 0)
     assert np.abs(expected - lines["luminance"]).max() < 1e-7
 
@@ -192,8 +185,7 @@ def test_coarse_meshes_keep_the_allowed_error(random):
     basis = np.moveaxis(np.asarray(mesh.points, dtype=float)[corners], 1, 2)
     weight = np.linalg.solve(basis, place[:, :, np.newaxis])[..., 0]
     assert np.all((weight > -1e-6) & (np.abs(weight.sum(axis=1, keepdims=True) - 1) < 1e-6))
-    normal = np.einsum("mc,mcn->mn", weight, normals[corners])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = unit(np.einsum("mc,mcn->mn", weight, normals[corners]))
     error = np.abs(exact(normal) - found["luminance"][polygon])
     assert error.max() <= 1.02 * found.field_data["luminance_error"][0] <= 1.02 * 0.02
     assert found["luminance"].max() > 0.85
@@ -331,21 +323,16 @@ def test_points_that_no_face_uses_are_not_reported():
     assert "array" not in str(caught[0].message)
 
 
-@pytest.mark.parametrize(
-    ("mesh", "options", "kind", "words"),
-    [
-        (3, {}, TypeError, "mesh: expected a PyVista mesh or a solid"),
-        (pv.PolyData(np.zeros((3, 3))), {}, ValueError, "mesh: expected a surface"),
-        (pv.Sphere(), {"levels": 0}, ValueError, "levels: expected"),
-        (pv.Sphere(), {"name": ""}, ValueError, "name: expected"),
-        (pv.Sphere(), {"tangents": "V"}, ValueError, "tangents: expected"),
-        (Sphere(), {"tangents": "V"}, ValueError, "tangents: expected None for a solid"),
-        (Sphere() | Block(), {"tolerance": 1}, ValueError, "tolerance: expected"),
-    ],
+test_bad_input = refusals(
+    lambda mesh, options: isoluminance(mesh, DULL, **options),
+    (3, {}, "mesh: expected a PyVista mesh or a solid", TypeError),
+    (pv.PolyData(np.zeros((3, 3))), {}, "mesh: expected a surface"),
+    (pv.Sphere(), {"levels": 0}, "levels: expected"),
+    (pv.Sphere(), {"name": ""}, "name: expected"),
+    (pv.Sphere(), {"tangents": "V"}, "tangents: expected"),
+    (Sphere(), {"tangents": "V"}, "tangents: expected None for a solid"),
+    (Sphere() | Block(), {"tolerance": 1}, "tolerance: expected"),
 )
-def test_bad_input(mesh, options, kind, words):
-    with pytest.raises(kind, match=words):
-        isoluminance(mesh, DULL, **options)
 
 
 def test_a_scene_is_required():

@@ -1,7 +1,5 @@
 """Shapes as meshes: cells by dimension, arrays kept, light on them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

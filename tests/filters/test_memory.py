@@ -67,7 +67,19 @@ FILTERS = {
     ),
     "even": (ball, vizlight.streamlines, {"scene": SCENE, "vectors": "V", "spacing": 0.3}),
     "project": (torus, vizlight.project, {}),
-    "project lit": (torus, vizlight.project, {"scene": SCENE_4}),
+    "project lit": (
+        torus, vizlight.project,
+        {"scene": SCENE_4, "rotation": [("xw", 0.5), ((1, 2), 0.3)], "distance": 4.0},
+    ),
+    "project, lit after": (
+        torus, vizlight.project,
+        {"scene": SCENE, "light": "after", "rotation": ("xw", 0.3), "exponent": 1},
+    ),
+    "cut": (torus, vizlight.project, {"scene": SCENE_4, "hyperplane": ((0, 0, 0, 1), 0.1)}),
+    "bundle": (
+        lambda: ball().extract_all_edges(), vizlight.illuminate,
+        {"scene": SCENE, "bundle": vizlight.Bundle(grid=8)},
+    ),
     "satin": (ball, vizlight.satin, {"scene": SCENE, "tangents": "V"}),
     "fur": (
         ball, vizlight.fur, {"scene": SCENE, "bend": 1.0, "toward": (0, 0, -1.0), "fibres": 50}
@@ -120,6 +132,8 @@ def test_a_record_makes_the_result_again(name):
     again = filter_(make(), scene=Scene.from_dict(told["scene"]), **told["options"])
     for one, other in zip(arrays(made), arrays(again), strict=True):
         np.testing.assert_array_equal(one, other)
+    again = again if isinstance(again, pv.DataSet) else again[0]
+    assert vizlight.provenance(again, "t" if name == "relief_shadow" else "luminance") == told
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -128,7 +142,7 @@ def test_progress_is_shown_on_standard_error(name, capfd):
     make, filter_, options = FILTERS[name]
     filter_(make(), **options, progress_bar=True)
     out, err = capfd.readouterr()
-    assert "100%" in err or name == "project"
+    assert "100%" in err or name in ("project", "cut")
     assert out == ""
 
 

@@ -1,7 +1,5 @@
 """Pathlines and streaklines against closed forms, and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

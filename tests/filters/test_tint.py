@@ -1,7 +1,5 @@
 """Colour times light: PyVista's colours, the law of the light, its record and its scalar bar."""
 
-from __future__ import annotations
-
 import matplotlib as mpl
 import numpy as np
 import pytest

@@ -134,6 +134,10 @@ CASES = {
         text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET POLYDATA", "FIELD F")[:-1],
         2, "its reader was ended by SIGSEGV",
     ),
+    "version.vtk": Case(
+        text("# vtk DataFile Version g.1", "words", "ASCII", "DATASET NONE"),
+        2, "Cannot read file version",
+    ),
     "colours.vtk": Case(
         legacy(SQUARE, *FACE, "POINT_DATA 4", "COLOR_SCALARS c 3", "0 0 0 1 1 1"),
         2, "Error reading ascii data",

@@ -1,7 +1,5 @@
 """Small valid files of the kinds that vizlight reads, from which damaged ones are made."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 

@@ -1,7 +1,5 @@
 """Small meshes that are joined to be lit: each has the light that it has by itself."""
 
-from __future__ import annotations
-
 import warnings
 from unittest.mock import Mock
 

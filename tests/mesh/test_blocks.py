@@ -1,7 +1,5 @@
 """Every filter takes what files hold: blocks, volumes, arrays of cells, cells of all kinds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Surfaces of brains, values over them, and tracts: kept, or told what is missing."""
 
-from __future__ import annotations
-
 import gzip
 import struct
 import zipfile

@@ -1,15 +1,15 @@
 """Shadows of closed meshes as point scalars: closed forms, occluders, any size and place."""
 
-from __future__ import annotations
-
 import contextlib
 
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
+from vectors import unit
 
 import vizlight
-from vizlight import Light, Material, Scene, View, _progress, relief_shadow
+from vizlight import Light, Material, Scene, _progress, relief_shadow
 from vizlight.geometry.relief import shadowing
 from vizlight.mesh import closed_meshes
 
@@ -19,11 +19,7 @@ SCENE = Scene(lights=Light(direction=TOWARD), material=Material(ambient=0.1, spe
 
 def test_highlight_keeps_the_share_that_t_has_of_the_cosine():
     mesh = pv.Sphere(theta_resolution=40, phi_resolution=40)
-    scene = Scene(
-        lights=Light(direction=(1, 0, 1)),
-        material=Material(ambient=0, diffuse=0, specular=1),
-        view=View(direction=(1, 0, 1)),
-    )
+    scene = far((1, 0, 1), (1, 0, 1), Material(ambient=0, diffuse=0, specular=1))
     wall = pv.Cube(center=(2, 0.2, 2), x_length=0.5, y_length=0.4, z_length=0.5).triangulate()
     free = vizlight.illuminate(mesh, scene)["luminance"]
     out = relief_shadow(mesh, scene, depth=0.01, lit=True, occluders=[wall])
@@ -38,8 +34,7 @@ def test_highlight_keeps_the_share_that_t_has_of_the_cosine():
 def test_sphere_has_its_closed_form():
     """At every point, light at infinity and near: below 1e-3 with cells of 1.2 degrees."""
     mesh = pv.Sphere(radius=1, theta_resolution=300, phi_resolution=151)
-    n = np.asarray(mesh.points, dtype=float)
-    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    n = unit(np.asarray(mesh.points, dtype=float))
     depth = 0.1
     for light in (Light(direction=(1, 2, 3)), Light(position=(1.2, -0.9, 0.7))):
         out = relief_shadow(mesh, Scene(lights=light), depth=depth)
@@ -47,8 +42,7 @@ def test_sphere_has_its_closed_form():
         if light.direction is not None:
             way = np.tile(np.array(light.direction) / 14**0.5, (len(n), 1))
         else:
-            way = np.array(light.position) - start
-            way /= np.linalg.norm(way, axis=1, keepdims=True)
+            way = unit(np.array(light.position) - start)
         middle = np.einsum("ij,ij->i", start, way)
         r = -middle + np.sqrt(middle**2 + 1 - (1 - depth) ** 2)
         assert np.abs(out["t"] - depth / np.maximum(r, depth)).max() < 1e-3

@@ -1,7 +1,5 @@
 """Lengths inside closed meshes against closed forms, with VTK's tree and with Embree's."""
 
-from __future__ import annotations
-
 import importlib.util
 
 import numpy as np

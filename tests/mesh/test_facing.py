@@ -1,11 +1,10 @@
 """The side of a surface that is lit, its sharp edges, and normals that stay with a result."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Scene, View, illuminate
@@ -56,8 +55,7 @@ def test_an_open_surface_faces_the_eye_point_by_point(position):
     wave.clear_data()
     scene = HEAD.replace(view=View(position=position), material=MATTE)
     lit = illuminate(wave, scene)
-    toward = np.asarray(position) - wave.points
-    toward /= np.linalg.norm(toward, axis=1, keepdims=True)
+    toward = unit(np.asarray(position) - wave.points)
     slope = np.stack([-2 * np.cos(2 * x) * np.cos(y), np.sin(2 * x) * np.sin(y), 1 + 0 * x], axis=1)
     exact = np.abs(dots(slope / np.linalg.norm(slope, axis=1, keepdims=True), toward))
     inner = np.abs(wave.points[:, :2]).max(axis=1) < 2.9
@@ -128,9 +126,7 @@ def box():
 
 
 def test_no_highlight_on_the_edges_of_a_box():
-    scene = Scene(
-        lights=Light(direction=(1, 2, 3)), view=View(direction=(3, 2, 1.5)), material=SHINY
-    )
+    scene = far((1, 2, 3), (3, 2, 1.5))
     plain = box()
     plain["x"] = np.asarray(plain.points)[:, 0].copy()
     with pytest.warns(UserWarning, match=r"% of the edges are sharper than 30 .*feature_angle=30"):
@@ -277,9 +273,7 @@ def test_vertices_and_lines_do_not_change_where_faces_are_split():
     mesh.verts = np.ravel([(1, i) for i in range(7)])
     mesh.lines = np.ravel([(2, i, i + 1) for i in range(0, 40, 2)])
     mesh.cell_data["own"] = np.arange(mesh.n_cells)
-    scene = Scene(
-        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
-    )
+    scene = far((1, 0.5, 2), (1, 1, 1))
     ours, others = (vtk_normals.computed_normals(surface).vectors for surface in (mesh, plain))
     np.testing.assert_array_equal(ours, others)
     lit = vizlight.illuminate(mesh, scene, feature_angle=30)
@@ -301,9 +295,7 @@ def test_faces_that_a_mesh_has_again_do_not_count(make, step, turned):
     more = faces[::step, ::-1] if turned else np.roll(faces[::step], 1, axis=1)
     mesh = pv.PolyData.from_regular_faces(plain.points, np.concatenate([more, faces]))
     mesh.cell_data["own"] = np.arange(mesh.n_cells)
-    scene = Scene(
-        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
-    )
+    scene = far((1, 0.5, 2), (1, 1, 1))
     for angle in ("auto", 30):
         lit = vizlight.illuminate(mesh, scene, feature_angle=angle)
         expected = vizlight.illuminate(plain, scene, feature_angle=angle)
@@ -334,9 +326,7 @@ def test_strips_are_split_with_their_cell_arrays():
 
 
 def test_an_angle_that_normals_make_idle_is_said_to_be():
-    scene = Scene(
-        lights=Light(direction=(1, 0.5, 2)), view=View(direction=(1, 1, 1)), material=SHINY
-    )
+    scene = far((1, 0.5, 2), (1, 1, 1))
     rounded = pv.Box().triangulate().clean()
     rounded.clear_data()
     rounded["N"] = rounded.points / np.linalg.norm(rounded.points, axis=1, keepdims=True)

@@ -1,7 +1,5 @@
 """Tractograms and grids that other packages read."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from pathlib import Path

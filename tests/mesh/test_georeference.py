@@ -1,7 +1,5 @@
 """Maps in degrees as they are on the ground, and how much heights are exaggerated."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """GeoTIFF and other rasters: heights, holes and places, or an error; never other numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

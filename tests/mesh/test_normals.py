@@ -1,7 +1,5 @@
 """Points are split as VTK splits them, and normals do not depend on the size of parts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

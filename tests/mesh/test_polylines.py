@@ -1,7 +1,5 @@
 """Lines that turn back or have no length."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 

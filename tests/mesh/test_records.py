@@ -1,7 +1,5 @@
 """What made an array is kept with it, through files, and makes it again."""
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 
@@ -12,7 +10,6 @@ from lamps import HEADLIT, SHINY, shiny
 
 import vizlight
 from vizlight import Light, Scene, View
-from vizlight.geometry import manifolds
 
 SCENE = Scene(
     lights=[Light(position=(1, 2, 9), color="red"), Light.headlight(intensity=0.5)],
@@ -90,19 +87,6 @@ def test_the_users_own_mark_of_what_is_valid_is_not_replaced():
     mesh["luminance_valid"] = np.arange(mesh.n_points)
     with pytest.raises(ValueError, match="got 'luminance_valid'"):
         vizlight.illuminate(mesh, SCENE)
-
-
-def test_several_turns_make_the_light_again():
-    torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=8))
-    scene = Scene(
-        lights=Light(direction=(0.7, 0.6, 0.4, 0.2)),
-        view=View(direction=(0, -1, 0.5, 0)),
-        material=SHINY,
-    )
-    lit = vizlight.project(torus, rotation=[("xw", 0.5), ("yz", 0.3)], scene=scene)
-    told = vizlight.provenance(lit)
-    again = vizlight.project(torus, scene=Scene.from_dict(told["scene"]), **told["options"])
-    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
 
 
 def test_numbers_of_any_type_are_written_as_numbers():

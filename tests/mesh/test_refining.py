@@ -1,13 +1,12 @@
 """Refined meshes against light computed at many places, by formulas of this file alone."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, illuminate, refine, streamlines
@@ -16,10 +15,6 @@ from vizlight.mesh import refining
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
 SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
 PIXEL = 1 / 255
-
-
-def unit(v):
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
 def phong(normals, shininess=20.0):
@@ -345,11 +340,7 @@ def test_a_budget_ends_the_refinement_with_a_warning():
 
 def test_a_jump_of_the_light_is_confined():
     """A highlight ends at the terminator: no refinement removes that, and the points stay few."""
-    scene = Scene(
-        lights=Light(direction=(0, 0.2, -1)),
-        view=View(direction=(0, 0, 1)),
-        material=shiny(specular=1.0, shininess=3),
-    )
+    scene = far((0, 0.2, -1), (0, 0, 1), shiny(specular=1.0, shininess=3))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         fine = refine(ball(), scene, normals="normal")
@@ -380,11 +371,7 @@ def test_colour_depth_cue_and_frames_of_n_space():
     from vizlight.geometry import manifolds
 
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12))
-    scene = Scene(
-        lights=Light(direction=(0.7, 0.6, 0.38, 0)),
-        view=View(direction=(0, -1, 0.5, 0)),
-        material=SHINY,
-    )
+    scene = far((0.7, 0.6, 0.38, 0), (0, -1, 0.5, 0))
     fine = refine(torus, scene, tangents="frame", positions="position", error=0.02)
     frames = fine["frame"].reshape(-1, 2, 4)
     square = np.einsum("mkn,mln->mkl", frames, frames)

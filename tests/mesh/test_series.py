@@ -1,7 +1,5 @@
 """Files of several times: which step is read, and what is said of it."""
 
-from __future__ import annotations
-
 import foam
 import numpy as np
 import pytest

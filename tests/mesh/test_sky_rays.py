@@ -1,7 +1,5 @@
 """The sky by rays: closed forms, what is buried, the error, and both tracers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

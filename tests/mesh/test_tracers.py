@@ -1,7 +1,5 @@
 """Vectors that are traced through a mesh."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vizlight.mesh import tracers

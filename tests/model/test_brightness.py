@@ -1,7 +1,5 @@
 """Mean brightness and its exponent: the seed's table, 50 digits, Monte Carlo, quadrature."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

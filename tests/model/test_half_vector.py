@@ -1,7 +1,5 @@
 """N.H and R.E: every relation against the reflection itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

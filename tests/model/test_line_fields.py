@@ -1,7 +1,5 @@
 """Means of line fields: they have no sign, and are those of vectors where all point one way."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,13 +1,13 @@
 """The meter on meshes: laws, kinds of data, views, and input that does not fit."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -54,8 +54,7 @@ def arcs(n=40, seed=0):
     """Return straight lines in all directions."""
     random = np.random.default_rng(seed)
     start = random.uniform(-1, 1, (n, 3))
-    way = random.normal(size=(n, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    way = unit(random.normal(size=(n, 3)))
     points = start[:, np.newaxis] + np.linspace(0, 0.7, 8)[:, np.newaxis] * way[:, np.newaxis]
     cells = np.insert(np.arange(8 * n).reshape(n, 8), 0, 8, axis=1)
     return pv.PolyData(points.reshape(-1, 3), lines=cells.ravel())
@@ -156,13 +155,6 @@ def test_the_type_of_the_data_does_not_matter():
     other = figures(vizlight.legibility(bumps(np.float64), ring(), **how))
     for name, value in one.items():
         assert other[name] == pytest.approx(value, rel=0.03, abs=0.05), name
-
-
-def test_input_is_unchanged():
-    mesh = bumps()
-    before = mesh.copy()
-    vizlight.legibility(mesh, ring(), tangents="swirl", scalars="height", **FEW)
-    assert mesh == before
 
 
 @pytest.mark.parametrize(
@@ -286,32 +278,31 @@ def test_what_has_no_answer_is_noted():
     assert "places have no value" in found.notes[0]
 
 
-@pytest.mark.parametrize(
-    ("change", "error", "text"),
-    [
-        ({"scene": None}, TypeError, "scene: expected a vizlight.Scene"),
-        ({"scene": Scene(view=View(direction=(1, 0, 0, 0)))}, ValueError, "project the mesh"),
-        ({"mesh": 3}, TypeError, "mesh: expected a PyVista mesh"),
-        ({"mesh": pv.PolyData()}, ValueError, "expected a mesh with points"),
-        ({"tangents": "none"}, ValueError, "tangents: expected the name of a point array"),
-        ({"tangents": np.zeros((3600, 8))}, ValueError, "tangents: expected a point array of 3"),
-        ({"conditioned": "frame"}, TypeError, "conditioned: expected True or False"),
-        ({"conditioned": True}, ValueError, "conditioned: expected tangents"),
-        ({"cmap": "viridis"}, ValueError, "cmap: expected scalars= beside it"),
-        ({"clim": (0, 1)}, ValueError, "clim: expected scalars= beside it"),
-        ({"scalars": "none"}, ValueError, "scalars: expected a point array"),
-        ({"noise": -1}, ValueError, "noise: expected a number from 0 to 1"),
-        ({"noise": np.nan}, ValueError, "noise: expected"),
-        ({"samples": 0}, ValueError, "samples: expected an integer of at least 1"),
-        ({"seed": 0.5}, TypeError, "seed: expected an integer"),
-        ({"view": "top"}, TypeError, "view: expected a vizlight.View"),
-        ({"view": View(direction=(1, 1))}, ValueError, "view: expected vectors of 3 components"),
-        ({"view": View(position=(0, 0, 9), direction=(0, 0, -1))}, ValueError, "the eye sees"),
-        ({"model": "gouraud"}, ValueError, "model: expected"),
-    ],
-)
-def test_bad_input(change, error, text):
+def bad_input(change):
     how = {"mesh": bumps(), "scene": ring(), **FEW} | change
     mesh, scene = how.pop("mesh"), how.pop("scene")
-    with pytest.raises(error, match=text):
-        vizlight.legibility(mesh, scene, **how)
+    vizlight.legibility(mesh, scene, **how)
+
+
+test_bad_input = refusals(
+    bad_input,
+    ({"scene": None}, "scene: expected a vizlight.Scene", TypeError),
+    ({"scene": Scene(view=View(direction=(1, 0, 0, 0)))}, "project the mesh"),
+    ({"mesh": 3}, "mesh: expected a PyVista mesh", TypeError),
+    ({"mesh": pv.PolyData()}, "expected a mesh with points"),
+    ({"tangents": "none"}, "tangents: expected the name of a point array"),
+    ({"tangents": np.zeros((3600, 8))}, "tangents: expected a point array of 3"),
+    ({"conditioned": "frame"}, "conditioned: expected True or False", TypeError),
+    ({"conditioned": True}, "conditioned: expected tangents"),
+    ({"cmap": "viridis"}, "cmap: expected scalars= beside it"),
+    ({"clim": (0, 1)}, "clim: expected scalars= beside it"),
+    ({"scalars": "none"}, "scalars: expected a point array"),
+    ({"noise": -1}, "noise: expected a number from 0 to 1"),
+    ({"noise": np.nan}, "noise: expected"),
+    ({"samples": 0}, "samples: expected an integer of at least 1"),
+    ({"seed": 0.5}, "seed: expected an integer", TypeError),
+    ({"view": "top"}, "view: expected a vizlight.View", TypeError),
+    ({"view": View(direction=(1, 1))}, "view: expected vectors of 3 components"),
+    ({"view": View(position=(0, 0, 9), direction=(0, 0, -1))}, "the eye sees"),
+    ({"model": "gouraud"}, "model: expected"),
+)

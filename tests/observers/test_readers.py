@@ -1,7 +1,5 @@
 """The meter gives the answers that are known, and would not if it were broken."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from closed_cases import CASES

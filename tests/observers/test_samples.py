@@ -1,7 +1,5 @@
 """Data at places of a picture are interpolated as the picture has them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """The visible cells of a picture against rays through its pixels."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

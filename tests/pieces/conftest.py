@@ -1,7 +1,5 @@
 """One cluster of two processes for all tests of pieces, which kill them."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import sys

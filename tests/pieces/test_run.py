@@ -1,12 +1,11 @@
 """Pieces are lit as the whole, whatever the cut; finished ones are kept, faulty ones are named."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 
 import vizlight
 from vizlight import DepthCue, Light, Scene, View, pieces, render
@@ -583,18 +582,13 @@ def test_bad_input(balls, options, message):
     assert {path.suffix for path in balls.iterdir()} == {".vtp"}
 
 
-@pytest.mark.parametrize(
-    ("arrays", "options", "message"),
-    [
-        ({}, {}, "arrays: expected a dict"),
-        ({"a": np.zeros(3)}, {}, r"arrays: expected an array of shape \(nz, ny, nx\)"),
-        ({"a": [1]}, {}, r"arrays: expected an array of shape"),
-        ({"a": np.zeros((2, 2, 2)), "b": np.zeros((2, 2, 3))}, {}, "arrays: expected one number"),
-        ({"a": np.zeros((2, 2, 2))}, {"spacing": (0, 1, 1)}, "spacing: expected a number above 0"),
-        ({"a": np.zeros((2, 2, 2))}, {"origin": "x"}, "origin: expected"),
-    ],
-    ids=str,
+test_bad_slabs = refusals(
+    lambda arrays, options: pieces.Slabs(arrays, **options),
+    ({}, {}, "arrays: expected a dict"),
+    ({"a": np.zeros(3)}, {}, r"arrays: expected an array of shape \(nz, ny, nx\)"),
+    ({"a": [1]}, {}, r"arrays: expected an array of shape"),
+    ({"a": np.zeros((2, 2, 2)), "b": np.zeros((2, 2, 3))}, {}, "arrays: expected one number"),
+    ({"a": np.zeros((2, 2, 2))}, {"spacing": (0, 1, 1)}, "spacing: expected a number above 0"),
+    ({"a": np.zeros((2, 2, 2))}, {"origin": "x"}, "origin: expected"),
+    kind=(ValueError, TypeError),
 )
-def test_bad_slabs(arrays, options, message):
-    with pytest.raises((ValueError, TypeError), match=message):
-        pieces.Slabs(arrays, **options)

@@ -1,7 +1,5 @@
 """Data are lit slab by slab, and piece by piece, in less memory than they take."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Killed workers, a cluster that goes away and a full disk: the same result, or nothing."""
 
-from __future__ import annotations
-
 import functools
 import multiprocessing
 import os

@@ -1,7 +1,5 @@
 """Records that take keywords alone say which, and which of them was meant."""
 
-from __future__ import annotations
-
 import inspect
 
 import pytest

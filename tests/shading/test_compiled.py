@@ -4,6 +4,7 @@ The text of kernels runs as Python for most plans, which takes milliseconds; a f
 ``python tests/differential.py`` compares many more plans, all compiled.
 """
 
+# A formula that is changed in a test is read as in its file.
 from __future__ import annotations
 
 import dataclasses
@@ -13,7 +14,7 @@ import differential
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
+from lamps import SHINY, far, shiny
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, _compiled, engine
@@ -368,11 +369,7 @@ def test_where_it_does_not_pay_numpy_runs(random):
 )
 def test_what_has_no_compiled_form_says_why(given, words):
     n = given.get("n", 3)
-    scene = Scene(
-        lights=Light(direction=np.ones(n)),
-        view=View(direction=np.arange(n) + 1.0),
-        material=shiny(shininess=5),
-    )
+    scene = far(np.ones(n), np.arange(n) + 1.0, shiny(shininess=5))
     assert words in engine.plan(scene, **given).explain()
     assert "code: where" in engine.plan(SCENE, k=1).explain()
 
@@ -402,20 +399,6 @@ def compiled_inputs(points, normals):
     from vizlight.shading.inputs import ShadingInputs
 
     return ShadingInputs(points=points, normals=normals)
-
-
-def test_seven_lights_of_two_kinds(fast, random):
-    points, _, normals = cloud(random, 500, float)
-    lamps = [Light(position=random.standard_normal(3) * 4, intensity=0.2) for _ in range(4)]
-    suns = [Light(direction=random.standard_normal(3), intensity=0.3) for _ in range(3)]
-    mixed = [lamps[0], suns[0], lamps[1], suns[1], lamps[2], suns[2], lamps[3]]
-    scene = Scene(lights=mixed, view=NEAR, material=SHINY)
-    shadow = random.random((500, 7))
-    lit = engine.shade(points, None, scene, normals=normals, shadow=shadow)
-    assert lit.plan.compiled
-    with _compiled.setting("0"):
-        same = engine.shade(points, None, scene, normals=normals, shadow=shadow)
-    np.testing.assert_allclose(lit.luminance, same.luminance, rtol=0, atol=1e-13)
 
 
 def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):

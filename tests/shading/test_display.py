@@ -1,7 +1,5 @@
 """Colours of data keep their chromaticity in any light; other colours fit a screen."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,14 +1,10 @@
 """How each highlight is computed."""
 
-from __future__ import annotations
-
 import numpy as np
-import oracles
 import pytest
 from lamps import SHINY, shiny
 
-from vizlight import Light, Material, Scene, View, engine
-from vizlight.model import cylinder
+from vizlight import Light, Scene, View, engine
 from vizlight.shading.engine import plan
 
 FAR = View(direction=(0, 0, 1))
@@ -46,48 +42,12 @@ def test_no_half_vector_where_it_moves_or_is_none(scene, model):
     assert all(h.half is None for h in plan(scene, k=1, model=model).highlights)
 
 
-@pytest.mark.parametrize("shininess", [0.5, 8.0, 30.0, 1e4])
-@pytest.mark.parametrize("view", [FAR, View(position=(0, 1, 9))])
-@pytest.mark.parametrize("light", [SUN, NEAR])
-def test_cylinder_of_the_engine_is_the_model(light, view, shininess, dtype, random):
-    points = random.standard_normal((500, 3)).astype(dtype)
-    tangents = random.standard_normal((500, 3)).astype(dtype)
-    material = Material(ambient=0, diffuse=0.7, specular=0.3, shininess=shininess)
-    scene = Scene(lights=light, view=view, material=material)
-    shading = engine.shade(points, tangents, scene, model="cylinder", components=True, block=64)
-
-    def toward(owner):
-        if owner.position is None:
-            return np.asarray(owner.direction, dtype=float)
-        return np.asarray(owner.position) - points.astype(float)
-
-    wi, wo, t = toward(light), toward(view), tangents.astype(float)
-    diffuse = 0.7 * cylinder.diffuse(wi, wo, t)
-    specular = 0.3 * cylinder.specular(wi, wo, t, shininess=shininess)
-    slack = 2000 * oracles.eps(dtype)
-    np.testing.assert_allclose(shading.diffuse, diffuse, atol=slack)
-    np.testing.assert_allclose(shading.specular, specular, atol=slack)
-    assert shading.luminance.dtype == dtype
-    wi, wo = (np.broadcast_to(way, points.shape) for way in (wi, wo))
-    true = oracles.line_light(wi[7], wo[7], t[7], shininess)
-    assert shading.diffuse[7] == pytest.approx(0.7 * float(true[0]), abs=slack)
-    assert shading.specular[7] == pytest.approx(0.3 * float(true[1]), abs=slack)
-
-
 def test_hard_points_of_cylinders(dtype):
     """Zero, NaN and infinite tangents and points, light and eye on a point, along the line."""
     points = np.array(
-        [
-            [0, 0, 0],
-            [0, 0, 0],
-            [0, 0, 0],
-            [np.nan, 0, 0],
-            [3, 2, 4],
-            [0, 1, 9],
-            [1, 1, 1],
-            [0, 0, 0],
-        ]
-    ).astype(dtype)
+        [[0, 0, 0], [0, 0, 0], [0, 0, 0], [np.nan, 0, 0], [3, 2, 4], [0, 1, 9], [1, 1, 1],
+         [0, 0, 0]]
+    ).astype(dtype)  # fmt: skip
     tangents = np.array(
         [[0, 0, 0], [np.nan, 1, 0], [np.inf, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0],
          [0, 1, 9]]

@@ -4,8 +4,6 @@
 in some 5 minutes. With ``--quick`` a sample takes 20 s; no file is written without ``--out``.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

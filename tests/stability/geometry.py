@@ -1,7 +1,5 @@
 """The checks of curves, projections, cuts and height fields for the stability suite."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np
@@ -60,13 +58,13 @@ def tangents(dtype, count, random):
         many = max(count // 5, 2)
         points = away + random.standard_normal((many, 2, 3))
         points = (points * 10 ** random.uniform(-scale, scale, (many, 1, 1))).astype(dtype)
-        value, seconds = timed(_lines(points.reshape(-1, 3), 2))
+        value = timed(_lines(points.reshape(-1, 3), 2))
         errors = []
         for (a, b), row in zip(points, value[::2], strict=True):
             way = [y - x for x, y in zip(oracles.exact(a), oracles.exact(b), strict=True)]
             true = oracles.unit(way)
             errors.append(max(abs(oracles.exact(x) - y) for x, y in zip(row, true, strict=True)))
-        yield off(f"2 points, {case}", errors, 1 + work, seconds)
+        yield off(f"2 points, {case}", errors, 1 + work)
     for case, closed in (("3 points", False), ("closed", True)):
         many = max(count // 15, 2)
         points = random.standard_normal((many, 3, 3))
@@ -75,7 +73,7 @@ def tangents(dtype, count, random):
         points[turn, 2] = points[turn, 1] + back + 1e-3 * random.standard_normal(back.shape)
         points = points.astype(dtype)
         given = np.concatenate([points, points[:, :1]], axis=1) if closed else points
-        value, seconds = timed(_lines(given.reshape(-1, 3), given.shape[1]))
+        value = timed(_lines(given.reshape(-1, 3), given.shape[1]))
         errors, claim = [], []
         for line, rows in zip(points, value.reshape(given.shape), strict=True):
             p = oracles.exact(line)
@@ -85,19 +83,16 @@ def tangents(dtype, count, random):
                 off_by = zip(rows[i], oracles.unit(mean), strict=True)
                 errors.append(max(abs(oracles.exact(x) - y) for x, y in off_by))
                 claim.append(1 + 4 * work / float(size))
-        yield off(case, errors, np.array(claim), seconds, "3 points and closed")
+        yield off(case, errors, np.array(claim), "3 points and closed")
     same = np.repeat(random.standard_normal((5, 3)), 2, axis=0).astype(dtype)
-    value, seconds = timed(_lines(same, 2))
-    yield exactly("repeated points", value, np.zeros((10, 3)), seconds)
-    value, seconds = timed(_lines(same, 1))
-    yield exactly("lines of one point", value, np.zeros((10, 3)), seconds)
-    value, seconds = timed(_lines(same[:0], 1))
-    yield exactly("no point", value.shape, [0, 3], seconds)
+    yield exactly("repeated points", timed(_lines(same, 2)), np.zeros((10, 3)))
+    yield exactly("lines of one point", timed(_lines(same, 1)), np.zeros((10, 3)))
+    yield exactly("no point", timed(_lines(same[:0], 1)).shape, [0, 3])
     bent = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 0], [np.nan, 0, 0], [3, 0, 0]], dtype)
-    value, seconds = timed(partial(curves.polyline_tangents, bent))
-    yield exactly("turned back, beside NaN", value[1:], np.zeros((4, 3)), seconds)
-    value, seconds = timed(_lines(np.repeat(bent[[0, 1, 0]], 2, axis=0), 6))
-    yield exactly("closed, of two points", value[2:4], np.zeros((2, 3)), seconds)
+    value = timed(curves.polyline_tangents, bent)
+    yield exactly("turned back, beside NaN", value[1:], np.zeros((4, 3)))
+    value = timed(_lines(np.repeat(bent[[0, 1, 0]], 2, axis=0), 6))
+    yield exactly("closed, of two points", value[2:4], np.zeros((2, 3)))
 
 
 def _parabola(p, i, *, closed):
@@ -122,17 +117,15 @@ def turn(dtype, count, random):
         matrix = hard.frames(random, 1, n, n, dtype)[0]
         x = random.standard_normal((count // 4, n)) * hard.steps(random, count // 4, -10, 10)
         x = x.astype(dtype)
-        value, seconds = timed(partial(projection.turn, x, matrix))
+        value = timed(projection.turn, x, matrix)
         rows, errors = oracles.exact(matrix), []
         for given, found in zip(x, value, strict=True):
             own = oracles.exact(given)
             true = [oracles.dot(row, own) for row in rows]
             errors.append(_apart(found, true) / oracles.size(own))
-        yield off(f"n = {n}", errors, float(n), seconds)
-    value, seconds = timed(
-        partial(projection.turn, np.empty((0, 3), dtype), np.eye(3, dtype=dtype))
-    )
-    yield exactly("none", value.shape, [0, 3], seconds)
+        yield off(f"n = {n}", errors, float(n))
+    value = timed(projection.turn, np.empty((0, 3), dtype), np.eye(3, dtype=dtype))
+    yield exactly("none", value.shape, [0, 3])
 
 
 def _scene(dtype, many, n, case, random):
@@ -161,37 +154,34 @@ def perspective(dtype, count, random):
     for n in (4, 5, 6):
         for case in ("random", "near the eye"):
             points = _scene(dtype, max(count // 6, 2), n, case, random)
-            work = partial(projection.perspective, points, distance=2.0)
-            value, seconds = timed(work)
+            value = timed(projection.perspective, points, distance=2.0)
             errors, claim = [], []
             for p, image in zip(points, value, strict=True):
                 whole, product, _ = _projected(oracles.exact(p))
                 errors.append(_apart(image, whole) / oracles.size(whole))
                 claim.append(float(3 * (n - 3) / product))
-            yield off(f"{case}, n = {n}", errors, np.array(claim), seconds)
+            yield off(f"{case}, n = {n}", errors, np.array(claim))
     flat = random.standard_normal((20, 4)).astype(dtype)
-    value, seconds = timed(partial(projection.perspective, flat))
-    yield exactly("orthographic", value, flat[:, :3], seconds)
+    yield exactly("orthographic", timed(projection.perspective, flat), flat[:, :3])
     flat[:, 3] = 2
-    value, seconds = timed(partial(projection.perspective, flat, distance=2.0))
-    yield exactly("in the eye's hyperplane", np.isfinite(value), np.zeros((20, 3)), seconds)
-    value, seconds = timed(partial(projection.perspective, flat[:0], distance=2.0))
-    yield exactly("none", value.shape, [0, 3], seconds)
+    value = timed(projection.perspective, flat, distance=2.0)
+    yield exactly("in the eye's hyperplane", np.isfinite(value), np.zeros((20, 3)))
+    yield exactly("none", timed(projection.perspective, flat[:0], distance=2.0).shape, [0, 3])
 
 
 def image_and_depth(dtype, count, random):
     """Depth before the eye, of the larger of it and 1."""
     for case in ("random", "near the eye"):
         points = _scene(dtype, max(count // 2, 2), 4, case, random)
-        (_, depth), seconds = timed(partial(projection.image_and_depth, points, distance=2.0))
+        _, depth = timed(projection.image_and_depth, points, distance=2.0)
         errors = []
         for p, found in zip(points, depth, strict=True):
             _, _, least = _projected(oracles.exact(p))
             errors.append((oracles.exact(found) - least) / max(abs(least), 1))
-        yield off(case, errors, 2.0, seconds)
+        yield off(case, errors, 2.0)
     here = np.array([[1, 2, 3, 2], [np.nan, 0, 0, np.nan]], dtype)
-    (_, depth), seconds = timed(partial(projection.image_and_depth, here, distance=2.0))
-    yield exactly("at the eye, NaN", depth, [0, np.nan], seconds)
+    _, depth = timed(projection.image_and_depth, here, distance=2.0)
+    yield exactly("at the eye, NaN", depth, [0, np.nan])
 
 
 def push_forward(dtype, count, random):
@@ -202,7 +192,7 @@ def push_forward(dtype, count, random):
         v = random.standard_normal((many, 1, 4)).astype(dtype)
         if case == "toward the eye":
             v[:, 0] = np.array([0, 0, 0, 2], dtype) - points
-        value, seconds = timed(partial(projection.push_forward, v, points, distance=2.0))
+        value = timed(projection.push_forward, v, points, distance=2.0)
         errors, claim = [], []
         for p, way, image in zip(points, v[:, 0], value[:, 0], strict=True):
             x, u = oracles.exact(p), oracles.exact(way)
@@ -212,7 +202,7 @@ def push_forward(dtype, count, random):
             whole = abs(f) * (oracles.size(u[:3]) + oracles.size(place) * abs(u[3]) / 2)
             errors.append(_apart(image, true) / whole)
             claim.append(float(3 / product))
-        yield off(case, errors, np.array(claim), seconds)
+        yield off(case, errors, np.array(claim))
 
 
 def push_frame(dtype, count, random):
@@ -227,7 +217,7 @@ def push_frame(dtype, count, random):
             v[:, 0] = np.array([0, 0, 0, 2]) - points
             v[:, 0] += hard.steps(random, many, -5) * random.standard_normal((many, 4))
         v = _orthonormal(v, dtype)
-        (frame, rank), seconds = timed(partial(projection.push_frame, v, points, distance=2.0))
+        frame, rank = timed(projection.push_frame, v, points, distance=2.0)
         errors, claim = [], []
         for p, rows, found, r in zip(points, v, frame, rank, strict=True):
             x = oracles.exact(p)
@@ -247,12 +237,12 @@ def push_frame(dtype, count, random):
             least = mp.sqrt(least) / bound
             claim.append(float(4 / least))
             errors.append(_outside(found[:r], image) if r == k or least < 1e-3 else mp.inf)
-        yield off(f"k = {k}, {case}", errors, np.array(claim), seconds)
+        yield off(f"k = {k}, {case}", errors, np.array(claim))
     eye = np.array([0, 0, 0, 2], dtype)
     here = random.standard_normal((20, 4)).astype(dtype)
     work = partial(projection.push_frame, (eye - here)[:, np.newaxis], here, distance=2.0)
-    (frame, rank), seconds = timed(work)
-    yield exactly("a silhouette", [*rank, *np.ravel(frame)], [0] * 80, seconds)
+    frame, rank = timed(work)
+    yield exactly("a silhouette", [*rank, *np.ravel(frame)], [0] * 80)
 
 
 def slice_frame(dtype, count, random):
@@ -267,7 +257,7 @@ def slice_frame(dtype, count, random):
         part = v @ up
         v = v - (part * (1 - 10 ** random.uniform(low, 0, (many, 1))))[..., np.newaxis] * up
         v = _orthonormal(v, dtype)
-        value, seconds = timed(partial(slices.slice_frame, v, normal))
+        value = timed(slices.slice_frame, v, normal)
         loose, spans, claim = [], [], []
         across = oracles.unit(oracles.exact(normal))
         for rows, found in zip(v, value, strict=True):
@@ -282,13 +272,11 @@ def slice_frame(dtype, count, random):
             outside = _outside(found, own)
             spans.append(max(outside, *(abs(oracles.dot(x, steep)) for x in r)))
             claim.append(float(2 / sine))
-        yield off(f"k = {k}, n = {n}", loose, 8.0, seconds, "rows")
-        yield off(f"k = {k}, n = {n}", spans, np.array(claim), seconds, "space")
+        yield off(f"k = {k}, n = {n}", loose, 8.0, "rows")
+        yield off(f"k = {k}, n = {n}", spans, np.array(claim), "space")
     flat = np.eye(3, dtype=dtype)[np.newaxis, :2]
-    value, seconds = timed(partial(slices.slice_frame, flat, [0, 0, 1]))
-    yield exactly("within the hyperplane", value, np.zeros((1, 1, 3)), seconds)._replace(
-        regime="rows"
-    )
+    value = timed(slices.slice_frame, flat, [0, 0, 1])
+    yield exactly("within the hyperplane", value, np.zeros((1, 1, 3)))._replace(regime="rows")
 
 
 def mean_frame(dtype, count, random):
@@ -311,7 +299,7 @@ def mean_frame(dtype, count, random):
             (np.stack([part, 1 - part], axis=1).ravel(), np.arange(2 * many),
              np.arange(0, 2 * many + 1, 2)), (many, 2 * many),
         )  # fmt: skip
-        value, seconds = timed(partial(slices.mean_frame, v.reshape(-1, k, n), shares))
+        value = timed(slices.mean_frame, v.reshape(-1, k, n), shares)
         errors, claim = [], []
         for (a, b), w, found in zip(v, part, value, strict=True):
             f, g = (oracles.orthonormal(oracles.exact(x)) for x in (b, a))
@@ -338,11 +326,10 @@ def mean_frame(dtype, count, random):
             none = not np.any(found) and least < 16 * np.sqrt(n) * np.finfo(dtype).eps
             errors.append(0 if none else _outside(found, mean) if np.any(found) else mp.inf)
             claim.append(float(2 / least))
-        yield off(f"k = {k}, n = {n}, {case}", errors, np.array(claim), seconds)
+        yield off(f"k = {k}, n = {n}, {case}", errors, np.array(claim))
     right = np.eye(3, dtype=dtype)[:2, np.newaxis]
-    work = partial(slices.mean_frame, right, csr_array([[0.5, 0.5]]))
-    value, seconds = timed(work)
-    yield exactly("right angle", value, np.zeros((1, 1, 3)), seconds)
+    value = timed(slices.mean_frame, right, csr_array([[0.5, 0.5]]))
+    yield exactly("right angle", value, np.zeros((1, 1, 3)))
 
 
 def highest(_, count, random):
@@ -352,7 +339,6 @@ def highest(_, count, random):
     for case in kinds:
         errors = []
         claim = []
-        seconds = 0.0
         while len(errors) < count // len(kinds):
             first = 5e6 if case == "far off" else 0.0
             step = float(2.0 ** random.integers(-3, 4))
@@ -365,10 +351,7 @@ def highest(_, count, random):
             if case == "steep":
                 corners[:, 2] *= 10 ** random.uniform(0, 6)
             corners[:, :2] += first
-            value, taken = timed(
-                partial(depth_map.depth_map, nodes, nodes, corners, np.array([[0, 1, 2]]))
-            )
-            seconds += taken
+            value = timed(depth_map.depth_map, nodes, nodes, corners, np.array([[0, 1, 2]]))
             a, b, c = oracles.exact(corners)
             area = _doubled(a, b, c)
             if not area:
@@ -389,7 +372,7 @@ def highest(_, count, random):
                 if all(w / area > 1e-8 for w in parts):
                     errors.append(mp.inf)
                     claim.append(4.0)
-        yield off(case, errors, np.array(claim), seconds)
+        yield off(case, errors, np.array(claim))
     none = depth_map.depth_map([0, 1], [0, 1], np.empty((0, 3)), np.empty((0, 3), int))
     yield exactly("no triangle", none, np.full((2, 2), np.nan))
 
@@ -419,7 +402,7 @@ def inside_length(_, count, random):
         ("near the surface", -9.0, 0.3),
     ):
         fields, many = 8, max(count // 24, 1)
-        off, seconds, claim = [], 0.0, RELIEF
+        off, claim = [], RELIEF
         for _i in range(fields):
             x, y = (np.cumsum(random.uniform(0.5, 2, 9)) for _ in range(2))
             a, b = tilt * random.integers(-8, 9, 2) / 16
@@ -428,9 +411,7 @@ def inside_length(_, count, random):
             down = 10 ** random.uniform(low, low + 1, many)
             place = np.stack([random.uniform(x[3], x[5], many), random.uniform(y[3], y[5], many)])
             points = np.stack([*place, a * place[0] + b * place[1] - down], axis=1)
-            work = partial(shadowing.inside_length, x, y, z, points, direction=way)
-            value, taken = timed(work)
-            seconds += taken
+            value = timed(shadowing.inside_length, x, y, z, points, direction=way)
             size = oracles.exact(float(max(x[-1] - x[0], y[-1] - y[0])))
             u = oracles.unit(oracles.exact(way))
             rate = u[2] - oracles.exact(a) * u[0] - oracles.exact(b) * u[1]
@@ -438,8 +419,8 @@ def inside_length(_, count, random):
                 px, py, pz = oracles.exact(p)
                 depth = oracles.exact(a) * px + oracles.exact(b) * py - pz
                 off.append((oracles.exact(found) - depth / rate) / size)
-        yield Check(case, np.zeros(len(off)), off, np.array(claim), seconds)
-    mp, off, seconds = oracles.mp, [], 0.0
+        yield Check(case, np.zeros(len(off)), off, np.array(claim))
+    mp, off = oracles.mp, []
     corners = np.array([0.0, 1.0])
     for _i in range(8):
         c = random.integers(-16, 17) / 16
@@ -449,9 +430,7 @@ def inside_length(_, count, random):
         down = 10 ** random.uniform(-9, -1, len(place))
         points = np.column_stack([place, c * place[:, 0] * place[:, 1] - down])
         z = np.array([[0, 0], [0, c]])
-        work = partial(shadowing.inside_length, corners, corners, z, points, direction=way)
-        value, taken = timed(work)
-        seconds += taken
+        value = timed(shadowing.inside_length, corners, corners, z, points, direction=way)
         u, twist = oracles.unit(oracles.exact(way)), oracles.exact(c)
         for p, found in zip(points, value, strict=True):
             px, py, pz = oracles.exact(p)
@@ -461,7 +440,7 @@ def inside_length(_, count, random):
             high = twist * u[0] * u[1]
             root = 2 * low / (-middle + mp.sqrt(middle * middle - 4 * high * low))
             off.append(oracles.exact(found) - root)
-    yield Check("twisted", np.zeros(len(off)), off, np.array(RELIEF), seconds)
+    yield Check("twisted", np.zeros(len(off)), off, np.array(RELIEF))
 
 
 def inside_ends(_, count, random):
@@ -474,9 +453,9 @@ def inside_ends(_, count, random):
     walls = partial(solid, border="wall")
 
     def against(case, work, true):
-        value, seconds = timed(work)
+        value = timed(work)
         pairs = zip(value, true, strict=True)
-        return off(case, [(oracles.exact(v) - t) / size for v, t in pairs], RELIEF, seconds)
+        return off(case, [(oracles.exact(v) - t) / size for v, t in pairs], RELIEF)
 
     level = [oracles.exact(x[-1]) - p for p in oracles.exact(inside[:, 0])]
     yield against(
@@ -500,18 +479,17 @@ def inside_ends(_, count, random):
         near.append(-p[2] * oracles.size(way) / way[2])
     yield against("light nearby", lambda: solid(flat, inside, position=place), near)
     for case, toward in (("at the horizon", (1, 0, 0)), ("below it", (1, 0, -1))):
-        value, seconds = timed(partial(solid, flat, inside, direction=toward))
-        yield exactly(case, value, np.full(many, np.inf), seconds)
+        yield exactly(case, timed(solid, flat, inside, direction=toward), np.full(many, np.inf))
     steep = [-p[2] for p in oracles.exact(inside)]
     for case, least in (("smallest number", 5e-324), ("one ulp", 2.0**-52)):
-        value, seconds = timed(partial(solid, flat, inside, direction=(least, -least, 1.0)))
+        value = timed(solid, flat, inside, direction=(least, -least, 1.0))
         errors = [(oracles.exact(v) - t) / size for v, t in zip(value, steep, strict=True)]
-        yield off(f"off the zenith by the {case}", errors, RELIEF, seconds)
+        yield off(f"off the zenith by the {case}", errors, RELIEF)
     above = inside * [1, 1, -1]
-    value, seconds = timed(lambda: solid(flat, above, direction=(1, 0, 0)))
-    yield exactly("at the horizon, above", value, np.zeros(many), seconds)
-    value, seconds = timed(lambda: solid(flat, np.array([place, [np.nan, 0, 0]]), position=place))
-    yield exactly("light on the point, NaN", value, [0, np.nan], seconds)
+    value = timed(lambda: solid(flat, above, direction=(1, 0, 0)))
+    yield exactly("at the horizon, above", value, np.zeros(many))
+    value = timed(lambda: solid(flat, np.array([place, [np.nan, 0, 0]]), position=place))
+    yield exactly("light on the point, NaN", value, [0, np.nan])
     yield refused(
         "light inside", lambda: solid(flat, inside, position=np.array([4, 4, -1.0])), "position"
     )
@@ -524,7 +502,6 @@ def shadow(_, count, random):
     for case, low, high in (("deep", -2.0, 0.0), ("shallow", -7.0, -4.0), ("depth 0", 0.0, 0.0)):
         errors = []
         claim = []
-        seconds = 0.0
         while len(errors) < count // 3:
             x, y = (np.cumsum(random.uniform(0.5, 2, 17)) for _ in range(2))
             a, b = random.integers(-8, 9, 2) / 32
@@ -532,14 +509,12 @@ def shadow(_, count, random):
             size = float(max(np.ptp(x), np.ptp(y), np.ptp(z)))
             depth = 0.0 if case == "depth 0" else size * 10 ** random.uniform(low, high) / 30
             way = np.array([*random.uniform(-0.6, 0.6, 2), 1.0])
-            work = partial(shadowing.shadow, x, y, z, depth=depth, direction=way)
-            value, taken = timed(work)
-            seconds += taken
+            value = timed(shadowing.shadow, x, y, z, depth=depth, direction=way)
             normal = oracles.unit([-oracles.exact(a), -oracles.exact(b), 1])
             true = oracles.dot(normal, oracles.unit(oracles.exact(way)))
             errors += [oracles.exact(v) - true for v in value[6:11, 6:11].ravel()]
             claim += [8 + (size / depth if depth else 0)] * 25
-        yield off(case, errors, np.array(claim), seconds, "depth 0" if case == "depth 0" else "")
+        yield off(case, errors, np.array(claim), "depth 0" if case == "depth 0" else "")
     z = np.zeros((5, 5))
     z[2, 2] = np.nan
     for depth in (0.0, 0.5):

@@ -1,8 +1,7 @@
 """Inputs on which careless code loses its digits: directed at each singularity, and at random."""
 
-from __future__ import annotations
-
 import numpy as np
+from vectors import unit
 
 #: Names of the ways in which a direction stands to a tangent space.
 DIRECTIONS = ("random", "along the tangent", "one ulp off it", "near it", "across", "near across")
@@ -46,8 +45,7 @@ def directions(random, frame, kind, power=1.0):
     rows = frame.astype(np.float64)
     along = np.einsum("bk,bkn->bn", units(random, count, k) if k > 1 else np.ones((count, 1)), rows)
     other = units(random, count, n)
-    across = other - np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, other))
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    across = unit(other - np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, other)))
     made = {
         "random": other,
         "along the tangent": along,
@@ -79,8 +77,7 @@ def eyes(random, wi, frame, kind, power=1.0):
     def across(v):
         return np.asarray(v - np.einsum("bkn,bk->bn", rows, np.einsum("bkn,bn->bk", rows, v)))
 
-    normal = across(across(units(random, count, n)))
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = unit(across(across(units(random, count, n))))
     size = np.linalg.norm(across(light), axis=1, keepdims=True)
     mirror = normal * size - (light - across(light))
     fall = normal + _width(random, count, power) * units(random, count, n)

@@ -1,7 +1,5 @@
 """What some kernels are compared with beside the oracle's formulas, in 50 digits."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 from oracles import exact, mp, unit

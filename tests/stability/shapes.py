@@ -1,7 +1,5 @@
 """The checks of shapes for the stability suite: manifolds in n-space, contours of solids."""
 
-from __future__ import annotations
-
 import itertools
 from functools import partial
 
@@ -40,13 +38,12 @@ def torus(_, count, random):
     """Points, of the largest radius, and tangents, of tori of 1, 2 and 3 circles."""
     mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for k in (1, 2, 3):
-        errors, seconds = [], 0.0
+        errors = []
         for _i in range(shapes):
             side = max(round((count / (3 * shapes)) ** (1 / k)), 3)
             shape = [int(n) for n in side + random.integers(0, 5, k)]
             radii = _radii(random, k)
-            made, taken = timed(partial(manifolds.torus, *radii, resolution=shape))
-            seconds += taken
+            made = timed(manifolds.torus, *radii, resolution=shape)
             turns = [[2 * mp.pi * i / n for i in range(n)] for n in shape]
             circle = [[(mp.cos(t), mp.sin(t)) for t in turn] for turn in turns]
             top = oracles.exact(max(radii))
@@ -59,7 +56,7 @@ def torus(_, count, random):
                     way[2 * j : 2 * j + 2] = [-s, c]
                     worst = max(worst, _far(frame[j], way))
                 errors.append(worst)
-        yield off(f"{k} circles", errors, 8.0, seconds)
+        yield off(f"{k} circles", errors, 8.0)
     yield refused("radius 0", partial(manifolds.torus, 1.0, 0.0), "radii[1]")
 
 
@@ -73,10 +70,7 @@ def torus_curve(_, count, random):
     for case, ratio, turns in kinds:
         r1, r2 = _radii(random, 2)
         many = max(count // len(kinds), 3)
-        work = partial(
-            manifolds.torus_curve, ratio, r1=r1, r2=r2, turns=turns, resolution=many
-        )  # fmt: skip
-        made, seconds = timed(work)
+        made = timed(manifolds.torus_curve, ratio, r1=r1, r2=r2, turns=turns, resolution=many)
         a, errors = oracles.exact(ratio), []
         if turns is None:
             turns = {1.5: 2, 3.0: 1, 7 / 5: 5}[ratio]
@@ -97,7 +91,7 @@ def torus_curve(_, count, random):
             errors.append(max(_far(point / float(top), place), _far(frame[0], way)))
         claim = 8 + 4 * np.pi * turns * max(1.0, float(a))
         regime = "many turns" if case == "many turns" else ""
-        yield off(case, errors, claim, seconds, regime)
+        yield off(case, errors, claim, regime)
 
 
 def hopf_fibres(_, count, random):
@@ -110,8 +104,7 @@ def hopf_fibres(_, count, random):
         if case == "at the poles":
             base[:, :2] = 0
         radius = float(_radii(random, 1)[0])
-        work = partial(manifolds.hopf_fibres, base, radius=radius, resolution=each)
-        made, seconds = timed(work)
+        made = timed(manifolds.hopf_fibres, base, radius=radius, resolution=each)
         errors = []
         for i, (point, frame) in enumerate(zip(made.points, made.frame, strict=True)):
             x, y, z = oracles.unit(oracles.exact(base[i // each]))
@@ -122,14 +115,14 @@ def hopf_fibres(_, count, random):
             place = [f for w in (turn * z1, turn * z2) for f in (w.real, w.imag)]
             way = [f for w in (1j * turn * z1, 1j * turn * z2) for f in (w.real, w.imag)]
             errors.append(max(_far(point / radius, place), _far(frame[0], way)))
-        yield off(case, errors, 8.0, seconds)
+        yield off(case, errors, 8.0)
 
 
 def klein_bottle(_, count, random):
     """Points, of the major radius, and the space of the frame, over R / (R - r)."""
     mp, shapes = oracles.mp, min(max(count // INPUTS, 1), SHAPES)
     for case, low, high in (("R/(R - r) to 10", -1.0, 0.0), ("R near r", -9.0, -3.0)):
-        points, spaces, seconds, claim = [], [], 0.0, []
+        points, spaces, claim = [], [], []
         for _i in range(shapes):
             major = float(_radii(random, 1)[0])
             gap = 10 ** random.uniform(low, high)
@@ -137,8 +130,7 @@ def klein_bottle(_, count, random):
             side = max(round((count / (2 * shapes)) ** 0.5), 3)
             shape = (side + int(random.integers(0, 5)), side)
             work = partial(manifolds.klein_bottle, major=major, minor=minor, resolution=shape)
-            made, taken = timed(work)
-            seconds += taken
+            made = timed(work)
             r = oracles.exact(minor) / oracles.exact(major)
             rows = zip(made.points, made.frame, itertools.product(*map(range, shape)), strict=True)
             for point, frame, (i, j) in rows:
@@ -151,8 +143,8 @@ def klein_bottle(_, count, random):
                 points.append(_far(point / major, place))
                 spaces.append(_outside(frame, [along, across]))
                 claim.append(float(12 / (1 - r)))
-        yield off(case, points, 12.0, seconds, "points")
-        yield off(case, spaces, np.array(claim), seconds, "frame")
+        yield off(case, points, 12.0, "points")
+        yield off(case, spaces, np.array(claim), "frame")
     same = refused("R = r", partial(manifolds.klein_bottle, major=1.0, minor=1.0), "minor")
     yield same._replace(regime="points")
 
@@ -183,7 +175,7 @@ def veronese(_, count, random):
     for share in (0.4, 0.7):
         size = max(round((share * count / 3) ** 0.5), 2)
         radius = float(10 ** random.uniform(-70, 70))
-        made, seconds = timed(partial(manifolds.veronese, radius=radius, resolution=size))
+        made = timed(manifolds.veronese, radius=radius, resolution=size)
         spheres = list(_lattice(_skin(3, size), size).values())
         images = [[x * y, x * z, y * z, (x * x - y * y) / 2] for x, y, z in spheres]
         errors = []
@@ -200,7 +192,7 @@ def veronese(_, count, random):
                 abs(oracles.exact(a) / square - b) for a, b in zip(point, images[i], strict=True)
             )
             errors.append(max(worst, _outside(frame, space)))
-        yield off(f"{size} cells along an edge", errors, 12.0, seconds)
+        yield off(f"{size} cells along an edge", errors, 12.0)
 
 
 def _cross(a, b):
@@ -216,7 +208,7 @@ def sphere3(_, count, random):
     for share in (0.3, 0.7):
         size = max(round((share * count / 8) ** (1 / 3)), 1)
         radius = float(_radii(random, 1)[0])
-        made, seconds = timed(partial(manifolds.sphere3, radius=radius, resolution=size))
+        made = timed(manifolds.sphere3, radius=radius, resolution=size)
         places = list(_lattice(_skin(4, size), size).values())
         errors = []
         near = _matched(made.points / radius, places)
@@ -225,7 +217,7 @@ def sphere3(_, count, random):
             rows = ([w, -z, y, -x], [z, w, -x, -y], [-y, x, w, -z])
             worst = _far(point / radius, places[at])
             errors.append(max(worst, *(_far(f, row) for f, row in zip(frame, rows, strict=True))))
-        yield off(f"{size} cells along an edge", errors, 4.0, seconds)
+        yield off(f"{size} cells along an edge", errors, 4.0)
 
 
 def complex_curve(_, count, random):
@@ -241,7 +233,7 @@ def complex_curve(_, count, random):
     side = max(round((count / len(cases)) ** 0.5), 4)
     del random
     for case, function, exact, slope in cases:
-        made, seconds = timed(partial(manifolds.complex_curve, function, resolution=side))
+        made = timed(manifolds.complex_curve, function, resolution=side)
         errors, claim = [], []
         for (x, y, *_w), frame in zip(made.points, made.frame, strict=True):
             z = mp.mpc(float(x), float(y))
@@ -253,7 +245,7 @@ def complex_curve(_, count, random):
             ninth = {"exp": float(abs(mp.exp(z))) / 362880, "pole at 2": float(abs(z - 2)) ** -10}
             cut = h**8 * ninth.get(case, 0.0)
             claim.append(cut / np.finfo(float).eps + size / h + 4 * float(abs(slope(z))))
-        yield off(case, errors, np.array(claim), seconds)
+        yield off(case, errors, np.array(claim))
 
 
 def sphere(_, count, random):
@@ -272,18 +264,17 @@ def _contours(count, random, make):
     for power, near in kinds:
         errors = []
         claim = []
-        seconds, many = 0.0, max(count // len(kinds), 4)
+        many = max(count // len(kinds), 4)
         while len(errors) < many:
-            offs, claims, taken = make(random, power, near, many)
+            offs, claims = make(random, power, near, many)
             if not offs:
                 break
             errors += offs
             claim += claims
-            seconds += taken
         if errors:
             case = f"light {near or 'at infinity'}, power {power:g}"
             regime = "power < 1" if power < 1 else "light close" if near == "close" else ""
-            yield off(case, errors, np.array(claim), seconds, regime)
+            yield off(case, errors, np.array(claim), regime)
 
 
 def _sphere_of(random, power, near, many):
@@ -300,7 +291,7 @@ def _sphere_of(random, power, near, many):
         isoluminance.sphere, (0.0, 0.0, 0.0), radius, ambient=low, diffuse=scale, power=power,
         levels=8, segments=segments, **where,
     )  # fmt: skip
-    made, seconds = timed(work)
+    made = timed(work)
     span = oracles.exact(float(made.steps.edges[-1] - made.steps.edges[0]))
     errors, claim = [], []
     toward, light = oracles.unit(oracles.exact(way)), oracles.exact(place)
@@ -312,7 +303,7 @@ def _sphere_of(random, power, near, many):
         lit = oracles.exact(low) + oracles.exact(scale) * cosine ** oracles.exact(power)
         errors.append((lit - oracles.exact(level)) / span)
         claim.append(_law(power, 16.0, 2 * max(power, 1.0) ** 0.5 / gap if near else 0.0))
-    return errors, claim, seconds
+    return errors, claim
 
 
 def _law(power, rounding, turned):
@@ -330,22 +321,21 @@ def truncus(_, count, random):
         for power in (1.0, 3.0, 50.0, 0.5, 1e4):
             errors = []
             claim = []
-            seconds, tries = 0.0, 0
+            tries = 0
             while len(errors) < count // (len(shapes) * 5) and tries < 400:
                 tries += 1
-                offs, claims, taken = _truncus_of(random, power, case)
+                offs, claims = _truncus_of(random, power, case)
                 errors += offs
                 claim += claims
-                seconds += taken
             if errors:
                 regime = "power < 1" if power < 1 else ""
-                yield off(case, errors, np.array(claim), seconds, regime)
+                yield off(case, errors, np.array(claim), regime)
     call = partial(isoluminance.truncus, (0, 0, 0), (0, 0, 2), diffuse=0.5, ambient=0.125)
     # A light along the axis makes the side one band: half a right angle's cosine, and none.
     made = call((1.0, 3.0), height=2.0, direction=(0, 0, 1))
     side = oracles.exact(0.125) + oracles.exact(0.5) / oracles.mp.sqrt(2)
     yield Check("light along the axis", made.values[made.patch == 0], [side] * np.count_nonzero(
-        made.patch == 0), 12.0, 0.0)  # fmt: skip
+        made.patch == 0), 12.0)  # fmt: skip
     yield exactly("light along the axis", [len(made.lines), *made.values[made.patch > 0]],
                   [0, 0.625, 0.125])  # fmt: skip
     for radii, lit in (((1.0, 3.0), 0.4 + 0.125), ((3.0, 1.0), 0.125)):
@@ -382,7 +372,7 @@ def _truncus_of(random, power, case):
         isoluminance.truncus, (0.0, 0.0, 0.0), axis, (first, second), height=height,
         direction=way, diffuse=1.0, power=power, levels=16,
     )  # fmt: skip
-    made, seconds = timed(work)
+    made = timed(work)
     up, toward = oracles.unit(oracles.exact(axis)), oracles.unit(oracles.exact(way))
     r1, r2, tall = oracles.exact([first, second, height])
     errors, claim = [], []
@@ -394,7 +384,7 @@ def _truncus_of(random, power, case):
         cosine = max(oracles.dot(oracles.unit(normal), toward), mp.mpf(0))
         errors.append(cosine ** oracles.exact(power) - oracles.exact(level))
         claim.append(_law(power, 8.0, height / max(first, second)))
-    return errors, claim, seconds
+    return errors, claim
 
 
 CHECKS = {

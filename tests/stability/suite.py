@@ -7,8 +7,6 @@ result, of the size), in these. A claim passes if no error seen is above it, and
 a row of its own, and a claim is tight if its worst case comes within a factor 8 of it.
 """
 
-from __future__ import annotations
-
 import csv
 import warnings
 from functools import partial

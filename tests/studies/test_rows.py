@@ -1,7 +1,5 @@
 """Rows of short runs of each study: errors keep to the theory; times are not asserted."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

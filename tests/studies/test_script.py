@@ -1,7 +1,5 @@
 """The plain script against one point at a time in 50 digits: it must be a reference."""
 
-from __future__ import annotations
-
 import numpy as np
 import oracles
 import pytest

@@ -1,7 +1,5 @@
 """Form of the studies: found by name, run, shown as table, CSV file and figure."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 import time

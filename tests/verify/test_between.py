@@ -1,13 +1,12 @@
 """The error between points: its places, its reference, and the resolution that it takes."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate, refine
@@ -19,10 +18,6 @@ from vizlight.verify.report import Run, unseen
 
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
 SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
-
-
-def unit(v):
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
 @pytest.fixture(scope="module")

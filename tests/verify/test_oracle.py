@@ -1,7 +1,5 @@
 """The oracle: closed forms by quadrature, floats against 50 digits, and what it cannot light."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,15 +1,12 @@
 """What light cost and how wrong it is: of every filter, by formulas that share no code with it."""
 
-from __future__ import annotations
-
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY, shiny
-from scipy.interpolate import RegularGridInterpolator
+from lamps import SHINY, far, shiny
 
 import vizlight
 from vizlight import (
@@ -31,7 +28,7 @@ from vizlight import (
 from vizlight.geometry import manifolds
 from vizlight.mesh import casters
 from vizlight.shading import algebra
-from vizlight.verify import oracle, rays
+from vizlight.verify import oracle
 from vizlight.verify import report as reports
 
 SCENE = Scene(
@@ -59,11 +56,7 @@ def torus():
     return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
 
 
-SCENE_4 = Scene(
-    lights=Light(direction=(0.7, 0.6, 0.38, 0)),
-    view=View(direction=(0, -1, 0.5, 0)),
-    material=SHINY,
-)
+SCENE_4 = far((0.7, 0.6, 0.38, 0), (0, -1, 0.5, 0))
 SUN = PLAIN.replace(lights=Light(direction=(1, 0.5, 1)))
 FILTERS = {
     "surface": lambda s: illuminate(s, SCENE),
@@ -154,9 +147,7 @@ def test_points_of_a_lit_shadow_count_once():
 @pytest.mark.parametrize("what", [Sphere(), Sphere() - Frustum(axis=(0, 0, 4)), pv.Sphere()])
 def test_bands_are_one_run(what, specular, levels):
     material = shiny(diffuse=0.5, specular=specular, color="tomato")
-    scene = Scene(
-        lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0, 1)), material=material
-    )
+    scene = far((1, 1, 1), (0, 0, 1), material)
     with vizlight.report() as told:
         found = vizlight.isoluminance(what, scene, levels=levels)
     (run,) = told.runs
@@ -236,57 +227,6 @@ def test_bad_samples():
         vizlight.report(sample=-1).__enter__()
     with pytest.raises(TypeError, match="seed: expected an integer"):
         vizlight.report(seed=0.5).__enter__()
-
-
-def test_the_scalar_ray_has_the_closed_form_of_a_ball():
-    ball = pv.Icosphere(radius=0.5, nsub=5)
-    corners = np.asarray(ball.points, dtype=np.float64)[ball.regular_faces]
-    up, way, depth = np.array([0.1, 0.2, 1.0]), np.array([0.48, 0.6, 0.64]), 0.1
-    up /= np.linalg.norm(up)
-    place = ball.points.mean(axis=0) + 0.5 * up
-    along = (place - depth * up) @ way
-    length = -along + np.sqrt(along**2 + 0.25 - 0.4**2)
-    t = rays.solid_ratio([corners], place, up, depth, way, 9.0)
-    assert t == pytest.approx(depth / length, abs=1e-3)
-    two = rays.solid_ratio(
-        [corners, corners + np.array([0.3, 0.4, 0.4])], place, up, depth, way, 9.0
-    )
-    assert two < t - 0.01
-
-
-def test_a_flat_field_has_the_cosine():
-    x, z = np.arange(9.0), np.zeros((9, 9))
-    way = (0.6, 0, 0.8)
-    place, up = np.array([4.0, 4, 0]), np.array([0, 0, 1.0])
-    t = rays.relief_ratio(x, x, z, place, up, 0.5, way=way)
-    assert t == pytest.approx(0.8, abs=1e-14)
-    t = rays.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(4 + 6e3, 4, 8e3 - 0.5))
-    assert t == pytest.approx(0.8, abs=1e-12)
-    # To a light on the level of the field the ray never leaves the solid.
-    t = rays.relief_ratio(x, x, z, place, up, 0.5, way=None, end=(9.0, 4, 0))
-    assert t == pytest.approx(0.5 / np.hypot(5, 0.5), abs=1e-14)
-
-
-def test_the_scalar_ray_has_the_lengths_of_samples(random):
-    """A rough field, with its walls, against many places of each ray."""
-    x, y = np.sort(random.uniform(0, 8, 9)), np.sort(random.uniform(0, 8, 8))
-    z = random.uniform(0, 2, (8, 9))
-    surface = RegularGridInterpolator((y, x), z)
-    up = np.array([0, 0, 1.0])
-    for _ in range(40):
-        place = np.array([random.uniform(*x[[0, -1]]), random.uniform(*y[[0, -1]]), 1.5])
-        way = np.append(random.standard_normal(2), random.uniform(0.1, 2))
-        way /= np.linalg.norm(way)
-        for wall in (False, True):
-            s = (np.arange(200_000) + 0.5) / 200_000 * (2 / way[2])
-            p = place - 0.7 * up + s[:, np.newaxis] * way
-            beside = np.clip(p[:, 1::-1], (y[0], x[0]), (y[-1], x[-1]))
-            within = p[:, 2] < surface(beside)
-            if wall:
-                within &= np.all(beside == p[:, 1::-1], axis=1)
-            length = np.mean(within) * 2 / way[2]
-            t = rays.relief_ratio(x, y, z, place, up, 0.7, way=way, wall=wall)
-            assert t == pytest.approx(0.7 / max(length, 0.7), abs=1e-3)
 
 
 def test_light_above_one_is_counted():

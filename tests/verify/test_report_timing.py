@@ -1,7 +1,5 @@
 """The report's time is that of the light, not of the check of it."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

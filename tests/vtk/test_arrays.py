@@ -1,7 +1,5 @@
 """Points of grids by slice."""
 
-from __future__ import annotations
-
 import numpy as np
 import pyvista as pv
 

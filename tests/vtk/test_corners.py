@@ -1,7 +1,5 @@
 """Normals by the corners of faces: exact where they are known, and closer than VTK's."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

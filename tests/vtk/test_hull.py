@@ -1,10 +1,10 @@
 """The outer surface of a mesh: which nodes of curved cells are on it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -16,18 +16,13 @@ def test_control_points_are_not_lit():
     points = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0.8], [1, 1, 0.8], [0, 1, 0.8]]
     mesh = pv.UnstructuredGrid({pv.CellType.BEZIER_TRIANGLE: np.arange(6)[None]}, np.array(points))
     toward = np.array([1, 2, 6]) / np.sqrt(41)
-    scene = Scene(
-        lights=Light(direction=toward),
-        view=View(direction=(0, 0, 1)),
-        material=Material(ambient=0.1, diffuse=0.8, specular=0),
-    )
+    scene = far(toward, (0, 0, 1), Material(ambient=0.1, diffuse=0.8, specular=0))
     with pytest.warns(UserWarning, match="3 of 6 points could not be lit"):
         lit = vizlight.illuminate(mesh, scene)
     np.testing.assert_array_equal(lit["luminance_valid"], [1, 1, 1, 0, 0, 0])
     np.testing.assert_allclose(lit["luminance"][3:], 0.1)
     # The flat triangles at the corners rise by 0.4 to the middles of the edges.
-    normals = np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit(np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]]))
     np.testing.assert_allclose(lit["luminance"][:3], 0.1 + 0.8 * normals @ toward, rtol=1e-5)
 
 

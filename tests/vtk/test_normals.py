@@ -1,11 +1,10 @@
 """Normals of a mesh: outward where it is closed, else toward the eye."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
 import scipy.ndimage
+from vectors import unit
 
 import vizlight
 from vizlight import Light, Scene, View
@@ -127,8 +126,7 @@ def test_a_strip_with_one_side_has_its_normals_at_the_seam(cut, random):
     turn = -v[..., np.newaxis] / 2 * np.sin(u / 2)[..., np.newaxis] * radial
     turn += radius[..., np.newaxis] * np.stack([-np.sin(u), np.cos(u), 0 * u], axis=-1)
     turn[..., 2] = v / 2 * np.cos(u / 2)
-    exact = np.cross(turn, across).reshape(-1, 3)
-    exact /= np.linalg.norm(exact, axis=1, keepdims=True)
+    exact = unit(np.cross(turn, across).reshape(-1, 3))
     wide = np.concatenate([along, along[::-1, :1]], axis=1)
     corners = [wide[:-1, :-1], wide[:-1, 1:], wide[1:, 1:], wide[1:, :-1]]
     faces = random.permutation(np.stack(corners, axis=-1).reshape(-1, 4))

@@ -1,7 +1,5 @@
 """The plugin in a real ParaView lights points as vizlight does, on one rank and on two."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import re

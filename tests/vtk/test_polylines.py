@@ -1,11 +1,9 @@
 """Lines are lit by their own tangents, whatever cells they come in."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import SHINY
+from lamps import SHINY, far
 
 import vizlight
 from vizlight import Light, Scene, View, illuminate
@@ -93,9 +91,7 @@ def test_a_mesh_with_faces_is_no_mesh_of_lines():
 def test_lines_as_thin_cylinders():
     """The exact line light through every filter of lines; refused where there are no lines."""
     flow = vizlight.load_example()
-    scene = Scene(
-        lights=Light(direction=(1, 0.9, 0.5)), view=View(direction=(0.2, 1, 0.3)), material=SHINY
-    )
+    scene = far((1, 0.9, 0.5), (0.2, 1, 0.3))
     lines = vizlight.streamlines(flow, scene, vectors="V", seeds=10, model="cylinder")
     assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
     again = vizlight.illuminate(lines, scene, tangents="Tangents", model="cylinder", name="again")

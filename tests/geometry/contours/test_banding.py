@@ -1,12 +1,11 @@
 """The cutter: polygons tile their triangles, contours join, closed stays closed."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from vectors import areas
 
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.solids import triangle_mesh
@@ -27,14 +26,8 @@ def test_polygons_tile_the_triangles(seed, count):
     made, owner = banding.cut(points, triangles, values[triangles], steps)
     assert banded.is_closed(made)
     t, polygon = banded.corners(made)
-    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
-    whole = points[triangles]
-    expected = np.linalg.norm(
-        np.cross(whole[:, 1] - whole[:, 0], whole[:, 2] - whole[:, 0]), axis=1
-    )
-    np.testing.assert_allclose(
-        np.bincount(owner[polygon], size, len(triangles)), expected, rtol=1e-9
-    )
+    tiled = np.bincount(owner[polygon], areas(t), len(triangles))
+    np.testing.assert_allclose(tiled, areas(points[triangles]), rtol=1e-9)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 20))
@@ -64,7 +57,7 @@ def test_corners_on_a_level_make_no_empty_polygons():
     made, _ = banding.cut(points, triangles, values[triangles], spacing.steps(4, 0.0, 1.0))
     assert banded.is_closed(made)
     t, owner = banded.corners(made)
-    size = np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
+    size = areas(t)
     assert np.bincount(owner, size).min() > 1e-3 * size.mean()
 
 

@@ -1,12 +1,11 @@
 """Circles on a sphere: contours against 50 digits, bands against the law itself."""
 
-from __future__ import annotations
-
 import math
 
 import banded
 import numpy as np
 import pytest
+from refusals import refusals
 
 from vizlight import Light, View
 from vizlight.geometry.contours.isoluminance import sphere, virtual_light
@@ -153,25 +152,20 @@ def test_virtual_light_of_lights_and_views():
         virtual_light((0, 0, 0), light=(0, 0, 1), eye=(0, 0, -1))
 
 
-@pytest.mark.parametrize(
-    ("options", "kind", "words"),
-    [
-        ({}, ValueError, "direction: expected either direction="),
-        ({"direction": (0, 0, 1), "position": (0, 0, 2)}, ValueError, "got both"),
-        ({"direction": (0, 0, 0)}, ValueError, "direction"),
-        ({"direction": (0, 1)}, ValueError, "direction: expected 3 components"),
-        ({"direction": (0, 0, np.nan)}, ValueError, "direction: expected finite"),
-        ({"direction": "up"}, TypeError, "direction: expected"),
-        ({"direction": (0, 0, 1), "attenuation": (1, 1, 0)}, ValueError, "attenuation: expected a"),
-        ({"direction": (0, 0, 1), "power": -1}, ValueError, "power: expected"),
-        ({"direction": (0, 0, 1), "segments": 2}, ValueError, "segments: expected an integer"),
-        ({"direction": (0, 0, 1), "form": "strips"}, ValueError, "form: expected 'bands'"),
-        ({"direction": (0, 0, 1), "levels": 0}, ValueError, "levels: expected"),
-    ],
+test_bad_input = refusals(
+    lambda options: sphere((0, 0, 0), 1.0, **options),
+    ({}, "direction: expected either direction="),
+    ({"direction": (0, 0, 1), "position": (0, 0, 2)}, "got both"),
+    ({"direction": (0, 0, 0)}, "direction"),
+    ({"direction": (0, 1)}, "direction: expected 3 components"),
+    ({"direction": (0, 0, np.nan)}, "direction: expected finite"),
+    ({"direction": "up"}, "direction: expected", TypeError),
+    ({"direction": (0, 0, 1), "attenuation": (1, 1, 0)}, "attenuation: expected a"),
+    ({"direction": (0, 0, 1), "power": -1}, "power: expected"),
+    ({"direction": (0, 0, 1), "segments": 2}, "segments: expected an integer"),
+    ({"direction": (0, 0, 1), "form": "strips"}, "form: expected 'bands'"),
+    ({"direction": (0, 0, 1), "levels": 0}, "levels: expected"),
 )
-def test_bad_input(options, kind, words):
-    with pytest.raises(kind, match=words):
-        sphere((0, 0, 0), 1.0, **options)
 
 
 def test_bad_shapes():

@@ -1,9 +1,8 @@
 """Light inside a bundle: closed forms of a slab and a ball, real tubes, both paths of the grid."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
+from vectors import unit
 
 import vizlight
 from vizlight import _compiled
@@ -38,10 +37,6 @@ def ball_of_lines(rng, side, length, voxel, *, hole=(0, 0, 0), radius=0.0):
     middles = middles[np.linalg.norm(middles - hole, axis=1) >= radius]
     tangents = unit(rng.normal(size=middles.shape))
     return pieces(middles, tangents, length, voxel), (side / 2) ** 3 * length
-
-
-def unit(rows):
-    return rows / np.linalg.norm(rows, axis=-1, keepdims=True)
 
 
 def test_a_slab_of_lines_across_the_light_has_the_depth_of_its_lines():

@@ -1,11 +1,11 @@
 """Evenly spaced curves: no gaps, no crowds, everywhere, closed where they are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 from scipy.spatial import cKDTree
+from vectors import parts, waves
 
 from vizlight import Light, Scene, View, streamlines
 
@@ -19,11 +19,6 @@ def ball(n=40, **options):
     normals = np.asarray(mesh["Normals"], float)
     mesh["spiral"] = up - normals[:, 2:] * normals + np.cross(up, normals)
     return mesh
-
-
-def parts(lines):
-    ends = np.cumsum([lines.get_cell(i).n_points for i in range(lines.n_cells)])
-    return np.split(np.asarray(lines.points, float), ends[:-1])
 
 
 def evenness(lines, places):
@@ -76,16 +71,6 @@ def test_orbits_are_closed():
         assert length == pytest.approx(around, rel=0.05)
 
 
-def waves(points, frequency, seed):
-    """Return a smooth field with saddles and vortices."""
-    random = np.random.default_rng(seed)
-    return sum(
-        np.cos(points @ (frequency * random.normal(size=3)) + 6 * random.random())[:, np.newaxis]
-        * random.normal(size=3)
-        for _ in range(5)
-    )
-
-
 def test_the_last_gaps_are_filled():
     """Where lines that others or the boundary cut short would leave gaps of 1.5 spacings."""
     grid, spacing = pv.ImageData(dimensions=(12, 12, 12), spacing=(0.1, 0.1, 0.1)), 0.15
@@ -95,6 +80,7 @@ def test_the_last_gaps_are_filled():
     assert gap <= 1.3 * spacing
     assert np.percentile(near, 5) >= 0.5 * spacing
     assert lines.field_data["largest_gap"][0] == pytest.approx(gap / spacing, abs=0.1)
+    assert "Normals" not in lines.point_data
 
 
 def test_a_spiral_is_not_closed():
@@ -139,19 +125,6 @@ def test_two_sides_of_a_sheet_are_apart():
     assert gap < 0.13
 
 
-def test_in_a_volume():
-    grid = pv.ImageData(dimensions=(12, 12, 12), spacing=(0.1, 0.1, 0.1))
-    x, y, _ = grid.points.T - 0.55
-    grid["V"] = np.stack([-y, x, 0.1 + 0 * x], axis=1)
-    spacing = 0.25
-    lines = streamlines(grid, SCENE, vectors="V", spacing=spacing)
-    places = 1.1 * np.random.default_rng(1).random((2000, 3))
-    gap, near, _ = evenness(lines, places)
-    assert gap <= 1.3 * spacing
-    assert np.percentile(near, 5) >= 0.5 * spacing
-    assert "Normals" not in lines.point_data
-
-
 def test_seeds_come_first_and_lines_keep_their_distance():
     mesh = ball(30)
     seeds = np.array([[0, 1.0, 0], [1.0, 0, 0]])
@@ -173,19 +146,10 @@ def test_far_from_the_origin_and_of_any_size():
     assert found.points.dtype == np.float64
 
 
-@pytest.mark.parametrize(
-    ("options", "error", "words"),
-    [
-        ({"spacing": 0}, ValueError, "spacing: expected a number above 0"),
-        ({"spacing": "wide"}, TypeError, "spacing: expected a number"),
-        (
-            {"spacing": 1e-5},
-            ValueError,
-            "spacing: expected a number from 0.00.* for a mesh of this",
-        ),
-        ({"line_field": "yes"}, TypeError, "line_field: expected True or False"),
-    ],
+test_bad_input = refusals(
+    lambda options: streamlines(ball(12), SCENE, vectors="spiral", **options),
+    ({"spacing": 0}, "spacing: expected a number above 0"),
+    ({"spacing": "wide"}, "spacing: expected a number", TypeError),
+    ({"spacing": 1e-5}, "spacing: expected a number from 0.00.* for a mesh of this"),
+    ({"line_field": "yes"}, "line_field: expected True or False", TypeError),
 )
-def test_bad_input(options, error, words):
-    with pytest.raises(error, match=words):
-        streamlines(ball(12), SCENE, vectors="spiral", **options)

@@ -1,24 +1,13 @@
 """The largest gap between evenly spaced lines is that of the farthest place, found by halving."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
 from scipy.spatial import cKDTree
+from vectors import parts, waves
 
 from vizlight import streamlines
 from vizlight.mesh.normals import NORMALS, with_normals
-
-
-def waves(points, frequency, seed):
-    """Return a smooth field with saddles and vortices."""
-    random = np.random.default_rng(seed)
-    return sum(
-        np.cos(points @ (frequency * random.normal(size=3)) + 6 * random.random())[:, np.newaxis]
-        * random.normal(size=3)
-        for _ in range(5)
-    )
 
 
 def gyroid():
@@ -99,10 +88,11 @@ def test_the_largest_gap_in_a_volume():
     grid, spacing = pv.ImageData(dimensions=(9, 9, 9), spacing=(0.125, 0.125, 0.125)), 0.2
     grid["V"] = waves(np.asarray(grid.points), 6, 0)
     lines = streamlines(grid, vectors="V", spacing=spacing)
-    ends = [lines.get_cell(i).points.astype(float) for i in range(lines.n_cells)]
     share = np.linspace(0, 1, 20)[:, np.newaxis, np.newaxis]
     tree = cKDTree(
-        np.concatenate([((1 - share) * p[:-1] + share * p[1:]).reshape(-1, 3) for p in ends])
+        np.concatenate(
+            [((1 - share) * p[:-1] + share * p[1:]).reshape(-1, 3) for p in parts(lines)]
+        )
     )
     random = np.random.default_rng(0)
     places = random.random((100_000, 3))

@@ -1,7 +1,5 @@
 """Cross fields against closed forms: order and signs do not matter, also around singularities."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,40 +1,15 @@
 """Closed directions have no seam; the skin of a cube is a sphere, or a projective space."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
 import pytest
+from lattices import EDGES, euler, faces_around
+from refusals import refusals
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from vizlight.geometry.nspace import lattice
-
-_RING = [(0, 1), (1, 2), (2, 3), (3, 0)]
-_EDGES = {
-    4: _RING,
-    8: [*_RING, *[(a + 4, b + 4) for a, b in _RING], *[(i, i + 4) for i in range(4)]],
-}
-_FACES = [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-
-
-def pieces(cells, groups):
-    return np.concatenate([np.sort(cells[:, list(group)], axis=1) for group in groups])
-
-
-def faces_around(cells):
-    """Return the number of cells on each facet: 2 everywhere if there is no boundary."""
-    size = cells.shape[1]
-    groups = {2: [(0,), (1,)], 4: _EDGES.get(size, []), 8: _FACES}[size]
-    return np.unique(pieces(cells, groups), axis=0, return_counts=True)[1]
-
-
-def euler(cells):
-    size = cells.shape[1]
-    edges = len(np.unique(pieces(cells, _EDGES[size]), axis=0))
-    number = len(np.unique(cells)) - edges
-    if size == 4:
-        return number + len(cells)
-    return number + len(np.unique(pieces(cells, _FACES), axis=0)) - len(cells)
 
 
 @pytest.mark.parametrize("shape", [(5,), (4, 7), (3, 4, 5)])
@@ -60,26 +35,16 @@ def test_klein_bottle_is_closed_and_has_no_orientation():
 
 
 def orientable(cells):
-    """Walk from face to face and turn each to match; say whether all match in the end."""
-    ways = {}
-    for number, cell in enumerate(cells):
-        for a, b in _EDGES[4]:
-            ways.setdefault(frozenset((cell[a], cell[b])), []).append((number, cell[a] < cell[b]))
-    side, todo = {0: True}, [0]
-    joined = {number: [] for number in range(len(cells))}
-    for (one, way), (other, back) in ways.values():
-        joined[one].append((other, way != back))
-        joined[other].append((one, way != back))
-    while todo:
-        number = todo.pop()
-        for other, same in joined[number]:
-            wanted = side[number] == same
-            if other not in side:
-                side[other] = wanted
-                todo.append(other)
-            elif side[other] != wanted:
-                return False
-    return True
+    """Return whether the two sides of all faces are apart where neighbours' sides are joined."""
+    ends = cells[:, EDGES[4]]
+    way = (ends[..., 0] < ends[..., 1]).ravel()
+    _, edge = np.unique(np.sort(ends.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    one, other = np.argsort(edge.ravel()).reshape(-1, 2).T
+    a, b, turned = one // 4, other // 4, way[one] == way[other]
+    count = len(cells)
+    rows = np.concatenate([a, a + count]), np.concatenate([b + count * turned, b + count * ~turned])
+    links = coo_array((np.ones(len(rows[0])), rows), shape=(2 * count, 2 * count))
+    return connected_components(links, directed=False)[0] == 2
 
 
 @pytest.mark.parametrize(("dimension", "size"), [(3, 1), (3, 4), (4, 1), (4, 3)])
@@ -105,25 +70,20 @@ def test_opposite_points_of_a_skin_are_one(size):
 def test_cells_are_boxes_of_neighbours():
     """Corners in VTK's order: along an edge of a cell one coordinate steps."""
     points, cells = lattice.cube_skin(4, 3)
-    for a, b in _EDGES[8]:
+    for a, b in EDGES[8]:
         step = np.abs(points[cells[:, a]] - points[cells[:, b]])
         assert np.all(np.sort(step, axis=1) == [0, 0, 0, 2])
     for a, b in itertools.combinations(range(8), 2):
         assert np.all(cells[:, a] != cells[:, b])
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "words"),
-    [
-        (2, ValueError, "resolution: expected an integer of at least 3"),
-        ((5, 1), ValueError, "resolution: expected an integer of at least 2"),
-        ((5, 6, 7), ValueError, "resolution: expected 1 or 2 integers, got 3"),
-        (5.0, TypeError, "resolution: expected an integer"),
-    ],
+test_bad_resolution = refusals(
+    lambda value: lattice.resolution(value, 2, (True, False)),
+    (2, "resolution: expected an integer of at least 3"),
+    ((5, 1), "resolution: expected an integer of at least 2"),
+    ((5, 6, 7), "resolution: expected 1 or 2 integers, got 3"),
+    (5.0, "resolution: expected an integer", TypeError),
 )
-def test_bad_resolution(value, error, words):
-    with pytest.raises(error, match=words):
-        lattice.resolution(value, 2, (True, False))
 
 
 def test_resolution():

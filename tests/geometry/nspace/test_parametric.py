@@ -1,9 +1,9 @@
 """Tangents of any function: the complex step, central differences, closed directions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
+from refusals import refusals
+from vectors import projector, unit
 
 from vizlight.geometry import manifolds
 from vizlight.geometry.nspace.parametric import CENTRAL_STEP, parametric
@@ -13,10 +13,6 @@ TURN = (0, 2 * np.pi)
 
 def torus(t, f):
     return 1.5 * np.cos(t), 1.5 * np.sin(t), 0.75 * np.cos(f), 0.75 * np.sin(f)
-
-
-def projector(frame):
-    return np.einsum("bki,bkj->bij", frame, frame)
 
 
 def error(shape, exact):
@@ -44,12 +40,7 @@ def test_each_way_to_the_tangents():
 
 
 def test_central_differences_are_of_order_2_and_within_the_bound():
-    exact = manifolds.torus(1.5, 0.75, resolution=16)
     steps, errors = np.array([1e-1, 3e-2, 1e-2, 3e-3, 1e-3]), []
-    for step in steps / (2 * np.pi):
-        found = parametric(lambda t: (np.cos(t), np.sin(t)), [TURN], 2, step=step)
-        # The direction of a circle's chord is exact, so a curve of more terms is measured too.
-        assert np.abs(found.frame[:, 0] + 1j * 0).max() <= 1 + 1e-15
 
     def wavy(t):
         return np.cos(t), np.sin(t), np.sin(3 * t) / 3
@@ -66,7 +57,6 @@ def test_central_differences_are_of_order_2_and_within_the_bound():
     assert abs(np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) < 0.2
     assert error(parametric(wavy, [TURN], 3, resolution=50), true) < 1e-9
     assert CENTRAL_STEP * 2 * np.pi == pytest.approx(np.finfo(float).eps ** (1 / 3), rel=0.3)
-    assert exact.k == 2
 
 
 def test_closed_directions_are_found():
@@ -115,8 +105,7 @@ def test_differences_stay_within_the_domain():
 
     shape = parametric(arc, [(0, 1)], 3, resolution=33)
     t = shape.points[1:-1, 0]
-    exact = np.stack([0 * t + 1, 0.5 / np.sqrt(t), -1.5 * np.sqrt(1 - t)], axis=1)
-    exact /= np.linalg.norm(exact, axis=1, keepdims=True)
+    exact = unit(np.stack([0 * t + 1, 0.5 / np.sqrt(t), -1.5 * np.sqrt(1 - t)], axis=1))
     np.testing.assert_allclose(shape.frame[1:-1, 0], exact, atol=1e-8)
     np.testing.assert_allclose(shape.frame[0, 0], [0, 1, 0], atol=2e-3)
     np.testing.assert_allclose(shape.frame[-1, 0] * np.sqrt(1.25), [1, 0.5, 0], atol=2e-3)
@@ -187,48 +176,42 @@ def test_constants_and_volumes():
     np.testing.assert_allclose(np.abs(cube.frame), np.tile(np.eye(3, 4), (27, 1, 1)), atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("options", "error", "words"),
-    [
-        ({"function": lambda t: (t, t)}, ValueError, "function: expected one that returns 3"),
-        ({"function": lambda t: 1.0}, TypeError, "function: expected one that returns 3"),
-        ({"function": lambda t: (t[:2], 0, 0)}, TypeError, "function: expected one that returns"),
-        ({"function": lambda t: ("x", t, t)}, TypeError, "function: .*real numbers"),
-        ({"function": lambda t: (t, 1j * t, t)}, TypeError, "function: .*real numbers"),
-        ({"function": lambda t: (t, t, np.where(t > 0.5, np.nan, t))}, ValueError, "finite coord"),
-        ({"function": lambda t: (1 / t, np.log(t), t)}, ValueError, "finite coordinates"),
-        ({"domain": [(1, 0)]}, ValueError, "domain: expected finite pairs"),
-        ({"domain": [(0, np.inf)]}, ValueError, "domain: expected finite pairs"),
-        ({"domain": (0, 1)}, ValueError, "domain: expected 1 to 3 pairs"),
-        ({"tangents": "forward"}, ValueError, "tangents: expected 'central', 'complex'"),
-        ({"tangents": lambda t: ((1, 2, 3), (1, 2, 3))}, ValueError, "tangents: expected 1 rows"),
-        ({"tangents": lambda t: ((1, 2),)}, ValueError, "tangents: expected one that returns 3"),
-        ({"tangents": np.ones((3, 3))}, ValueError, "tangents: expected 'central'.*an array of"),
-        ({"tangents": lambda t: None}, TypeError, "tangents: expected 1 rows of 3, got None"),
-        ({"step": 1e-20}, ValueError, "step: expected one that rounding of the parameters does"),
-        ({"domain": [(1e16, 1e16 + 1e4)]}, ValueError, "domain: expected one in which rounding"),
-        (
-            {"domain": [(0, 1e-300)], "tangents": "complex"},
-            ValueError,
-            "domain: expected one in which rounding",
-        ),
-        ({"closed": "yes"}, TypeError, "closed: expected a bool or 1 of them"),
-        ({"closed": (True, True)}, ValueError, "closed: expected a bool or 1 of them"),
-        ({"closed": True}, ValueError, "closed: expected a function that returns to its start"),
-        (
-            {"function": lambda t: (np.abs(t), t, t), "tangents": "complex"},
-            ValueError,
-            "function: expected one that is analytic.*pass tangents='central'",
-        ),
-        (
-            {"function": lambda t: (np.arctan2(t, 1), t, t), "tangents": "complex"},
-            TypeError,
-            "function: expected one that takes complex parameters",
-        ),
-    ],
-)
-def test_bad_arguments(options, error, words):
+def bad_arguments(options):
     given = {"function": lambda t: (t, t**2, t**3), "domain": [(0.0, 1.0)], "n": 3, **options}
     function, domain, n = given.pop("function"), given.pop("domain"), given.pop("n")
-    with pytest.raises(error, match=words):
-        parametric(function, domain, n, **given)
+    parametric(function, domain, n, **given)
+
+
+test_bad_arguments = refusals(
+    bad_arguments,
+    ({"function": lambda t: (t, t)}, "function: expected one that returns 3"),
+    ({"function": lambda t: 1.0}, "function: expected one that returns 3", TypeError),
+    ({"function": lambda t: (t[:2], 0, 0)}, "function: expected one that returns", TypeError),
+    ({"function": lambda t: ("x", t, t)}, "function: .*real numbers", TypeError),
+    ({"function": lambda t: (t, 1j * t, t)}, "function: .*real numbers", TypeError),
+    ({"function": lambda t: (t, t, np.where(t > 0.5, np.nan, t))}, "finite coord"),
+    ({"function": lambda t: (1 / t, np.log(t), t)}, "finite coordinates"),
+    ({"domain": [(1, 0)]}, "domain: expected finite pairs"),
+    ({"domain": [(0, np.inf)]}, "domain: expected finite pairs"),
+    ({"domain": (0, 1)}, "domain: expected 1 to 3 pairs"),
+    ({"tangents": "forward"}, "tangents: expected 'central', 'complex'"),
+    ({"tangents": lambda t: ((1, 2, 3), (1, 2, 3))}, "tangents: expected 1 rows"),
+    ({"tangents": lambda t: ((1, 2),)}, "tangents: expected one that returns 3"),
+    ({"tangents": np.ones((3, 3))}, "tangents: expected 'central'.*an array of"),
+    ({"tangents": lambda t: None}, "tangents: expected 1 rows of 3, got None", TypeError),
+    ({"step": 1e-20}, "step: expected one that rounding of the parameters does"),
+    ({"domain": [(1e16, 1e16 + 1e4)]}, "domain: expected one in which rounding"),
+    ({"domain": [(0, 1e-300)], "tangents": "complex"}, "domain: expected one in which rounding"),
+    ({"closed": "yes"}, "closed: expected a bool or 1 of them", TypeError),
+    ({"closed": (True, True)}, "closed: expected a bool or 1 of them"),
+    ({"closed": True}, "closed: expected a function that returns to its start"),
+    (
+        {"function": lambda t: (np.abs(t), t, t), "tangents": "complex"},
+        "function: expected one that is analytic.*pass tangents='central'",
+    ),
+    (
+        {"function": lambda t: (np.arctan2(t, 1), t, t), "tangents": "complex"},
+        "function: expected one that takes complex parameters",
+        TypeError,
+    ),
+)

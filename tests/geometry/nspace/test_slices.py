@@ -1,13 +1,13 @@
 """A hyperplane cuts simplices without cracks, and frames to what lies in it."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
 import oracles
 import pytest
+from refusals import refusals
 from scipy.sparse import csr_array
+from vectors import areas, projector
 
 from vizlight.geometry import slices
 
@@ -35,12 +35,7 @@ def test_every_pattern_of_a_tetrahedron():
             ring = [*shared, *(set(a) ^ set(b))]
             p, q, r, s = points[[ring[0], ring[2], ring[1], ring[3]]]
             whole = 0.5 * np.linalg.norm(np.cross(r - p, s - q))
-            assert area(points, cells) == pytest.approx(whole, rel=1e-12)
-
-
-def area(points, cells):
-    a, b, c = (points[cells[:, i]] for i in range(3))
-    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+            assert areas(points[cells]).sum() == pytest.approx(whole, rel=1e-12)
 
 
 def test_a_corner_at_zero_is_one_point():
@@ -81,24 +76,6 @@ def test_a_circle_is_cut_in_two_points():
     np.testing.assert_allclose(x, 0.3, atol=1e-15)
 
 
-def test_frames_of_a_slice(random):
-    for k, n in [(2, 3), (2, 4), (3, 4), (5, 8)]:
-        frame = oracles.frames(random, 40, k, n, np.float64)
-        normal = random.standard_normal(n)
-        found = slices.slice_frame(frame, normal)
-        assert found.shape == (40, k - 1, n)
-        gram = np.einsum("bki,bli->bkl", found, found)
-        worst = np.abs(gram - np.eye(k - 1)).max() / oracles.eps(float)
-        assert worst <= 8
-        assert np.abs(found @ normal).max() < 1e-14
-        inside = np.einsum("bki,bji,bjm->bkm", found, frame, frame)
-        np.testing.assert_allclose(inside, found, atol=1e-14)
-
-
-def projector(frame):
-    return np.einsum("bki,bkj->bij", frame, frame)
-
-
 @pytest.mark.parametrize(("k", "n"), [(1, 3), (2, 4), (3, 5)])
 def test_mean_frames_do_not_depend_on_the_basis_at_a_point(k, n, random):
     """Random rotations and signs of each basis change nothing that is spanned."""
@@ -113,16 +90,6 @@ def test_mean_frames_do_not_depend_on_the_basis_at_a_point(k, n, random):
     np.testing.assert_allclose(projector(one), projector(other), atol=1e-14)
     gram = np.einsum("bki,bli->bkl", one, one)
     np.testing.assert_allclose(gram, np.tile(np.eye(k), (20, 1, 1)), atol=1e-14)
-
-
-def test_mean_frame_between_two_lines_is_between_them():
-    """Shares of unit vectors that may point either way, and the order 2 of the mean."""
-    for size, bound in ((0.1, 2e-4), (0.01, 2e-7)):
-        angles = np.array([0.3, 0.3 + size])
-        frame = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)[:, np.newaxis]
-        frame[1] *= -1
-        found = slices.mean_frame(frame, csr_array([[0.7, 0.3]]))[0, 0]
-        assert abs(np.arctan(found[1] / found[0]) - (0.3 + 0.3 * size)) < bound
 
 
 def test_spaces_without_a_mean_have_none():
@@ -156,28 +123,18 @@ def test_where_the_manifold_touches_the_hyperplane_there_is_no_frame():
     np.testing.assert_allclose(np.abs(found[1]), [[1, 0, 0, 0]], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("values", "simplices", "words"),
-    [
-        ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
-        ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
-        ([1.0, -1], [[0, 2]], "simplices: expected indices of values from 0 to 1"),
-        ([1.0, -1], [[-1, 0]], "simplices: expected indices of values"),
-    ],
+test_bad_simplices = refusals(
+    slices.cut,
+    ([1.0, -1], [[0, 1, 1, 1, 1]], "simplices: expected integers of shape"),
+    ([1.0, -1], [[0.0, 1]], "simplices: expected integers of shape"),
+    ([1.0, -1], [[0, 2]], "simplices: expected indices of values from 0 to 1"),
+    ([1.0, -1], [[-1, 0]], "simplices: expected indices of values"),
 )
-def test_bad_simplices(values, simplices, words):
-    with pytest.raises(ValueError, match=words):
-        slices.cut(values, simplices)
 
 
-@pytest.mark.parametrize(
-    ("frame", "normal", "words"),
-    [
-        (np.eye(4)[:1], (0, 0, 0, 1), "frame: expected 2 tangents or more"),
-        (np.eye(4)[:2], (0, 0, 1), "normal: expected 4 components"),
-        (np.eye(4)[:2], (0, 0, 0, 0), "normal: expected a direction of non-zero length"),
-    ],
+test_bad_slices = refusals(
+    slices.slice_frame,
+    (np.eye(4)[:1], (0, 0, 0, 1), "frame: expected 2 tangents or more"),
+    (np.eye(4)[:2], (0, 0, 1), "normal: expected 4 components"),
+    (np.eye(4)[:2], (0, 0, 0, 0), "normal: expected a direction of non-zero length"),
 )
-def test_bad_slices(frame, normal, words):
-    with pytest.raises(ValueError, match=words):
-        slices.slice_frame(frame, normal)

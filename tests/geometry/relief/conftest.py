@@ -1,7 +1,5 @@
 """Compiled code and NumPy in turn, for the tests of both."""
 
-from __future__ import annotations
-
 import pytest
 
 from vizlight import _compiled

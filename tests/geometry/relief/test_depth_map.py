@@ -1,7 +1,5 @@
 """The highest of triangles over nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

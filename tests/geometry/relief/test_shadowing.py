@@ -1,7 +1,5 @@
 """The ratio t of cos-theta shadows: laws that hold on any height field."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from fields import hills, places, sun

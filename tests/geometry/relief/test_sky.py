@@ -1,7 +1,5 @@
 """The sky of height fields: closed forms, every crossing as the truth, odd fields, both codes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

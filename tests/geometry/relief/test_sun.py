@@ -1,7 +1,5 @@
 """The sun where almanacs have it, and its disc."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Length inside a height field, against rays that are cut at all planes of nodes."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

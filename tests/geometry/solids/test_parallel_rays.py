@@ -1,21 +1,16 @@
 """Hits of parallel rays against a product of signs in exact numbers, and through edges."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np
 import pytest
 import pyvista as pv
+from vectors import unit
 
 from vizlight.geometry.solids import parallel_rays
 from vizlight.mesh import closed_meshes
 
 WAYS = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (0.6, 0.0, 0.8), (0.48, 0.6, 0.64), (1e-9, 0, 1)]
-
-
-def unit(way):
-    return np.array(way, dtype=float) / np.linalg.norm(way)
 
 
 def windings(body, start, way):

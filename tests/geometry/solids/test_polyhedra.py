@@ -1,12 +1,11 @@
 """Solids of planes and rings, moved and turned, and closed meshes as operands."""
 
-from __future__ import annotations
-
 import banded
 import numpy as np
 import pytest
 import pyvista as pv
 import solid_trees
+from refusals import refusals
 from scipy.spatial.transform import Rotation
 
 import vizlight
@@ -127,21 +126,16 @@ def test_meshes_for_pyvista(tmp_path):
         vizlight.to_polydata(mesh)
 
 
-@pytest.mark.parametrize(
-    ("make", "kind", "words"),
-    [
-        (lambda: Torus(tube_radius=0.5), ValueError, "tube_radius: expected a radius below"),
-        (lambda: Prism([(0, 0), (1, 0)]), ValueError, "outline: expected 3 corners"),
-        (lambda: Prism([(0, 0), (1, 1), (1, 0), (0, 1)]), ValueError, "outline: expected a simple"),
-        (lambda: Polyhedron(pv.Plane()), ValueError, "triangles: expected a closed surface"),
-        (lambda: Polyhedron(pv.ImageData()), TypeError, r"points: .*extract_surface\(\)"),
-        (lambda: Polyhedron(np.eye(3), [[0, 1, 3]]), ValueError, "triangles: expected indices"),
-        (lambda: Sphere() | pv.Sphere(), TypeError, r"second: .*vizlight.Polyhedron\(mesh\)"),
-        (lambda: Sphere().scale(0), ValueError, "factor: expected a number above 0"),
-        (lambda: solids.tessellate(HalfSpace()), ValueError, "expected a bounded solid"),
-        (lambda: solids.tessellate(Sphere() | HalfSpace()), ValueError, "a bounded combination"),
-    ],
+test_bad_input = refusals(
+    lambda call: call(),
+    (lambda: Torus(tube_radius=0.5), "tube_radius: expected a radius below"),
+    (lambda: Prism([(0, 0), (1, 0)]), "outline: expected 3 corners"),
+    (lambda: Prism([(0, 0), (1, 1), (1, 0), (0, 1)]), "outline: expected a simple"),
+    (lambda: Polyhedron(pv.Plane()), "triangles: expected a closed surface"),
+    (lambda: Polyhedron(pv.ImageData()), r"points: .*extract_surface\(\)", TypeError),
+    (lambda: Polyhedron(np.eye(3), [[0, 1, 3]]), "triangles: expected indices"),
+    (lambda: Sphere() | pv.Sphere(), r"second: .*vizlight.Polyhedron\(mesh\)", TypeError),
+    (lambda: Sphere().scale(0), "factor: expected a number above 0"),
+    (lambda: solids.tessellate(HalfSpace()), "expected a bounded solid"),
+    (lambda: solids.tessellate(Sphere() | HalfSpace()), "a bounded combination"),
 )
-def test_bad_input(make, kind, words):
-    with pytest.raises(kind, match=words):
-        make()

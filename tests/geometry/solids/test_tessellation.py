@@ -1,13 +1,12 @@
 """Solids combined: closed, outward, volume and area against closed forms, bands kept."""
 
-from __future__ import annotations
-
 import functools
 
 import banded
 import numpy as np
 import pytest
 import solid_trees
+from refusals import refusals
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -390,20 +389,15 @@ def test_too_fine_is_refused():
         solids.tessellate(PAIR, tolerance=0)
 
 
-@pytest.mark.parametrize(
-    ("make", "kind", "words"),
-    [
-        (lambda: Sphere() | 3, TypeError, "second: expected a vizlight.Sphere"),
-        (lambda: Boolean("xor", Sphere(), Sphere()), ValueError, "operation: expected 'union'"),
-        (lambda: Sphere(radius=-1), ValueError, "radius: expected"),
-        (lambda: Sphere((0, np.inf, 0)), ValueError, "center: expected finite"),
-        (lambda: Block(size=(1, -1, 1)), ValueError, "size: expected lengths"),
-        (lambda: Block(axes=np.ones((3, 3))), ValueError, "axes: expected 3 orthonormal rows"),
-        (lambda: Frustum(axis=(0, 0, 0)), ValueError, "axis: expected a vector of non-zero"),
-        (lambda: solids.tessellate("ball"), TypeError, "solid: expected a vizlight.Sphere"),
-        (lambda: Sphere().contains([1, 2]), ValueError, "points: expected vectors"),
-    ],
+test_bad_input = refusals(
+    lambda call: call(),
+    (lambda: Sphere() | 3, "second: expected a vizlight.Sphere", TypeError),
+    (lambda: Boolean("xor", Sphere(), Sphere()), "operation: expected 'union'"),
+    (lambda: Sphere(radius=-1), "radius: expected"),
+    (lambda: Sphere((0, np.inf, 0)), "center: expected finite"),
+    (lambda: Block(size=(1, -1, 1)), "size: expected lengths"),
+    (lambda: Block(axes=np.ones((3, 3))), "axes: expected 3 orthonormal rows"),
+    (lambda: Frustum(axis=(0, 0, 0)), "axis: expected a vector of non-zero"),
+    (lambda: solids.tessellate("ball"), "solid: expected a vizlight.Sphere", TypeError),
+    (lambda: Sphere().contains([1, 2]), "points: expected vectors"),
 )
-def test_bad_input(make, kind, words):
-    with pytest.raises(kind, match=words):
-        make()
