@@ -199,11 +199,12 @@ def split_or_normals(
     corners, origin, turned = split_faces(places(mesh), ids, ends, angle, twins)
     if len(origin) == mesh.n_points:
         return mesh, None
-    # Pieces that are taken apart would not know that they had a side in common.
-    size = np.diff(ends)
-    last = np.repeat(ends[:-1] + ends[1:] - 1, size)
-    at = np.arange(len(ids))
-    corners = corners[np.where(np.repeat(turned, size), last - at, at)]
+    if turned.any():
+        # Pieces that are taken apart would not know that they had a side in common.
+        size = np.diff(ends)
+        last = np.repeat(ends[:-1] + ends[1:] - 1, size)
+        at = np.arange(len(ids))
+        corners = corners[np.where(np.repeat(turned, size), last - at, at)]
     return _at(mesh, corners, ends, origin), None
 
 

@@ -173,13 +173,43 @@ def split_faces(
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
     count = len(ends) - 1
+    root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
     # Faces that are there twice have no side, and are not turned over.
     lone = None if twins is None else np.bincount(twins, minlength=count)[twins] == 1
-    root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
-    edges: list[tuple[Indices, Indices]] = []
     alike = True
-    # By ranges of points: a sort of all edges at once would take more memory.
-    for block in _pool.blocks(len(points), EDGES // 16):
+    for own, one, other, a, b, against in _neighbours(len(points), ids, ends, twins):
+        cosine = np.einsum("ij,ij->i", unit[a], unit[b])
+        smooth = np.where(against, cosine, -cosine) > least
+        joins = np.sort([one[smooth], other[smooth]], axis=0)
+        root[own] = own[components(joins[0], joins[1], len(own))]
+        alike = alike and bool((against if lone is None else against[lone[a] & lone[b]]).all())
+    if twins is not None:
+        corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
+        _, first, number = np.unique(corner, return_index=True, return_inverse=True)
+        root = root[first[number.reshape(-1)]]
+    turned = np.zeros(count, dtype=np.bool_)
+    if not alike:
+        edges = []
+        for _, _, _, a, b, against in _neighbours(len(points), ids, ends, twins):
+            known = a < b if lone is None else (a < b) & lone[a] & lone[b]
+            # The other side of a face has its number beyond those of all faces.
+            edges.append((a[known], np.where(against, b, b + count)[known]))
+        one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
+        up, down = double_cover(one, other, count)
+        turned = up > down
+    return *numbered(root, ids, len(points)), turned
+
+
+def _neighbours(
+    count: int, ids: Indices, ends: Indices, twins: Indices | None
+) -> Iterator[tuple[Indices, Indices, Indices, Indices, Indices, Bools]]:
+    """Yield the corners of some points, and pairs of faces that an edge at these joins.
+
+    A pair is told by the two places among the corners, by the two faces, each once in either order,
+    and by whether they are wound alike. By ranges of points: a sort of all edges at once would take
+    more memory.
+    """
+    for block in _pool.blocks(count, EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
         face = np.searchsorted(ends, own, side="right") - 1
         begin, end = ends[face], ends[face + 1]
@@ -197,30 +227,9 @@ def split_faces(
         new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
         pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
         one, other = rows[pair] % len(own), rows[pair + 1] % len(own)
-        a, b = face[one], face[other]
-        cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         # Faces that are wound alike run along their common edge against each other.
         against = (rows[pair] < len(own)) != (rows[pair + 1] < len(own))
-        # The other side of a face has its number beyond those of all faces.
-        once = at[rows[pair]] < toward[rows[pair]]
-        if lone is not None:
-            once &= lone[a] & lone[b]
-        alike = alike and bool(against[once].all())
-        b = np.where(against, b, b + count)
-        edges.append((a[once].astype(root.dtype), b[once].astype(root.dtype)))
-        smooth = np.where(against, cosine, -cosine) > least
-        joins = np.sort([one[smooth], other[smooth]], axis=0)
-        root[own] = own[components(joins[0], joins[1], len(own))]
-    if twins is not None:
-        corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
-        _, first, number = np.unique(corner, return_index=True, return_inverse=True)
-        root = root[first[number.reshape(-1)]]
-    turned = np.zeros(count, dtype=np.bool_)
-    if not alike:
-        one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
-        up, down = double_cover(one, other, count)
-        turned = up > down
-    return *numbered(root, ids, len(points)), turned
+        yield own, one, other, face[one], face[other], against
 
 
 def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
