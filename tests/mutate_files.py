@@ -16,8 +16,9 @@ import numpy as np
 from hostile import runner, seeds
 from hostile.runner import ask
 
-#: Formats that do not say how much they hold: lines of such a file are a whole file.
-UNCOUNTED = (".obj",)
+#: Formats that do not say how much they hold, and one whose reader does not hold a file to its
+#: counts: lines of such a file are a whole file.
+UNCOUNTED = (".obj", ".su2")
 #: Where files that failed are kept.
 KEPT = Path("failed_files")
 #: Files of one process, and the least number of bytes that matter in a mutation.

@@ -38,7 +38,7 @@ from vizlight.mesh import (
     series,
     short_files,
 )
-from vizlight.vtk.cells import check_whole
+from vizlight.vtk.cells import cell_arrays, check_whole, connectivity
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -218,6 +218,11 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         del mesh.cell_data[key]
     if odd:
         _check.warn(f"file: arrays without a row for each cell are left out: {odd}")
+    for cells in cell_arrays(mesh):
+        ids, ends = connectivity(cells)
+        if len(ends) and ((ends[0], ends[-1]) != (0, len(ids)) or np.any(ends[1:] < ends[:-1])):
+            # VTK ends the process where it draws or writes them.
+            raise FileError(f"cells that do not follow one another among {len(ids)} corners")
     check_whole(mesh, "mesh")
     if lacking := short_files.missing_numbers(mesh, path):
         raise FileError(lacking)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -276,9 +277,13 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     if not isinstance(mesh, vtkDataSet):
         return
     count = mesh.GetNumberOfPoints()
-    if isinstance(mesh, vtkStructuredGrid) and len(places(mesh)) != count:
-        expected = f"{count} points by the extent {tuple(mesh.GetExtent())}"
-        raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
+    if isinstance(mesh, vtkStructuredGrid):
+        # Versions of VTK count by the points or by the extent.
+        size: list[int] = [0, 0, 0]
+        mesh.GetDimensions(size)
+        if len(places(mesh)) != math.prod(size):
+            expected = f"{math.prod(size)} points by the extent {tuple(mesh.GetExtent())}"
+            raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
     for of, data, rows in (
         ("point", point_data(mesh), count),
         ("cell", cell_data(mesh), mesh.GetNumberOfCells()),
