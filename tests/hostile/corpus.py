@@ -130,6 +130,17 @@ CASES = {
              "DIMENSIONS 2 2 2", "X_COORDINATES 2 double", "0 1"),
         2, "No y coordinates",
     ),
+    "layers.vtk": Case(
+        text("# vtk DataFile Version 3.0", "few", "ASCII", "DATASET STRUCTURED_GRID",
+             "DIMENSIONS 2 300 1", "POINTS 4 double", *(" ".join(map(str, p)) for p in SQUARE)),
+        2, "expected 600 points by the extent",
+    ),
+    "order.vtk": Case(
+        text("# vtk DataFile Version 5.1", "order", "ASCII", "DATASET POLYDATA", "POINTS 4 double",
+             *(" ".join(map(str, p)) for p in SQUARE), "POLYGONS 3 6", "OFFSETS vtktypeint64",
+             "0 9 6", "CONNECTIVITY vtktypeint64", "0 1 2 0 2 3"),
+        2, "cells that do not follow one another among 6 corners",
+    ),
     "field.vtk": Case(
         text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET POLYDATA", "FIELD F")[:-1],
         2, "its reader was ended by SIGSEGV",
