@@ -171,8 +171,6 @@ class _Latitudes:
         near = light.distance
         self.ratio = 0.0 if math.isinf(near) else (radius / near if near > radius else 1.0)
         self.dark = (1 - self.ratio) / 2
-        if self.ratio == 0 and near == 0:
-            self.dark = 0.0
 
     def luminance(self, q: ArrayLike) -> Array:
         """Return the luminance at values of q."""
