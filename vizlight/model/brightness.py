@@ -92,6 +92,7 @@ def exponent(k: int, n: int) -> float:
 
 @functools.lru_cache(maxsize=4096)
 def _exponent(k: int, n: int) -> float:
+    # The mean of sin^2 is c / n, which is 1/2 for k = c.
     if k == n - k:
         return 2.0
     if k == 2:  # I = c / (c + p)
@@ -103,6 +104,7 @@ def _exponent(k: int, n: int) -> float:
     # ln I falls and is convex: the secant through two points before the root meets zero between
     # the second of them and the root, so that the points rise to it.
     last, p = 0.0, 1.0
+    # Powers of two that hold the root between p and 2 p, so that the secant starts below it.
     while excess(p) < 0:
         p /= 2
     while excess(2 * p) > 0:
@@ -150,6 +152,7 @@ def _remainder(x: ArrayLike) -> Array:
         near = np.minimum(x, _SERIES_FROM)
         steps = sum(((near + j + 0.5) * np.log1p(1 / (near + j)) - 1 for j in range(8)), steps)
         x = np.where(small, x + 8, x)
+    # Horner's rule: Stirling's series has odd powers of 1 / x alone.
     y = 1 / (x * x)
     series = functools.reduce(lambda total, term: total * y + term, _STIRLING) / x
     return np.asarray(np.where(small, series + steps, series))

@@ -195,6 +195,7 @@ def specular_gradient(
     by_gamma = -power_c / (x.a * x.b)
     share = np.minimum(x.ww / size, 1)
     peak = kernels.power(share, s / 2, np.square(x.p + x.q) / size) / 2
+    # Derivative by the logarithm of |h_N|^2, which is |(wi + wo)_N|^2 over |wi + wo|^2.
     slope = peak * mean * s / 2
 
     def angle(ee: Array, ll: Array) -> tuple[Array, Array, Array]:
@@ -203,6 +204,7 @@ def specular_gradient(
         cut = x.cross * x.cross / (ee * x.ww)
         return near * ll / 2 - cut, near * ee / 2, -near * x.dot - cut
 
+    # Beta is the angle at the eye's part, gamma at the light's: one formula with the two exchanged.
     beta_b, beta_a, beta_d = angle(x.bb, x.aa)
     gamma_a, gamma_b, gamma_d = angle(x.aa, x.bb)
     return x.chain(
@@ -249,6 +251,7 @@ class _Invariants(_Line):
     def chain(self, by_aa: Array, by_bb: Array, by_dot: Array, by_m: Array) -> Gradient:
         """Return the gradient from the partial derivatives by aa, bb, dot and m."""
         (light, eye), line = self.directions, self.line.rows[0]
+        # Of unit vectors aa = 1 - p^2, bb = 1 - q^2 and dot = m - p q.
         by_p = -2 * self.p * by_aa - self.q * by_dot
         by_q = -2 * self.q * by_bb - self.p * by_dot
         by_m = by_m + by_dot
@@ -259,6 +262,8 @@ class _Invariants(_Line):
         )
         found, largest = [], np.finfo(light.dtype).max
         for part, own, size in zip(parts, (light, eye, line), self.sizes, strict=True):
+            # The value does not depend on lengths: what is along the vector goes, and the rest is
+            # over its length.
             across = part - kernels.dot(part, own) * own
             with np.errstate(over="ignore"):
                 across = np.where(self.valid, across / np.where(self.valid, size, 1), 0)

@@ -195,6 +195,7 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
     heights, sines = _check.together(height=heights, sin_alpha=sines)
     if density == 0:
         return np.ones_like(sines)
+    # log(1 - rho) is infinite: such fur is opaque, except where it has no height.
     if density == 1:
         return np.asarray(heights == 0).astype(sines.dtype)
     limits = np.finfo(sines.dtype)

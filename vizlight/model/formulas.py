@@ -66,6 +66,7 @@ def phong(along: Number, sine_i: Number, sine_o: Number, shininess: float) -> Nu
 
     On a surface the sines are the cosines to the normal.
     """
+    # The deficit is 1 - V.R of unit vectors: near the peak it keeps digits that V.R has lost.
     apart = sine_i - sine_o
     deficit = 0.5 * (along + apart * apart)
     return power(maximum(1.0 - deficit, 0.0), deficit, shininess)
@@ -75,6 +76,7 @@ def blinn(along: Number, across: Number, shininess: float) -> Number:
     """Return |h_N|^s from the squared parts of wi + wo; 0 where there is no half vector."""
     whole = along + across
     scale = 1.0 / where(whole > 0.0, whole, 1.0)
+    # |h_N|^2 is the share of |wi + wo|^2 that is across, so its power is s / 2.
     value = power(across * scale, along * scale, 0.5 * shininess)
     return only(whole > 0.0, value)
 
@@ -92,6 +94,7 @@ def shadowed_highlight(value: Number, passed: Number, side: Number) -> Number:
 
 def attenuation(distance: Number, constant: Number, linear: Number, quadratic: Number) -> Number:
     """Return min(1, 1 / (c1 + c2 d + c3 d^2)) (Lecture)."""
+    # At most 1: no point gets more than a lamp's intensity, however near the lamp is.
     return 1.0 / maximum(constant + distance * (linear + distance * quadratic), 1.0)
 
 

@@ -112,6 +112,7 @@ def split(direction: ArrayLike, frame: ArrayLike, /) -> tuple[Array, Array]:
     rows = as_frame(frame)
     x = _check.vectors("direction", direction, n=rows.shape[-1])
     shape, rows, (x,) = batch("frame", rows, direction=x)
+    # Otherwise an infinite component would give infinite coefficients beside a length of NaN.
     x = np.where(np.isfinite(x).all(axis=0), x, np.nan)
     along, normal = kernels.split(x, rows)
     return np.ascontiguousarray(along.T).reshape(*shape, len(along)), normal.reshape(shape)
@@ -159,6 +160,7 @@ def as_frame(frame: ArrayLike) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):
         gram = array @ np.swapaxes(array, -1, -2)
     diagonal = np.diagonal(gram, axis1=-2, axis2=-1)
+    # Rows past the rank are zero: their diagonal is 0, not 1.
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):

@@ -114,6 +114,7 @@ def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
     with np.errstate(invalid="ignore"):
         triple = kernels.triple(light, half, up)
         value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(triple)
+        # R.E without the half vector, which has no direction for wi = -wo.
         straight = 2 * kernels.dot(up, light) * kernels.dot(up, eye) - kernels.dot(light, eye)
     return frames.result(np.where(size > 0, value, straight).reshape(shape))
 

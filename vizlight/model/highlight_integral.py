@@ -56,11 +56,13 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
         with np.errstate(invalid="ignore"):
             cell = np.minimum(place.astype(np.int32), last)
         place -= cell
+        # Beyond the table G no longer grows: such z are taken to the end of the last cell.
         np.minimum(place, 1, out=place)
         value: Array = rows[-1].take(cell)
         for row in rows[-2::-1]:
             value *= place
             value += row.take(cell)
+        # G is odd.
         np.copysign(value, z, out=value)
         return value
 
@@ -89,5 +91,6 @@ def table(shininess: float) -> tuple[float, Array]:
     start = np.concatenate([[0.0], np.cumsum(sums)[:-1]])
     t = (1 + np.cos(np.pi * (np.arange(DEGREE) + 0.5) / DEGREE)) / 2
     powers = np.linalg.solve(np.vander(t, increasing=True), integrand(t).T)
+    # Integrated term by term: t^j becomes t^(j + 1) / (j + 1), in units of a cell's width.
     slopes = width * powers / np.arange(1, DEGREE + 1)[:, np.newaxis]
     return count / reach, np.concatenate([start[np.newaxis], slopes])

@@ -92,6 +92,7 @@ def required_factor(rho: ArrayLike, /) -> Array:
     angle = _angles("rho", rho)
     with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
         small, sine = np.cos(angle), np.sin(angle)
+        # Near 1 a cosine has lost the digits of its logarithm, which the sine still has.
         numerator = np.where(
             small > 0.7, 0.5 * np.log1p(-(sine * sine)), np.log(np.maximum(small, 0))
         )
@@ -135,6 +136,7 @@ def pixel_error(rho: ArrayLike, r: ArrayLike, /, *, factor: ArrayLike = 4.0) -> 
     angle, r, factor = _check.together(rho=angle, r=r, factor=factor)
     q = factor * r
     with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
+        # cos^2(rho / 2) = 1 - x and cos(rho) = 1 - 2 x: both logarithms are of deficits.
         x = np.square(np.sin(angle / 2))
         # Beyond a right angle the cosine itself is accurate.
         log = np.where(x < 0.5, np.log1p(-x) / 2, np.log(np.cos(angle / 2)))
@@ -487,6 +489,7 @@ def extremes(
     beta: Array, r: Array, factor: Array, *, lit: bool
 ) -> tuple[Array, Array, Array, Array]:
     """Return the most by which Phong exceeds Blinn and falls short of it, and the x of each."""
+    # The bounds of V.R in (9'): the upper one has a = 2 cos^2(beta), the lower one a = 2.
     wide = 2 * np.square(np.cos(beta))
     more, at_more = _maximum(wide, r, factor * r, np.ones_like(beta), 1.0)
     end = np.minimum(0.5, np.square(np.cos(beta))) if lit else np.full_like(beta, 0.5)
@@ -507,6 +510,7 @@ def _maximum(a: Array, r: Array, q: Array, end: Array, sign: float) -> tuple[Arr
                 - np.log(r * a / m)
             )
 
+        # Where the derivative of `slope` is 0: on either side of it there is one root at most.
         turn = ((m - 1) - (r - 1) * a) / (a * (m - r))
         turn = np.where((turn > 0) & (turn < end), turn, end)
         best, where = np.zeros_like(end), np.zeros_like(end)
@@ -543,8 +547,10 @@ def sphere_errors(beta: float, r: float, factor: float) -> dict[str, float]:
     du = (np.diff(cuts)[:, None] / 2 * weights).ravel()
     nu = np.multiply.outer(end, u)
     sine = np.sin(nu)
+    # By (9') with |wi_N| - |wo_N| = 2 sin(beta) sin(nu) sin(psi), V.R is 1 - a sin^2(nu).
     a = 2 * (1 - np.square(sin_beta * np.cos(psi)))[:, np.newaxis]
     error = difference(sine * sine, a, np.asarray(r), np.asarray(factor * r))
+    # The area on the sphere of normals is sin(nu) dnu dpsi.
     measure = sine * du * (end * round_weights)[:, np.newaxis]
     area = float(measure.sum())
     if area == 0:

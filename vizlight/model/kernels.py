@@ -82,6 +82,7 @@ def _length(v: Array) -> tuple[Array, Bools | None]:
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         square = dot(v, v)
     info = np.finfo(v.dtype)
+    # Below tiny / eps the squares of small components are subnormal, and the sum has lost digits.
     low, high = info.tiny / info.eps, info.max
     if square.size == 0 or (square.min() >= low and square.max() <= high):
         return np.sqrt(square, out=square), None
@@ -125,9 +126,11 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
             good &= distance > rtol
             row = _reject(row, frame[:j])
             row, _ = unit(row)
+        # Mostly no vector has been dropped, and whole rows are written without a mask.
         if good.all() and (rank == j).all():
             frame[j] = row
         else:
+            # A dropped vector leaves no gap: those after it take the next free row of their point.
             frame[rank[good], :, good] = row[:, good].T
         rank += good
     return frame, rank
@@ -166,6 +169,7 @@ def power(x: Array, exponent: float, deficit: Array | None = None) -> Array:
     """
     if exponent > DEFICIT_FROM and deficit is not None:
         with np.errstate(divide="ignore", under="ignore", over="ignore"):
+            # By rounding a deficit may exceed 1, where the logarithm has no value.
             result: Array = np.log1p(-np.minimum(deficit, 1))
             result *= exponent
             return np.exp(result, out=result)

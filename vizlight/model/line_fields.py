@@ -73,6 +73,7 @@ def principal(products: Array, k: int = 1) -> tuple[Array, Array]:
     total = np.abs(values).sum(axis=-1)
     gap = (values[..., -k] - values[..., -k - 1]) / np.where(total > 0, total, 1)
     unique = gap > ISOTROPIC
+    # eigh sorts eigenvalues upward, with the eigenvectors as columns.
     tangents = np.swapaxes(vectors[..., ::-1][..., :k], -1, -2)
     return np.where(unique[..., np.newaxis, np.newaxis], tangents, 0), np.where(unique, gap, 0)
 
@@ -93,6 +94,7 @@ def mean(tangents: Array, weights: Array) -> Array:
         Orthonormal tangents; a single one has the sign that most of its places have, by weight.
         Zero where no space is closest.
     """
+    # t and -t have the same outer product, so opposite tangents do not cancel in the mean.
     products = outer(tangents)
     found, _ = principal(np.einsum("...m,...mij->...ij", weights, products), tangents.shape[-2])
     if tangents.shape[-2] == 1:

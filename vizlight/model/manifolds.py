@@ -245,6 +245,8 @@ class Cylinder(Frame):
         # Across the line both directions are seen in a plane, at the angle atan2(cross, dot).
         dot, cross = self.w.dot(lit.rest, eye.rest), self.cross(lit, eye)
         seen = eye.size > self.w.least
+        # atan2(cross, -dot) is pi - alpha. Dot and cross hold the factor |wi_N| |wo_N|, of which
+        # |wo_N| is divided out.
         mean = (np.arctan2(cross, -dot) * dot + cross) / (4.0 * where(seen, eye.size, 1.0))
         return where(seen, mean, lit.size * 0.3183098861837907)
 

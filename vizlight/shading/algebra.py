@@ -152,12 +152,16 @@ class Algebra(Vectors):
         assert cue.front is not None
         assert cue.back is not None
         away = self.difference(view.position or (0.0,) * self.n, wide=True)
+        # The direction of a view is toward the eye, as `away` is, so that depth grows away from the
+        # eye; without an axis it is the distance.
         if view.direction is None:
             depth = np.sqrt(self.dot(away, away))
         else:
             depth = self.dot(self.way(view.direction, wide=True), away)
         self.known(depth)
         ends = cue.front, cue.back
+        # A difference of two such depths might leave float64; a quarter of all of them gives the
+        # same scale.
         if max(map(abs, ends)) > falloff.LARGEST_DEPTH:
             depth, ends = depth * self.wide(0.25), (cue.front / 4, cue.back / 4)
         return depth, [self.wide(x) for x in (*ends, cue.front_scale, cue.back_scale)]
@@ -202,6 +206,8 @@ class Algebra(Vectors):
     def color(self, term: str, coefficient: float) -> Value:
         """Return a coefficient times the colour of the material for a term."""
         scene, material = self.plan.scene, self.plan.scene.material
+        # A highlight does not take the diffuse colour: without a specular colour it has the lamp's
+        # alone.
         own = material.specular_color if term == "specular" else material.color
         rgb = np.multiply(own or WHITE, coefficient)
         if term == "ambient":

@@ -69,6 +69,7 @@ class Shading:
     @classmethod
     def of(cls, plan: Plan, count: int) -> Shading:
         """Return arrays for a number of points, to be filled."""
+        # Not cleared, since the blocks write every point.
         kind, parts = plan.dtype, plan.components
         return cls(
             luminance=np.empty(count, kind),
@@ -97,6 +98,7 @@ def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading)
     """
     w, m = Arrays(plan, inputs, rows), inputs.repeat
     light(w, plan)
+    # One truth that broadcasts where the whole block has light.
     valid = np.True_ if w.valid is None else w.valid
     at = slice(rows.start * m, rows.stop * m)
     for name, value in (*w.made.items(), ("valid", valid)):
@@ -167,11 +169,14 @@ class Arrays(Algebra):
 
     def wide(self, value: float) -> Value:
         """Return a number of the plan in float64, which float32 does not take in."""
+        # As an array, because beside float32 arrays NumPy rounds a Python number to float32.
         return np.array([value])
 
     def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
         """Return a vector of the plan, which broadcasts."""
         column = np.array(values, np.float64 if wide else self.type)
+        # An axis of length 1 for the rows and, where points share a row, one for the points of
+        # each.
         return column.reshape(-1, *(1,) * (1 + (self.inputs.repeat > 1)))
 
     def difference(self, position: Vector, *, wide: bool = False) -> Value:

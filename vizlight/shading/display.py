@@ -114,6 +114,8 @@ def on_colors(colors: Bytes, light: Array, valid: Bools | None = None) -> Bytes:
         rows = slice(start, start + _BLOCK)
         factor = formulas.color_factor(light[rows].astype(np.float32), LEAST)
         product = colors[rows, :3] * np.asarray(factor)[:, np.newaxis]
+        # The cast to bytes cuts off, so 1/2 makes it round; the factor is 1 at most, and 255.5
+        # still becomes 255.
         product += np.float32(0.5)
         out[rows, :3] = product
     if valid is not None:
@@ -155,5 +157,6 @@ def displayable(rgb: ArrayLike, /) -> Array:
     colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
     if colors.ndim < 1 or colors.shape[-1] != 3:
         raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
+    # An infinite channel over an infinite largest one would be NaN.
     bright = np.clip(colors, 0.0, _LARGEST)
     return np.asarray(formulas.in_range(bright, bright.max(axis=-1, keepdims=True)))

@@ -75,11 +75,14 @@ def _horner(name: str, coefficients: Iterable[float], variable: str, *, monic: b
 def prelude(work: str) -> str:
     """Return the head of a kernel's text: types, constants and elementary functions."""
     if work == "f4":
+        # log(1 + g) = g - g^2 / 2 + g^3 y(g), where 1 + g is between the roots of 1/2 and of 2; the
+        # square is taken off apart, in the common part of the text.
         log = _horner("y", (
             7.0376836292e-2, -1.1514610310e-1, 1.1676998740e-1, -1.2420140846e-1, 1.4249322787e-1,
             -1.6668057665e-1, 2.0000714765e-1, -2.4999993993e-1, 3.3333331174e-1,
         ), "g")  # fmt: skip
         log += "\n    y = y * g * z"
+        # exp(r) = 1 + r + r^2 y(r), where r is what multiples of ln(2) leave.
         exp = _horner("y", (
             1.9875691500e-4, 1.3981999507e-3, 8.3334519073e-3, 4.1665795894e-2, 1.6666665459e-1,
             5.0000001201e-1,
@@ -90,7 +93,11 @@ def prelude(work: str) -> str:
         ), "z")  # fmt: skip
         arctan += "\n    p = p * z * v + v"
         kinds = "F, I, MANTISSA = np.float32, np.int32, np.int32(23)"
+        # The magic number is 1.5 times 2^23 (2^52 in float64): a sum with it has no bits left for a
+        # fraction, so it is rounded to a whole number, which its last bits hold.
         low, magic = -87.0, 12582912.0
+        # ln(2) is in two parts, the first of so few bits that its product with a whole exponent is
+        # exact.
         second = -2.12194440e-4
     else:
         log = _horner("p", (
@@ -102,6 +109,7 @@ def prelude(work: str) -> str:
             7.11544750618563894466e1, 2.31251620126765340583e1,
         ), "g", monic=True)  # fmt: skip
         log += "\n    y = g * (z * p / q)"
+        # exp(r) = 1 + 2 r P(r^2) / (Q(r^2) - r P(r^2)).
         exp = _horner("p", (
             1.26177193074810590878e-4, 3.02994407707441961300e-2, 9.99999999999999999910e-1,
         ), "z")  # fmt: skip

@@ -301,6 +301,7 @@ def run(
     # differences keep their digits.
     if inputs.origin is not None:
         scene = scene.moved([-x for x in inputs.origin])
+    # Vectors of float32 have no digits that light in float32 would lose.
     if options.precision is None:
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)

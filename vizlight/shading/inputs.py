@@ -169,6 +169,8 @@ class ShadingInputs:
     def layout(self) -> Layout:
         """What a plan needs to know."""
         n, mixed = int(self.points.shape[1]), self.dimensions is not None
+        # A mesh of several kinds of cells has the plan of a surface; the tangent of its lines comes
+        # beside it.
         flat = self.tangents is None or mixed
         k = None if flat else int(np.prod(self.tangents.shape[1:])) // n  # type: ignore[union-attr]
         base = 0 if self.base_tangents is None else int(np.prod(self.base_tangents.shape[1:])) // n

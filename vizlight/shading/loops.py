@@ -119,14 +119,17 @@ class Program(NamedTuple):
         try:
             self._run(read, [light, terms[0], terms[1], color], count)
         except _compiled.FailedError:
+            # All points are marked, so that NumPy lights the block.
             light[...] = np.nan
         if not whole:
             output.luminance[at] = light
+        # Points that are marked get theirs from NumPy below.
         output.valid[at] = True
         if output.diffuse is not None and output.specular is not None:
             output.diffuse[at], output.specular[at] = terms
         if output.rgb is not None:
             output.rgb[at] = color.reshape(-1, 3)
+        # The sum finds a mark in one pass, without a mask.
         if np.isnan(light.sum()):
             _light_again(plan, at, np.flatnonzero(np.isnan(light)), part, output)
 
@@ -145,6 +148,8 @@ class Program(NamedTuple):
             )
         if whole == count:
             return
+        # The rest is filled up with points of ones to one full multiple, and what they give is
+        # dropped.
         widths = [a.size // count for a in (*read, *made)]
         rest = [np.ones(w * LANES, a.dtype) for w, a in zip(widths, (*read, *made), strict=True)]
         for own, a, w in zip(rest, read, widths, strict=False):
@@ -192,10 +197,13 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
     if reason:
         return None, reason
     saved = inputs.count * (SAVED + SAVED_PER_LIGHT * len(plan.scene.lights))
+    # The seconds are of float32 on one thread: float64 counts twice, and threads share what is
+    # saved.
     saved *= plan.dtype.itemsize / 4 / _pool.workers()
     # The text itself takes a millisecond: it is not written while nothing could pay for it.
     sort = _sort(plan)
     missed = _MISSED.get(sort, 0.0)
+    # Many small runs may pay together for a start-up that no single one pays for.
     _MISSED[sort] = missed + saved
     if _compiled.could_pay(saved, missed):
         made = program_of(plan, inputs)
@@ -233,6 +241,7 @@ def _kernel(source: str) -> _compiled.Kernel[..., None]:
             rounding=_compiled.ROUNDING,
         )
     light: Callable[..., None] = scope["light"]  # type: ignore[assignment]
+    # The text calls the compiled helpers, not the plain ones.
     light.__globals__.update(scope)
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING, apart=True)
 
@@ -356,6 +365,8 @@ class Loop(Writer):
 
     def power(self, x: Value, deficit: Value, exponent: float) -> Value:
         """Return a power; a whole one takes a factor in, or 1, for each of its bits."""
+        # The bits are numbers of the program, not text, so that another whole shininess needs no
+        # new compilation.
         if exponent == int(exponent) and exponent < 2**BITS:
             value: Value = None
             for bit in range(BITS):
@@ -364,6 +375,7 @@ class Loop(Writer):
                 factor = self.number(taken) * x + self.number(1 - taken)
                 value = value * factor if bit else factor
             return value
+        # log has no value at 0, where the power is 0, or 1 for an exponent of 0.
         zero, e = self.literal(0.0, self.type), self.number(exponent)
         rest = 1.0 - x if deficit is None else deficit
         least = self.named(f"{zero} if {e.text} > {zero} else {self.literal(1.0, x.kind)}", x.kind)
@@ -379,6 +391,7 @@ class Loop(Writer):
     def _row(self, name: str, start: int, count: int, width: int) -> Components:
         kind = self.kinds[name]
         texts = [f"{name}[{width} * i + {start + c}]" for c in range(count)]
+        # F is float64 here: inputs of float32 are widened as they are read.
         texts = [f"F({text})" for text in texts] if self.type == "f8" else texts
         return Components(self.named(text, max(kind, self.type)) for text in texts)
 
@@ -417,6 +430,7 @@ class Loop(Writer):
         points = self.read("points")
         if wide or points[0].kind == "f8":
             return self.vector(position, wide=True) - points
+        # Dekker's split, as in NumPy's algebra: what float32 holds of the position, and the rest.
         low = np.subtract(position, np.asarray(position, np.float32), dtype=np.float64)
         return (self.vector(position) - points) + self.vector(low.tolist())
 
@@ -444,6 +458,7 @@ class Loop(Writer):
         """Return a unit vector and its length, and note the square."""
         square = self.dot(v, v)
         self.squares.setdefault(square.kind, []).append(square.text)
+        # One division, then products: a processor divides several times more slowly.
         one = self.literal(1.0, square.kind)
         inverse = self.named(f"{one} / sqrt({square.text})", square.kind)
         return v * inverse, _Length(self, (square * inverse).text, square.kind)
@@ -475,9 +490,12 @@ class Loop(Writer):
     def check(self) -> None:
         """Mark the point if a square is out of range: the least too small or the sum too large."""
         for kind, squares in self.squares.items():
+            # One minimum and one sum test all squares: a NaN that the minimum loses makes the sum
+            # NaN, which fails the comparison.
             least = squares[0]
             for square in squares[1:]:
                 least = self.named(f"{least} if {least} < {square} else {square}", kind).text
+            # Squares in float64 of what becomes float32 must have roots that float32 holds.
             limit = kind if kind == self.type else f"{kind}_of_{self.type}"
             good = f"({least} > LEAST_{limit}) & ({' + '.join(squares)} < MOST_{limit})"
             self.lines.append(f"odd = odd | (not ({good}))")
@@ -488,6 +506,8 @@ class Loop(Writer):
     def lamps(self) -> Iterator[Lamp]:
         """Yield the lamps; lamps of a kind leave the same text, and many of them become a loop."""
         self.check()
+        # Each lamp is written from the same names and the same count, as lamps of a kind would not
+        # leave the same text otherwise.
         lines, names, count, most = self.lines, self.names, self.count, self.count
         kinds: dict[tuple[str, ...], list[tuple[int, dict[str, list[float]]]]] = {}
         for lamp in super().lamps():
@@ -510,6 +530,8 @@ class Loop(Writer):
         for _, own in lamps:
             for array, values in own.items():
                 self.numbers[array] += values
+        # g_3 is number 3 of a lamp's own: a loop finds it by the lamp's turn m, text that is
+        # written out by a place of its own.
         if len(lamps) > UNROLLED:
             column = f"columns[{len(self.columns)} + m]"
             self.columns += [number for number, _ in lamps]
@@ -553,6 +575,7 @@ class Loop(Writer):
         """Return what was written."""
         self.check()
         body = [*self.sums, *self.lines, *self.puts]
+        # Numbers are read from their arrays once, before the loop over the points.
         used = sorted(set(re.findall(r"\b[gh]\d+\b", "\n".join(body))))
         types = {"f4": "np.float32", "f8": "np.float64"}
         text = [

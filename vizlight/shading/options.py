@@ -122,6 +122,8 @@ class Options:
         found = {}
         for field in dataclasses.fields(self):  # type: ignore[arg-type]
             value, default = getattr(self, field.name), field.default
+            # Types are compared too, since 1, 1.0 and True are equal, and arrays are not compared
+            # at all.
             if value is not default and not (type(value) is type(default) and value == default):
                 found[field.name] = value
         return found

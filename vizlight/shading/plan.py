@@ -142,6 +142,7 @@ class Plan:
     @property
     def needs_eye(self) -> bool:
         """Whether anything depends on where the eye is."""
+        # Single points of a mesh of several kinds of cells face the eye.
         turned = self.line_exponent is not None and (self.diffuse or self.specular)
         return turned or self.splits_eye or (self.fur > 0 and self.diffuse)
 
@@ -310,6 +311,7 @@ def decide(
         dtype=kind,
         scene=scene,
         options=options,
+        # The mean over a cylinder includes what the exponent compensates.
         exponent=1.0 if options.model == "cylinder" else _exponent(options, k, n),
         model=options.model,
         highlights=_highlights(scene, options.model),

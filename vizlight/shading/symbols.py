@@ -71,6 +71,7 @@ def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol | Componen
         if isinstance(self, Components):
             return self.each(sign, other, turned=turned)
         if isinstance(other, Components):
+            # Python then asks the vector, which goes component by component.
             return NotImplemented
         pair = (other, self) if turned else (self, other)
         return self.writer.operation(sign, *pair)
@@ -135,6 +136,8 @@ class Writer(Algebra):
 
     def named(self, text: str, kind: str) -> Value:
         """Return the symbol of an expression, which is written once."""
+        # The text of an expression tells which it is: what two terms have in common is computed
+        # once.
         if (text, kind) not in self.names:
             self.count += 1
             name = f"{self.prefix}{self.count}"
@@ -151,6 +154,7 @@ class Writer(Algebra):
                     return self.select(test, value, 0.0)
         if sign in "+*":
             for number, other in ((a, b), (b, a)):
+                # The truth is the neutral number: 1 for products, 0 for sums.
                 if isinstance(number, float) and number == (sign == "*"):
                     return other
         kind = self.kind(a, b)
@@ -180,6 +184,7 @@ def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[st
     """
     words = {word for text in roots for word in re.findall(r"\w+", text)}
     kept = []
+    # From the last line up, as a line that is needed makes the names in it needed.
     for line in reversed(list(lines)):
         given = re.match(declared, line)
         if given is None or given[1] in words:

@@ -49,6 +49,7 @@ def light(w: Algebra, plan: Plan) -> None:
         base = Frame(w, w.frame("base_tangents", plan.base), plan.base_exponent)
     wo, distance_o = w.eye() if plan.needs_eye else (None, None)
     shape = _shape(w, plan, normal, wo)
+    # Only for its sides: the cosine that conditions tangents has no exponent.
     side = Surface(w, normal, 1.0, both=plan.two_sided).side
     eye = shape.split(wo) if plan.splits_eye else None
     # Fur: light crosses the skin's fur twice, down from the lamp and up to the eye.
