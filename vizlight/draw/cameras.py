@@ -86,6 +86,7 @@ def camera_on(
         expected = f"a size from {SIZES[0]:g} to {SIZES[1]:g}"
         raise ValueError(_check.message("bounds", expected, f"{size:g}", "scale the mesh"))
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
+    # At this distance the sphere around the box touches the cone of sight.
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
     if isinstance(bounds, Mesh):
         view = _axes(toward, upward), aspect
@@ -100,6 +101,7 @@ def camera_on(
     camera.up = tuple(upward)
     camera.parallel_projection = _check.boolean("parallel", parallel)
     camera.parallel_scale = height / zoom
+    # The near plane stays off the eye, since a depth buffer spends most of its digits there.
     camera.clipping_range = (max(distance - 2 * radius, distance * 1e-3), distance + 2 * radius)
     return camera
 
@@ -159,6 +161,7 @@ def _sides(axes: Array, aspect: float) -> Array:
 def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, Array]:
     """Return the unit vectors toward the eye and up."""
     toward = _check.unit("direction", direction)
+    # Seen along z, z cannot be up.
     if up is None:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
     upward = _check.unit("up", up)
@@ -179,6 +182,7 @@ def _fit(points: Array, axes: Array, aspect: float) -> tuple[Array, float, float
     rows = np.concatenate([axes, axes[2] + sides, axes[2] - sides])
     low, high = (end(points @ rows.T, axis=0) for end in (np.min, np.max))
     middle = 0.5 * (low[:3] + high[:3])
+    # The centre moves across the view alone; how far the eye is away is a number of its own.
     middle[2] = 0
     half = 0.5 * (high[:2] - low[:2])
     height = MARGIN * float(max(half[0] / aspect, half[1]))
@@ -236,5 +240,6 @@ def over_shoulder(camera: pv.Camera) -> tuple[float, float, float]:
     back = -np.array(camera.GetDirectionOfProjection())
     right = np.cross(np.array(camera.GetViewUp()), back)
     right /= np.linalg.norm(right)
+    # back x right is up in the picture.
     x, y, z = back - 0.6 * right + 0.6 * np.cross(back, right)
     return float(x), float(y), float(z)

@@ -258,6 +258,8 @@ def _quad(stroke: Stroke, *, joined: bool) -> str:
             f"vizWide = max(1.0, {glsl.number(stroke.diameter)} * vizSpread",
             "  / (vizHere.w * lineWidthNVC.y));",
         ]
+    # At a joint both quads take the direction of the line there, so that their corners meet; such a
+    # mitre is wider by 1 over the cosine, and sharp bends have none.
     if joined:
         lines += [
             "vec4 vizD = vizDVSOutput[i];",
@@ -269,6 +271,8 @@ def _quad(stroke: Stroke, *, joined: bool) -> str:
             "}",
         ]
     lines.append("vec2 vizAcross = vizWide * vec2(-vizWay.y, vizWay.x) * lineWidthNVC;")
+    # The place across the line, from -1 to 1, has the side of the tangent, which may run against
+    # the segment.
     if stroke.round:
         lines += [
             "float vizSide = dot(vizPVSOutput[1] - vizPVSOutput[0], vizTVSOutput[i]);",

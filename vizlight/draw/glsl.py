@@ -58,6 +58,8 @@ _TURN = "  if (dot(vizN, vizWo) < -vizLean) vizN = -vizN;\n"
 
 def number(value: float) -> str:
     """Return a number as GLSL writes it, rounded to float32's digits."""
+    # Nine digits tell all numbers of float32 apart; without a point or an exponent GLSL would read
+    # an integer.
     text = f"{max(min(float(value), _MOST), -_MOST):.9g}"
     return text if "." in text or "e" in text else f"{text}.0"
 
@@ -147,6 +149,7 @@ class Shader(Writer):
     def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
         """Return a power, by GLSL's own where no digits are lost by it."""
         raised = self.text(exponent, "float")
+        # GLSL leaves pow of a number below 0 undefined, which rounding may give.
         if self.plain:
             return self.named(f"pow(max({x.text}, 0.0), {raised})", "float")
         rest = 1.0 - x if deficit is None else deficit
@@ -280,6 +283,7 @@ class Shader(Writer):
 
     def total(self) -> Total:
         """Return an empty sum over the lamps."""
+        # The white sum is written as well, and left out at the end where nothing needs it.
         return Total(self, tinted=True)
 
     def added(self, total: Value | None, value: Value) -> Value:
@@ -598,6 +602,7 @@ def _ratio(wanted: float, shown: float) -> float:
 
 def _of_view(cue: DepthCue | None, view: View | None) -> list[Uniform]:
     """Return the eye, as a point or as a direction with 0 after it, and the depth cue."""
+    # Without a view the eye is at infinity along z of view coordinates.
     eye = Uniform("vizEye", "vec4", (0.0, 0.0, 1.0, 0.0))
     # w = 0 is a direction, w = 1 a point: one text serves both projections.
     if view is not None and view.parallel and view.direction is not None:

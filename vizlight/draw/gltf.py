@@ -181,6 +181,7 @@ class _File:
         self.clear |= bool(np.any(shown[:, 3] < 255))
         # glTF knows no number that is not finite in float32; no cell with one is drawn.
         rows = np.where(good[:, np.newaxis], points - centre, 0.0).astype("<f4")
+        # The standard asks for the bounds of positions.
         ends = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
         attributes = {
             "POSITION": self.put(rows, "<f4", "VEC3", _VERTICES, **ends),
@@ -244,6 +245,8 @@ class _File:
             },
             allow_nan=False,
         ).encode()
+        # Chunks of a binary glTF file are multiples of 4 bytes: text is filled up with spaces, data
+        # with zeros.
         text += b" " * (-len(text) % 4)
         data = bytes(self.buffer) + b"\0" * (-len(self.buffer) % 4)
         size = 12 + 8 + len(text) + 8 + len(data)
@@ -260,6 +263,7 @@ def _linear(colors: NDArray[np.uint8]) -> Array:
     """Return colours as glTF has them: linear, opacity as it is, in 16 bits."""
     shown = colors / 255.0
     rgb = shown[:, :3]
+    # The curve of sRGB (IEC 61966-2-1), back to linear light.
     decoded = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     found: Array = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
     return found

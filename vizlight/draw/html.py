@@ -235,6 +235,7 @@ class Page:
         if TANGENTS in arrays and (plan.occluded or mixed or not plan.surface):
             made["tangents"] = _directions(arrays[TANGENTS], linear.T)
         if NORMALS in arrays and (plan.surface or plan.conditioned or plan.fur):
+            # Rows on the left of the inverse turn as normals do, by its transpose.
             made["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))
         if live.scalars is not None:
             of_cells = live.scalars not in arrays
@@ -327,6 +328,7 @@ class Page:
             at = fixed.position is not None
             value = np.asarray(fixed.position if at else fixed.direction, dtype=np.float64)
             if follows:
+                # In view coordinates, in which it stays where it is while the eye moves.
                 value = matrix[:3, :3] @ value + (matrix[:3, 3] if at else 0.0)
             elif at:
                 value = value - self.origin
@@ -439,6 +441,7 @@ def _codes(values: Raw, ends: tuple[float, float]) -> dict[str, object]:
     """Return values in 16 bits between the ends of a range."""
     rows = np.asarray(values, dtype=np.float64)
     known = np.isfinite(rows)
+    # The largest code stands for places without a value.
     codes = np.rint(
         (NO_VALUE - 1) * (np.where(known, rows, ends[0]) - ends[0]) / (ends[1] - ends[0])
     )
@@ -461,6 +464,7 @@ def _packed(values: Raw, kind: str) -> dict[str, object]:
         steps = rows.view(signed).reshape(-1, columns)
         for _ in range(order):
             steps = np.diff(steps, axis=0, prepend=signed.type(0))
+        # Small differences of either sign then have high bytes of 0, which compress to little.
         folded = np.ascontiguousarray(((steps << 1) ^ (steps >> (8 * rows.itemsize - 1))).T)
         data = folded.view(np.uint8).reshape(-1, rows.itemsize).T.tobytes()
         made |= {"columns": columns, "order": order}
@@ -484,6 +488,7 @@ def _directions(rows: Array, linear: Array) -> dict[str, object]:
     given = np.asarray(rows, dtype=np.float64)
     sizes, turned = np.linalg.norm(given, axis=1), given @ linear
     new = np.linalg.norm(turned, axis=1)
+    # Lengths carry shares, heights and leans, which the scale of an actor must not change.
     turned *= (sizes / np.where(new > 0, new, 1.0))[:, np.newaxis]
     scale = float(np.abs(turned).max(initial=0.0) or 1.0) / 32767
     return _packed(np.rint(turned / scale), "i2") | {"scale": scale}
@@ -493,6 +498,7 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
     """Return a scalar bar: its colours from left to right, and three numbers."""
     low, high = table.GetTableRange()
     logarithmic = bool(table.GetScale())
+    # Halfway along a logarithmic bar is the geometric mean.
     middle = float(np.sqrt(low * high)) if logarithmic else (low + high) / 2
     every = np.asarray(table.values)[:, :3]
     chosen = every[np.linspace(0, len(every) - 1, min(COLORS, len(every))).astype(int)]

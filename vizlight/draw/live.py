@@ -224,6 +224,7 @@ class Live:
                 "//VTK::Light::Impl", True, AS_IT_IS, False
             )
         else:
+            # The colours are lit already: these coefficients show them as they are.
             prop.SetAmbient(1.0)
             prop.SetDiffuse(0.0)
         if self.scalars is None:
@@ -314,6 +315,7 @@ class Live:
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""
         camera, mapper = renderer.GetActiveCamera(), actor.GetMapper()
+        # The address is there because another camera may have the same time of change.
         state: list[object] = [camera.GetAddressAsString(""), camera.GetMTime()]
         state += [self.source.mesh.GetMTime(), _elements(actor)]
         if self.scene is None:
@@ -546,6 +548,7 @@ def _reverses(inputs: ShadingInputs, mesh: pv.DataSet) -> bool:
     if tangents is None or not len(starts):
         return False
     cosine = np.einsum("ij,ij->i", tangents[starts], tangents[ends])
+    # More than 120 degrees from one point to the next is a change of sign, not a bend.
     return bool(np.count_nonzero(cosine < -0.5) > REVERSED * len(starts))
 
 
@@ -640,6 +643,7 @@ class Fragments(Live):
             self._averted = sided.averted_fields(source.inputs.points, None)
         lean = sided.leaning(source.facing, self._averted)
         turned = (sided.facts()[:, 1] > 0) | (source.facing == "eye")
+        # The lengths of leans end just below 2, which stands for points that no eye turns.
         length = 1.5 + 0.5 * np.clip(0.0 if lean is None else lean, -1.0, 0.98)
         return self.picked(np.where(turned, length, 2.0))[:, np.newaxis]
 

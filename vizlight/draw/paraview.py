@@ -206,6 +206,7 @@ def shader(
         got = repr(asked.conditioned)
         raise ValueError(_check.message("conditioned", expected, got, remedy))
     if normals is None and (tangents is None or asked.conditioned):
+        # The name that ParaView's own filters give to normals.
         normals = "Normals"
     layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
     scalars = _named("scalars", scalars)

@@ -164,6 +164,7 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
         own, of_cells = _side(size, axis, end), _side(size - 1, axis, end)
         a, b, c = source.at(own[:2, :2].ravel()[:3])
         normal = np.cross(c - a, b - a)
+        # Outward on either end of an axis: corners are turned round together with their normal.
         if normal @ (a - middle) < 0:
             own, of_cells, normal = own[::-1], of_cells[::-1], -normal
         at = count + np.arange(own.size).reshape(own.shape)
@@ -245,6 +246,7 @@ def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Indices)
     else:
         parts = [(source.seen_from(scene.view, source.inputs), source.options)]
         (shading,), _ = lighting.light(parts, scene, progress_bar=False)
+        # One half makes the cast to bytes round; the fourth channel is full opacity.
         lit = np.insert(255.0 * on_screen(shading) + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
     # A control point of a curved cell, which has no index, is not lit.
     lit[ids < 0] = 0
@@ -262,6 +264,7 @@ def _on_one_side(source: Source, view: View | None) -> Source:
         return source
     vectors = np.asarray(own[:])
     piece = piece_numbers(source.mesh)
+    # Each point has a vote: 1 where the eye is on the side of its normal, -1 on the other.
     same = np.sign(np.einsum("ij,ij->i", vectors, np.asarray(turned[:])))
     averted = np.bincount(piece, same)[piece] < 0
     sides = np.where(averted[:, np.newaxis], -vectors, vectors)

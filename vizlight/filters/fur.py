@@ -361,6 +361,7 @@ class _Coat:
 
         def work(block: Slice) -> int:
             face, weights = geometry.seed_block(self.total, block.start, count, options.seed)
+            # Drawn by the block of seeds, so that the curls do not depend on the number of threads.
             phases = self._phases(block.start, len(face))
             reversed_ = 0
             # In parts that fit the caches.
@@ -375,6 +376,7 @@ class _Coat:
                     normals[at] = normal.T
                 if heights is not None:
                     height = self._heights(offsets, normal)
+                    # Fur above a point is what the highest point of its fibre is higher by.
                     np.subtract(height.max(axis=0), height, out=heights[at].T)
                 reversed_ += inside
             return reversed_
@@ -397,6 +399,7 @@ class _Coat:
         """Return roots, normals, directions, points less roots, and the number reversed."""
         corners = self.faces.take(face, axis=0)
         found: Array = self._table.take(corners[:, 0], axis=0)
+        # Barycentric weights of the roots, corner after corner of their triangles.
         found *= weights[:, :1]
         for i in (1, 2):
             corner = self._table.take(corners[:, i], axis=0)

@@ -232,6 +232,8 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     """Return the bands of a solid, in closed form if there is one."""
     scene, asked = light.scene, light.options
     low = scene.material.ambient * scene.ambient_intensity
+    # With ambient and diffuse light alone there are closed forms, and the ambient term is the
+    # least.
     dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
     found: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1

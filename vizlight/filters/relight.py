@@ -336,6 +336,7 @@ def _light_again(
         if stored.shape != shading.luminance.shape:
             expected = f"the {len(shading.luminance)} values of its record"
             raise ValueError(_check.message(f"mesh, {name}", expected, stored, "light it again"))
+        # Written so that NaN differs, too.
         differs = ~(np.abs(shading.luminance - stored) <= SEEN)
         if np.count_nonzero(differs) > CHANGED * differs.size:
             share = f"other light at {np.mean(differs):.0%} of the points"

@@ -339,6 +339,7 @@ def _traced(
     if surface is not None:
         if confined:
             normals = kernels.unit_rows(lines.point_data[NORMALS])
+            # Between corners, interpolated directions lean out of the surface.
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
             normals = closest_normals(surface, places)
@@ -359,6 +360,7 @@ def _traced(
             isotropic = ~np.any(tracers.principal_directions(rows), axis=1)
             if isotropic.any():
                 lines.point_data[f"{name}_valid"] = ~isotropic
+    # Far from the origin float32 would lose digits, and at extreme sizes its range.
     far = np.any(origin) or not 1e-30 < size < 1e30
     exact = size * places + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
@@ -531,6 +533,8 @@ def _on_surface(
         array = np.asarray(mesh.point_data[name])
         unsigned = options.line_field and array.shape[1] == 3
         if unsigned:
+            # Opposite vectors would cancel where they are interpolated; their outer products do
+            # not, and the lengths are sampled beside them.
             products = line_fields.outer(array[:, np.newaxis]).reshape(-1, 9)
             lengths = np.linalg.norm(array, axis=1, keepdims=True)
             source.point_data[TRACED] = np.concatenate([products, lengths], axis=1)

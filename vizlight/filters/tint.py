@@ -247,6 +247,7 @@ def color_table(
 ) -> pv.LookupTable:
     """Return the lookup table that PyVista would draw the values of all blocks with."""
     cmap, nan_color = default_map(cmap), default_nan_color(nan_color)
+    # Rows of several components are colours already.
     values = [part for part in values if part.ndim == 1]
     if clim is None and not isinstance(cmap, pv.LookupTable):
         clim = _range(values)
@@ -285,6 +286,7 @@ def color_table(
     table: pv.LookupTable = mapper.lookup_table
     if ends is not None and not isinstance(cmap, pv.LookupTable):
         low, high = ends
+        # A logarithmic bar begins at the least value above 0.
         if log_scale and low <= 0:
             low = min((float(np.min(p, where=p > 0, initial=high)) for p in values), default=high)  # type: ignore[operator]
         table.scalar_range = (low, high)
@@ -388,6 +390,8 @@ def _light_of(
             report.note_stored(values, light)
         return carried
     scene = Scene.from_dict(records.provenance(lit, light)["scene"])
+    # A cue fades the whole sum, and light of a colour counts by its luma: both are computed as a
+    # whole for colours of data.
     if scene.depth_cue is not None or _colored(scene):
         with report.paused():
             sources, scene, _ = relight.terms_from_record(lit, light)
@@ -421,6 +425,7 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     if scene.depth_cue is not None or not material.ambient or not set(names) <= ours:
         return None
     ambient, diffuse = (np.asarray(mesh.point_data[name]) for name in names)
+    # The ambient light that is stored is raised to the least that colours of data have.
     raised = max(material.ambient, display.LEAST) / material.ambient
     return raised * ambient + diffuse, valid
 

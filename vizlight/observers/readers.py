@@ -58,6 +58,7 @@ def linear(rgb: Array) -> Array:
 def lab(rgb: Array) -> Array:
     """Return CIELAB of sRGB values, shape (..., 3) from 0 to 1, under white D65 (CIE 15)."""
     ratio = linear(rgb) @ _XYZ.T / _WHITE
+    # Near black CIELAB has a straight line in place of the cube root.
     f = np.where(ratio > 0.008856, np.cbrt(ratio), 7.787 * ratio + 16 / 116)
     x, y, z = f[..., 0], f[..., 1], f[..., 2]
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
@@ -103,8 +104,10 @@ def posterior(observed: Array, table: Array, noise: float) -> Array:
     if table.ndim == 3:
         square = ((observed[:, np.newaxis] - table) ** 2).sum(axis=-1)
     else:
+        # |a - b|^2 = |a|^2 + |b|^2 - 2 a.b: a product of matrices in place of all differences.
         square = (observed**2).sum(axis=-1)[:, np.newaxis] + (table**2).sum(axis=-1)
         square = square - 2 * observed @ table.T
+    # The likeliest candidate is then 1 before the division, and no row vanishes by underflow.
     square -= square.min(axis=1, keepdims=True)
     found: Array = np.exp(-square / (2 * (noise**2 + ROUNDING)))
     return np.asarray(found / found.sum(axis=1, keepdims=True))
@@ -219,6 +222,7 @@ def by_key(sample: Sample, middle: Array, random: np.random.Generator, noise: fl
     hues = _hue(shown(disc), random)
     found = _hue(seen(own.own_light(), random, noise), random) @ hues.T
     off = start + found.argmax(axis=1) - np.degrees(np.arctan2(y, x))[long]
+    # Lines have no sign, so that directions repeat after 180 degrees.
     return np.asarray(np.abs((off + 90) % 180 - 90))
 
 
@@ -337,6 +341,7 @@ def find_normal(sample: Sample, random: np.random.Generator, noise: float) -> Fo
             table = _table(lit, disc, along)
             table = table if sample.local else table[0]
         likely = posterior(observed[start : start + step], table, noise)
+        # The tangent is unknown: a normal is as likely as all of its tangents together.
         normal = likely.reshape(len(own), turns, count).sum(axis=1)
         best = unit_rows(normal @ disc[:count])
         cosine = np.einsum("ij,ij->i", _in_space(own, best), truth[start : start + step])

@@ -465,6 +465,7 @@ def visible(
     renderer.SetActiveCamera(camera)
     window.AddRenderer(renderer)
     number = np.zeros(SIZE[0] * SIZE[1], dtype=np.int64)
+    # A picture has 24 bits of a cell's number; more cells take more pictures.
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
         renderer.RemoveAllViewProps()
         for (points, cells), start in zip(parts, starts.tolist(), strict=False):
@@ -502,6 +503,7 @@ def _actor(points: vtkPoints, corners: Indices, start: int, shift: int) -> vtkAc
     actor = vtkActor()
     actor.SetMapper(mapper)
     own = actor.GetProperty()
+    # The colours are numbers, which light must not change.
     own.LightingOff()
     own.SetLineWidth(LINE)
     own.SetPointSize(POINT)
@@ -555,8 +557,11 @@ def weights(corners: Array, origin: Array, way: Array) -> Array:
         return np.stack([1 - second, second], axis=1)
     p, u, v = flat
     uu, uv, vv, pu, pv_ = dots(u, u), dots(u, v), dots(v, v), dots(p, u), dots(p, v)
+    # Gram's determinant of two sides across the line of sight; barycentric coordinates follow by
+    # Cramer's rule.
     area = uu * vv - uv**2
     second, third = _ratio(vv * pu - uv * pv_, area), _ratio(uu * pv_ - uv * pu, area)
+    # At an edge a line of sight may pass the cell by a little.
     found = np.maximum(np.stack([1 - second - third, second, third], axis=1), 0.0)
     return np.asarray(found / found.sum(axis=1, keepdims=True))
 

@@ -170,6 +170,7 @@ def _angle(lights: Sequence[Light], view: View | None) -> float:
     brightest = max(distant, key=lambda light: light.intensity)
     a, b = (np.asarray(v, dtype=np.float64) for v in (brightest.direction, view.direction))
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    # An arccos would lose half of the digits near 0 and pi.
     return 2 * float(np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)))
 
 

@@ -179,6 +179,7 @@ class Light:
             view = View.isometric(n)
         direction = view.direction
         if self.direction is not None:
+            # Scaled first, as products of huge components might leave float64.
             scale = max(map(abs, self.direction))
             direction = tuple(np.divide(self.direction, scale) @ view.axes())
         position = view.position if direction is None else None

@@ -143,6 +143,7 @@ class Scene:
         )
         view = self.view
         if view is not None:
+            # A view without a position measures depth from the origin, which moves along.
             position = offset if view.position is None else np.add(view.position, offset)
             view = dataclasses.replace(view, position=tuple(position))
         return self.replace(lights=lights, view=view)
@@ -288,6 +289,8 @@ def _of_actor(
         return Material.from_property(own, lights=lights, view=view, model=model)
     plain = type(own)()
     plain.DeepCopy(own)
+    # Where data colour an actor its own colour is not drawn; SetColor sets all of its colours, so
+    # that of the highlight is put back.
     plain.SetColor(1.0, 1.0, 1.0)
     plain.SetSpecularColor(*own.GetSpecularColor())
     return Material.from_property(plain, lights=lights, view=view, model=model)

@@ -137,6 +137,7 @@ class View:
         n = len(toward)
         if n == 2:
             return np.stack([np.array([toward[1], -toward[0]]), np.zeros(2), toward])
+        # Seen along z, z cannot be up: y takes its place.
         up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else _unit(self.up)
         if n == 3:
             right = _unit(np.cross(up, toward))
@@ -144,6 +145,7 @@ class View:
         up = _unit(_across(up, toward[np.newaxis]))
         sides = [_across(axis, np.stack([toward, up])) for axis in np.eye(n)[:3]]
         right = _unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
+        # In the first three axes right, up and toward the eye are to be right-handed.
         turn = float(np.linalg.det(np.stack([right, up, toward])[:, :3]))
         return np.stack([-right if turn < 0 else right, up, toward])
 
@@ -265,12 +267,14 @@ def is_camera(value: object) -> TypeGuard[vtkCamera]:
 def _unit(vector: VectorLike) -> Array:
     """Return a vector other than 0 with length 1, whatever its size."""
     v = np.asarray(vector, dtype=np.float64)
+    # Squares of tiny or huge components would leave float64.
     v = v / np.abs(v).max()
     return np.asarray(v / np.linalg.norm(v))
 
 
 def _across(vector: Array, rows: Array) -> Array:
     """Return what of a vector stands across orthonormal rows."""
+    # Twice, since cancellation lays bare a rest along the rows.
     for _ in range(2):
         vector = vector - rows.T @ (rows @ vector)
     return vector
