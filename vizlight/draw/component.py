@@ -506,6 +506,7 @@ class Component:
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:
+                # Passes matter only where they would have shown on a mesh of ours.
                 any_live = True
                 live.update(renderer, actor)
             elif draws_light(actor):

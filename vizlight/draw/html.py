@@ -191,6 +191,7 @@ class Page:
             for one, mesh in zip(every, self.meshes, strict=True)
         ]
         names = dict.fromkeys(name for found in rows for name in found)
+        # All arrays of all meshes share one limit, as the page holds them all.
         left = MOST_VALUES
         for name in [*names][:MOST_ARRAYS]:
             there = [found[name] for found in rows if name in found]
@@ -501,6 +502,7 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
     # Halfway along a logarithmic bar is the geometric mean.
     middle = float(np.sqrt(low * high)) if logarithmic else (low + high) / 2
     every = np.asarray(table.values)[:, :3]
+    # A bar on a page is a gradient, which needs fewer colours than a table has.
     chosen = every[np.linspace(0, len(every) - 1, min(COLORS, len(every))).astype(int)]
     return {
         "title": title,

@@ -100,6 +100,7 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
     if not font.fmt:
         low, top = bar.GetLookupTable().GetRange()
         ticks = np.linspace(low, top, bar.GetNumberOfLabels())
+        # The fewest digits that tell the numbers of the bar apart.
         for digits in range(3, DIGITS + 1):
             if len({f"{tick:.{digits}g}" for tick in ticks}) == len(ticks):
                 bar.SetLabelFormat(f"%-#6.{digits}g")
@@ -174,6 +175,7 @@ class CornerKey:
         if self._corner == "auto":
             self._corner = _freest(renderer, box + 2 * margin)
         right, upper = PLACES[self._corner]
+        # The pixels of the viewport count from the lower left.
         x = margin + wide if not right else width - margin - wide
         low = margin if not upper else height - margin - box[1]
         moved = vtkPoints()

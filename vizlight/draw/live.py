@@ -332,6 +332,7 @@ class Live:
         mesh, named = self.source.mesh, self.source.named
         if mesh.GetMTime() == self._changed:
             return
+        # Taken before the work, so that a mesh that cannot be lit is not read again in each frame.
         self._changed = mesh.GetMTime()
         # What cannot be lit or coloured any more stays as it is drawn.
         source, values = self.source, self._values()
@@ -446,6 +447,8 @@ def lifted(scene: Scene, n: int) -> Scene:
     # Without a rotation the picture shows the first three axes, so lamps and eye stand there too.
     if n <= 3 or scene.n != 3:
         return scene
+    # A lamp beside the eye has its direction in the eye's frame of three axes, so it is fixed
+    # before zeros are put behind.
     fixed = (light if light.is_headlight else light.seen_from(scene.view) for light in scene.lights)
     lights = tuple(
         dataclasses.replace(light, **_padded(light, ("direction", "position"), n))

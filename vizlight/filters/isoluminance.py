@@ -296,6 +296,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         unit, shown = _normals(surface, asked, inputs, scene, warn=angle is None)
         del inputs
         valid = lit.valid
+        # Points whose normal was turned to the eye.
         averted: Bools = np.einsum("ij,ij->i", unit, shown) < 0
         columns = [surface.points, unit, *carried.values()]
         if averted.any():

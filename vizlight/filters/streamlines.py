@@ -349,6 +349,7 @@ def _traced(
             del lines.point_data[key]
     name = TANGENTS if TANGENTS not in mesh.point_data else OWN_TANGENTS
     tangents = kernels.unit_rows(tangents)
+    # Light needs a direction also where the speed is 0, as at the end of a line.
     resting = ~np.any(tangents, axis=1)
     if resting.any():
         # Where a line comes to rest it has the direction in which it came.
@@ -430,6 +431,7 @@ def _in_space(
     random = np.random.default_rng(how.seed)
     chosen = np.sort(random.choice(there, min(count, len(there)), replace=False))
     rest = random.permutation(np.setdiff1d(np.arange(len(points)), chosen))
+    # A point at rest starts no line.
     moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
     rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)
     while (missing := count - lines.n_lines) > 0 and len(rest):
@@ -529,6 +531,7 @@ def _on_surface(
             vectors_of(surface, "vectors", name, 3)
         array = _directions(rows)
     else:
+        # A shallow copy takes the array that is sampled, so that the caller's mesh gets none.
         source = mesh.copy(deep=False)
         array = np.asarray(mesh.point_data[name])
         unsigned = options.line_field and array.shape[1] == 3

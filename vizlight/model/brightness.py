@@ -132,6 +132,7 @@ def _log_mean(k: int, n: int, p: Array) -> Array:
     sum of three log1p terms of similar size and R is small, so no large terms cancel.
     """
     a, d, h = (n - k) / 2, p / 2, k / 2
+    # Differences of x ln x as log1p of the ratios, which are small where the terms are large.
     leading = (
         (a - 0.5) * np.log1p(d / a * (h / (a + d + h)))
         - d * np.log1p(h / (a + d))

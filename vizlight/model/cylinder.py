@@ -145,6 +145,8 @@ def diffuse_gradient(wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike, /) -> Gra
     The derivatives and their errors grow as 1 over ``|wi_N|`` and ``|wo_N|``.
     """
     x = _Invariants(wi, wo, tangent)
+    # With rest = pi - alpha and b = |wo_N| the mean is (rest dot + cross) / (4 b); by dot, what
+    # comes from rest and from cross cancels.
     by_dot = x.rest / (4 * x.b)
     by_aa = x.cross / (8 * x.aa * x.b)
     by_bb = -x.rest * x.dot / (8 * x.b * x.bb)
@@ -182,6 +184,7 @@ def specular_gradient(
     """
     s = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     x = _Invariants(wi, wo, tangent)
+    # The square of |wi + wo| for unit vectors, and the length of its part across the line.
     size, root = 2 + 2 * x.m, np.sqrt(x.ww)
     to_eye, to_light = x.b * root, x.a * root
     cos_b, cos_c = (np.clip(u, -1, 1) for u in ((x.bb + x.dot) / to_eye, (x.aa + x.dot) / to_light))
@@ -238,6 +241,8 @@ class _Invariants(_Line):
     def __init__(self, wi: ArrayLike, wo: ArrayLike, tangent: ArrayLike) -> None:
         super().__init__(wi, wo, tangent)
         lit, eye, least = self.lit, self.eye, self.algebra.least
+        # Of the sum of the parts, not of their squares: where they nearly cancel only this keeps
+        # digits.
         w = kernels.length(lit.rest + eye.rest)
         self.valid &= (lit.size > least) & (eye.size > least) & (w > least)
         sizes = (np.where(self.valid, u, 1).astype(w.dtype) for u in (lit.size, eye.size, w))

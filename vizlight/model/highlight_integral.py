@@ -37,6 +37,7 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
     loses for large powers (5e-10 at 1e6).
     """
     if shininess < TABLE_FROM:
+        # With u^2 as the variable the integrand is that of the beta function B(1/2, s/2 + 1).
         order = shininess / 2 + 1
         whole = scipy.special.beta(0.5, order) / 2
 
@@ -86,6 +87,7 @@ def table(shininess: float) -> tuple[float, Array]:
         value: Array = np.exp(shininess / 2 * np.log1p(-u * u))
         return value
 
+    # Nodes are on [-1, 1] and taken to [0, 1], the place within a cell.
     nodes, weights = np.polynomial.legendre.leggauss(12)
     sums = integrand((1 + nodes) / 2) @ weights * (width / 2)
     start = np.concatenate([[0.0], np.cumsum(sums)[:-1]])

@@ -232,6 +232,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     r = _powers("r", r, low=0.5, high=1e6).astype(np.float64)
     beta, r = _check.together(light_eye_angle=angle / 2, r=r)
     if by == "worst":
+        # Bisection of the logarithm has the same relative error for small and large factors.
         low, high = np.full(beta.shape, np.log(1e-3)), np.full(beta.shape, np.log(16.0))
         for _ in range(36):
             middle = (low + high) / 2
@@ -436,12 +437,14 @@ def exchange_rate(light_eye_angle: ArrayLike, /, *, k: int = 2, n: int = 3) -> A
     k, n = dimensions(k, n)
     beta = _angles("light_eye_angle", light_eye_angle) / 2
     cosine = np.cos(beta)
+    # All of wi - wo is inside near the highlight (m = 1), so that the mean has one value.
     if n - k == 1:
         return result(4 * np.power(cosine, 2 - 2 / k))
     from scipy.special import roots_jacobi
 
     c = n - k
     # With m = cos(u) and directions of equal weight the density is sin^(c-2) cos^(k-1).
+    # The substitution share = m^2 makes the density that of Jacobi's weights on [-1, 1].
     nodes, weights = roots_jacobi(400, (c - 3) / 2, (k - 2) / 2)
     share = (1 + nodes) / 2
     log = np.log1p(-np.multiply.outer(np.square(np.sin(beta)), share))
@@ -552,6 +555,7 @@ def sphere_errors(beta: float, r: float, factor: float) -> dict[str, float]:
     error = difference(sine * sine, a, np.asarray(r), np.asarray(factor * r))
     # The area on the sphere of normals is sin(nu) dnu dpsi.
     measure = sine * du * (end * round_weights)[:, np.newaxis]
+    # Between opposite light and eye no normal faces both.
     area = float(measure.sum())
     if area == 0:
         return {"rms": 0.0, "volume": 0.0}

@@ -99,6 +99,7 @@ def _rescale(v: Array) -> tuple[Array, NDArray[np.intc], Bools]:
     """Scale each vector by an exact power of two so that its largest component is in [1/2, 1)."""
     largest = np.abs(v).max(axis=0)
     finite = np.isfinite(largest)
+    # A power of two changes no digit, so that scaling adds no error.
     _, exponent = np.frexp(np.where(finite, largest, 1))
     with np.errstate(under="ignore"):
         scaled = np.ldexp(np.where(finite, v, 0), -exponent)
@@ -122,6 +123,8 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
         good = size > 0
         if j:
             row = _reject(row, frame[:j])
+            # The first projection tells how far the vector is from the span; the second removes
+            # what rounding left.
             row, distance = unit(row)
             good &= distance > rtol
             row = _reject(row, frame[:j])
@@ -156,6 +159,7 @@ def split(x: Array, frame: Array) -> tuple[Array, Array]:
     The length comes from the residual, because sqrt(1 - cos^2) would lose half the digits.
     """
     along = coefficients(x, frame)
+    # All coefficients are of x itself, so that none depends on the order of the rows.
     residual = x - along[0] * frame[0]
     for c, row in zip(along[1:], frame[1:], strict=True):
         residual -= c * row

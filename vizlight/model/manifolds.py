@@ -209,6 +209,7 @@ class Frame:
             return formulas.phong(self._both(lit, eye), lit.size, eye.size, h.shininess)
         # The half vector is split anew: the sum of two normal parts would lose digits where they
         # cancel.
+        # wi + wo is not normalised, as Blinn's formula needs the ratio of its parts alone.
         both = self.split(lit.vector + eye.vector)
         return formulas.blinn(square(both.along), w.dot(both.rest, both.rest), h.shininess)
 

@@ -480,6 +480,7 @@ def visible(
     shown = np.flatnonzero((number > 0) & (number <= starts[-1]))
     cell = number[shown] - 1
     which = np.searchsorted(starts, cell, side="right") - 1
+    # VTK's rows begin at the bottom, and a pixel is seen through its middle.
     row, column = np.divmod(shown, SIZE[0])
     at = np.stack([(column + 0.5) / SIZE[0], (row + 0.5) / SIZE[1]], axis=1) * 2 - 1
     return Pixels(which, cell - starts[which], at)
@@ -523,6 +524,7 @@ def rays(camera: pv.Camera, at: Array) -> tuple[Array, Array]:
     if camera.GetParallelProjection():
         scale = camera.GetParallelScale()
         return eye + scale * across, np.broadcast_to(away, across.shape)
+    # The angle of view is VTK's, from bottom to top.
     way = away + np.tan(np.radians(camera.GetViewAngle() / 2)) * across
     way /= np.linalg.norm(way, axis=1, keepdims=True)
     return np.broadcast_to(eye, way.shape), way

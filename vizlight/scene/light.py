@@ -199,6 +199,7 @@ def default_lights(view: View | None) -> tuple[Light, ...]:
     """
     if view is not None and view.direction is None:
         return (Light.headlight(),)
+    # In the frame of the eye: x right, y up, z toward the eye.
     azimuth, altitude = map(math.radians, SHOULDER)
     toward = (
         math.cos(altitude) * math.cos(azimuth),

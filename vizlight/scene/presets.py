@@ -214,6 +214,7 @@ def hues(count: int, saturation: float) -> Array:
     Hue is an angle in the plane of no luma; with a saturation of 1 a channel of some hue is 0.
     """
     _, green, least = LUMA
+    # Across the vector of luma, so that hues change no luma; red is across both.
     blue = np.array([0.0, -least, green])
     blue /= np.linalg.norm(blue)
     red = np.cross(blue, np.divide(LUMA, np.linalg.norm(LUMA)))
@@ -245,6 +246,7 @@ def _scene(lamps: Sequence[Lamp], brightest: float, view: Eye) -> Scene:
     """Return the scene of lamps, whose brightest light becomes white."""
     lights = []
     for toward, channels in lamps:
+        # The largest channel is in the intensity, since a colour ends at 1.
         most = float(channels.max())
         color = None if np.ptp(channels) == 0 else tuple((channels / most).tolist())
         lights.append(

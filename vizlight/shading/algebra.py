@@ -134,6 +134,8 @@ class Algebra(Vectors):
         if far or position is None:
             assert direction is not None
             return self.way(direction), None
+        # The difference is normalised in the wider type, and the unit vector then rounded to the
+        # work's.
         toward, distance = self.unit(self.difference(position))
         self.known(distance)
         return self.work(toward), distance

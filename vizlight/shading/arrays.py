@@ -160,6 +160,7 @@ class Arrays(Algebra):
 
     def vectors(self, name: str, k: int) -> Sequence[Value]:
         """Return the k vectors of an input at the points."""
+        # Tangents stand one after the other in a row: k times n components.
         array = self._columns(name)
         return list(array.reshape(k, self.n, *array.shape[1:]))
 

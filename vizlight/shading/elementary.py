@@ -92,6 +92,7 @@ def prelude(work: str) -> str:
             8.05374449538e-2, -1.38776856032e-1, 1.99777106478e-1, -3.33329491539e-1,
         ), "z")  # fmt: skip
         arctan += "\n    p = p * z * v + v"
+        # Bits of the fraction, by which exponents are shifted to and from their place in a number.
         kinds = "F, I, MANTISSA = np.float32, np.int32, np.int32(23)"
         # The magic number is 1.5 times 2^23 (2^52 in float64): a sum with it has no bits left for a
         # fraction, so it is rounded to a whole number, which its last bits hold.

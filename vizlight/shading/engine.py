@@ -305,6 +305,7 @@ def run(
     if options.precision is None:
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)
+    # Only the structure of the inputs decides, not their values, so that all blocks share one plan.
     made = decide(scene, inputs.layout, options, narrow=inputs.narrow)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
@@ -384,6 +385,7 @@ def depth_range(
 
 def _depth(view: View, points: Array) -> Array:
     """Return the depth of points: along the axis of the view, or from the eye without an axis."""
+    # In float64, since differences of points far from the origin would lose digits.
     origin = np.array(view.position or np.zeros(len(points)), dtype=np.float64)[:, np.newaxis]
     if view.direction is None:
         # A view by its position alone has no axis.

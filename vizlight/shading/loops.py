@@ -110,6 +110,7 @@ class Program(NamedTuple):
             self._shade_points(plan, at, part, output)
 
     def _shade_points(self, plan: Plan, at: Slice, part: ShadingInputs, output: Shading) -> None:
+        # A stride takes one point of each fibre: such results are made in a row and then spread.
         kind, count, whole = plan.dtype, part.count, at.step is None
         light: Array = output.luminance[at] if whole else np.empty(count, kind)
         terms = np.empty((2, count if plan.components else 0), kind)
@@ -206,6 +207,7 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
     # Many small runs may pay together for a start-up that no single one pays for.
     _MISSED[sort] = missed + saved
     if _compiled.could_pay(saved, missed):
+        # Equal plans have equal texts, so that one compilation serves all meshes of a kind.
         made = program_of(plan, inputs)
         if made.kernel.pays(missed + saved - made.kernel.missed, counted=True):
             return made, ""
@@ -271,6 +273,7 @@ def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
             narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
             kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
     # What was asked for may hold arrays; of it the terms read whether they are kept.
+    # Plans that differ in nothing else are then equal, and share a text.
     asked = ShadingOptions(components=plan.components)
     bare = dataclasses.replace(plan, options=asked, compiled=False, code="")
     return program(bare, tuple(kinds))
@@ -288,6 +291,7 @@ def _parts(rows: Slice, inputs: ShadingInputs) -> Iterator[tuple[Slice, ShadingI
     """Yield the places of one point of each row, and their inputs as arrays."""
     repeat, count = inputs.repeat, inputs.count
     sources = {name: x for name in (*PLACED, *SHARES) if (x := getattr(inputs, name)) is not None}
+    # What all points of a fibre share is read once for all of them.
     shared = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
@@ -511,6 +515,7 @@ class Loop(Writer):
         lines, names, count, most = self.lines, self.names, self.count, self.count
         kinds: dict[tuple[str, ...], list[tuple[int, dict[str, list[float]]]]] = {}
         for lamp in super().lamps():
+            # Names of before the lamps may be used by all, but none of one lamp by another.
             self.lines, self.names, self.count = [], dict(names), count
             self.lamp = {"g": [], "h": []}
             if lamp.attenuation != NO_ATTENUATION:

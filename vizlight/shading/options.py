@@ -194,6 +194,7 @@ def checked_bundle(value: object) -> bool | Bundle:
         value = Bundle(**value)
     if isinstance(value, Bundle):
         return value
+    # True stands for a bundle of default values.
     wanted = _check.boolean("bundle", value, expected="True, False or a vizlight.Bundle")
     return Bundle() if wanted else False
 

@@ -227,6 +227,7 @@ def _specular(plan: Plan) -> Iterator[Line]:
         return
     shininess = plan.scene.material.shininess
     yield "compute", f"specular: {plan.model}, shininess {shininess:g}"
+    # A half vector that all points share depends on both being at infinity, the lamp and the eye.
     fixed = sum(h.half is not None for h in plan.highlights)
     if fixed:
         yield "compute", f"half vector: one for all points for {fixed} light(s)"
@@ -354,6 +355,7 @@ def _half(scene: Scene, index: int) -> Vector | None:
     light, view = scene.lights[index], scene.view
     if view is None or not view.parallel or light.direction is None or view.direction is None:
         return None
+    # As two columns: kernels have the components first.
     unit, _ = kernels.unit(np.array([light.direction, view.direction], dtype=np.float64).T)
     both = unit[:, 0] + unit[:, 1]
     size = float(np.linalg.norm(both))

@@ -35,6 +35,7 @@ class Symbol:
 
     def __array_ufunc__(self, ufunc: np.ufunc, _: str, /, *args: Value) -> Value:
         """Write an operation of NumPy down."""
+        # Symbols have no arrays: NumPy hands the call over before it would convert them.
         name = ufunc.__name__
         if name in _SIGNS:
             return self.writer.operation(_SIGNS[name], *args)
