@@ -199,6 +199,8 @@ def _coordinates(mesh: Mesh) -> Iterator[Array]:
         straight = isinstance(block, pv.RectilinearGrid) or (
             isinstance(block, pv.ImageData) and np.array_equal(block.direction_matrix, np.eye(3))
         )
+        # A straight grid fills its box, so that no point of it is farther out than the eight
+        # corners.
         corners = [*itertools.product(*np.reshape(block.bounds, (3, 2)))]
         points = np.array(corners) if straight and block.n_points else block.points
         for start in range(0, len(points), SOME):

@@ -173,11 +173,14 @@ class _File:
 
     def add(self, name: str, surface: pv.PolyData, shown: NDArray[np.uint8]) -> None:
         """Add a mesh with the colours of its points."""
+        # glTF has no polygons of more than three corners.
         flat = surface.triangulate(pass_verts=True, pass_lines=True)
         points = np.asarray(surface.points, dtype=np.float64)
         good = np.all(np.abs(points) < 1e38, axis=1)
         drawn = points[good] if np.any(good) else np.zeros((1, 3))
         centre = (drawn.min(axis=0) + drawn.max(axis=0)) / 2
+        # Viewers sort what is blended, so blending is asked for only where something is
+        # transparent.
         self.clear |= bool(np.any(shown[:, 3] < 255))
         # glTF knows no number that is not finite in float32; no cell with one is drawn.
         rows = np.where(good[:, np.newaxis], points - centre, 0.0).astype("<f4")

@@ -270,6 +270,8 @@ def save(
     plan = _plan(used, source.inputs.layout, source.options)
     live = Fragments(source, used)
     live.attach()
+    # The eye is not known as the file is written: height fields have the side that the scene's view
+    # sees.
     live.see(source.inputs, used.view)
     written = glsl.write(plan, turned=source.sided is not None, data=scalars is not None)
     made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)

@@ -116,6 +116,7 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
 
 def _fit_no_face(split: pv.PolyData, given: str) -> bool:
     """Return whether normals from before a split fit neither side of many edges."""
+    # Of either sign below, as a normal may be of the other side of the same face.
     own, new = kernels.unit_rows(split.point_data[given]), computed_normals(split).vectors
     cosine, known = np.abs(np.einsum("ij,ij->i", own, new)), np.any(new, axis=1)
     apart = known & (cosine < np.cos(np.radians(SHARP / 2)))
@@ -155,6 +156,7 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     """
     if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or min(mesh.dimensions) < 2:
         return None
+    # What is hidden may leave a grid other sides than its box has.
     if GHOSTS in mesh.point_data or GHOSTS in mesh.cell_data:
         return None
     size = np.array(mesh.dimensions)

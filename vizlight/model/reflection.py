@@ -128,6 +128,7 @@ class Met:
         self.shape, self.rows, columns = frames.batch(name, rows, **given)
         units = [kernels.unit(column) for column in columns]
         self.directions, self.sizes = [unit for unit, _ in units], [size for _, size in units]
+        # NaN, the length of a vector that is not finite, is not greater than 0 either.
         self.valid: Bools = np.all(np.greater(self.sizes, 0), axis=0)
         self.algebra = Arrays(self.rows.dtype)
 

@@ -321,6 +321,7 @@ def of_value(
         # Points without light have the colour of what is not data.
         known = np.isfinite(values) & one.valid
         left += int(np.count_nonzero(~known))
+        # Values beyond the ends have the colours of the ends.
         positions = np.clip((values[known] - low) / (high - low), 0.0, 1.0)
         colors = readers.lit_colors(part, one.take(known), table)
         read.append(readers.decode(colors, positions, bar))
@@ -483,6 +484,8 @@ def legibility(
         table = color_table(values, cmap=cmap, clim=clim)
     found: Keywords = {}
     for question, (measure, has_it, what) in QUESTIONS.items():
+        # Each question begins with the same seed, so that its figures do not depend on the
+        # questions before.
         own = _with_data([one for one in asked if has_it(one)], question, what, notes)
         found[question] = measure(own, np.random.default_rng(seed), noise) if own else None
     toward = -np.array(camera.GetDirectionOfProjection())

@@ -288,6 +288,7 @@ def _part(
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
     known = options
     if kind == "surface" and options.tangents is not None:
+        # Normals are then read beside the tangents: they are the shape that a reader sees.
         known = dataclasses.replace(options, conditioned=True)
     inputs = part_of(mesh, path, scene, known).inputs.of_faces()
     shares = _shares(mesh, sum(light.intensity > 0 for light in scene.lights))
@@ -402,6 +403,7 @@ def _facing(
         own = sample(part, ids[:, np.newaxis], np.zeros((len(ids), 2)), camera, scene)
         if own.normals is not None:
             toward = np.einsum("ij,ij->i", own.normals, own.eye)
+            # The chance of a point is its cosine to the eye, by which its surface is foreshortened.
             own = own.take(toward > random.uniform(0.0, 1.0, len(own)))
         if len(own):
             found.append((own, part))

@@ -203,6 +203,7 @@ def brightest_tangent(lamps: Sequence[Lamp]) -> float:
     for channel in range(3):
         total = sum(w[channel] for _, w in lamps)
         form = np.sum([w[channel] * np.outer(d, d) for d, w in lamps], axis=0)
+        # A sum of squares has no eigenvalue below 0, but rounding may give one.
         least = max(float(np.linalg.eigvalsh(form)[0]), 0.0)
         bounds.append(float(np.sqrt(total * (total - least))))
     return max(bounds)
