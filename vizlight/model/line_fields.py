@@ -26,8 +26,8 @@ def outer(tangents: Array) -> Array:
     Returns
     -------
     ndarray of float64, shape (..., n, n)
-        ``t t^T / |t|`` of one tangent, so that long ones count more; of k tangents the projection
-        on the space that they span.
+        ``t t^T / |t|`` of one tangent over the largest length of all, so that long ones count more;
+        of k tangents the projection on the space that they span.
     """
     rows = np.array(tangents, dtype=np.float64)
     rows[~np.all(np.isfinite(rows), axis=-1)] = 0

@@ -12,7 +12,6 @@ from vizlight.model import brightness, kernels
 from vizlight.model.manifolds import Highlight
 from vizlight.scene import Scene, View
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading.inputs import Layout
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
