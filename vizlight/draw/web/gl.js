@@ -156,6 +156,10 @@ class Program {
   constructor(gl, text, strokes) {
     const source = { Vertex: VERTEX, Fragment: FRAGMENT };
     text.forEach(([stage, mark, put]) => { source[stage] = source[stage].replace(mark, () => put); });
+    // No eye turns the normals of closed surfaces, or those of a lean of 1; behind a cut their inner side is seen, and lit.
+    const lines = /vec3 vizT\b/.test(source.Fragment);
+    if (source.Fragment.includes('vizLean')) source.Fragment = source.Fragment.replace(/float vizLean = .*/, '$&\n  if (ownCut != vec4(0.0) && vizLean > 0.985) vizLean = 0.0;');
+    else if (!lines && /vec3 vizN\b/.test(source.Fragment)) source.Fragment = source.Fragment.replace(/vec3 vizWo = .*/, '$&\n  if (ownCut != vec4(0.0) && dot(vizN, vizWo) < 0.0) vizN = -vizN;');
     // Both ends of a stroke are at hand in each of its corners; directions are whole numbers.
     let more = '';
     source.Vertex = source.Vertex.replace(/attribute (vec\d) (\w+);/g, (_, kind, name) => {
