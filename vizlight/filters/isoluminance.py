@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,8 +71,7 @@ class ContourOptions(Options):
     @property
     def light(self) -> LightOptions:
         """The options of the light."""
-        own = {field.name for field in fields(self)} - {"levels", "tolerance"}
-        return LightOptions(precision="float64", **{name: getattr(self, name) for name in own})
+        return LightOptions.of(vars(self) | {"precision": "float64"})
 
 
 @named

@@ -220,8 +220,7 @@ def _lines(
 ) -> Iterator[tuple[pv.PolyData, LightOptions]]:
     """Yield the lines of each step, and how they are lit."""
     name, streaks = str(options.vectors), options.kind == "streaklines"
-    names = {field.name for field in dataclasses.fields(LightOptions)}
-    light = LightOptions(**{key: getattr(options, key) for key in names})
+    light = LightOptions.of(vars(options))
     if not streaks:
         light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
     carrier, times = Carrier(steps.mesh(0)), steps.times

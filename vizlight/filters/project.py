@@ -72,9 +72,8 @@ class ProjectOptions(LightOptions):
 
     def by(self, tangents: str | None, positions: str | None) -> LightOptions:
         """Return the options of the light by some tangents, unless others are named."""
-        own = {f.name: getattr(self, f.name) for f in dataclasses.fields(LightOptions)}
         named = self.tangents if self.tangents is not None else tangents
-        return LightOptions(**own | {"tangents": named, "positions": positions})
+        return LightOptions.of(vars(self) | {"tangents": named, "positions": positions})
 
 
 @named

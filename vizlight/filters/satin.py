@@ -109,16 +109,15 @@ def satin(
             traced = surface.copy(deep=False)
             traced.point_data[name] = rows
         vectors_of(traced, "tangents", name, 3)
-    light = {f.name: getattr(asked, f.name) for f in dataclasses.fields(LightOptions)}
-    field = LightOptions(**light | {"conditioned": False})
+    field = LightOptions.of(vars(asked) | {"conditioned": False})
     panels = {
         "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),
         "field": dataclasses.replace(field, normals=None, facing="auto"),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }
     # Options of streamlines, which the record of the curves names.
-    lines = StreamlineOptions(
-        **{f.name: getattr(asked, f.name) for f in dataclasses.fields(StreamlineOptions)}
+    lines = StreamlineOptions.of(
+        vars(asked)
         | {
             "vectors": str(asked.tangents),
             "line_field": asked.line_field or averaged,

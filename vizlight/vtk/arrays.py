@@ -10,7 +10,7 @@ from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
 
 from vizlight import _check
 from vizlight.model import line_fields
-from vizlight.vtk.cells import as_numpy, as_vtk, places
+from vizlight.vtk.cells import as_numpy, as_vtk, dimensions, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -19,13 +19,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
     from vizlight.shading.inputs import ArraySource
-
-
-def dimensions(grid: Foreign) -> tuple[int, int, int]:
-    """Return the number of points of a grid along each of its axes."""
-    low, high = np.reshape(grid.GetExtent(), (3, 2)).T
-    i, j, k = (high - low + 1).tolist()
-    return i, j, k
 
 
 class GridPoints:

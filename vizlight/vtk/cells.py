@@ -264,6 +264,13 @@ def cell_arrays(mesh: Foreign) -> list[vtkCellArray]:
     return [] if cells is None else [cells]
 
 
+def dimensions(grid: Foreign) -> tuple[int, int, int]:
+    """Return the number of points of a grid along each of its axes."""
+    low, high = np.reshape(grid.GetExtent(), (3, 2)).T
+    i, j, k = (high - low + 1).tolist()
+    return i, j, k
+
+
 def check_whole(mesh: object, name: str, where: str = "") -> None:
     """Check that arrays have a row for each point or cell, and that cells have points that exist.
 
@@ -279,10 +286,9 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     count = mesh.GetNumberOfPoints()
     if isinstance(mesh, vtkStructuredGrid):
         # Versions of VTK count by the points or by the extent.
-        size: list[int] = [0, 0, 0]
-        mesh.GetDimensions(size)
-        if len(places(mesh)) != math.prod(size):
-            expected = f"{math.prod(size)} points by the extent {tuple(mesh.GetExtent())}"
+        there = math.prod(dimensions(mesh))
+        if len(places(mesh)) != there:
+            expected = f"{there} points by the extent {tuple(mesh.GetExtent())}"
             raise ValueError(where + _check.message(name, expected, str(len(places(mesh)))))
     for of, data, rows in (
         ("point", point_data(mesh), count),

@@ -176,13 +176,18 @@ def split_faces(
     root: Indices = np.empty(len(ids), dtype=np.int32 if len(ids) < 2**31 else np.intp)
     # Faces that are there twice have no side, and are not turned over.
     lone = None if twins is None else np.bincount(twins, minlength=count)[twins] == 1
+
+    def sided(a: Indices, b: Indices) -> Bools:
+        """Return whether both faces of each pair have sides."""
+        return np.ones(len(a), dtype=np.bool_) if lone is None else lone[a] & lone[b]
+
     alike = True
     for own, one, other, a, b, against in _neighbours(len(points), ids, ends, twins):
         cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         smooth = np.where(against, cosine, -cosine) > least
         joins = np.sort([one[smooth], other[smooth]], axis=0)
         root[own] = own[components(joins[0], joins[1], len(own))]
-        alike = alike and bool((against if lone is None else against[lone[a] & lone[b]]).all())
+        alike = alike and bool(against[sided(a, b)].all())
     if twins is not None:
         corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
         _, first, number = np.unique(corner, return_index=True, return_inverse=True)
@@ -191,7 +196,8 @@ def split_faces(
     if not alike:
         edges = []
         for _, _, _, a, b, against in _neighbours(len(points), ids, ends, twins):
-            known = a < b if lone is None else (a < b) & lone[a] & lone[b]
+            # Each pair is met at both ends of its edge.
+            known = (a < b) & sided(a, b)
             # The other side of a face has its number beyond those of all faces.
             edges.append((a[known], np.where(against, b, b + count)[known]))
         one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
@@ -205,9 +211,8 @@ def _neighbours(
 ) -> Iterator[tuple[Indices, Indices, Indices, Indices, Indices, Bools]]:
     """Yield the corners of some points, and pairs of faces that an edge at these joins.
 
-    A pair is told by the two places among the corners, by the two faces, each once in either order,
-    and by whether they are wound alike. By ranges of points: a sort of all edges at once would take
-    more memory.
+    Places of the two faces' corners per pair, the two faces, and whether these are wound alike. By
+    ranges of points: a sort of all edges at once would take more memory.
     """
     for block in _pool.blocks(count, EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))

@@ -21,8 +21,8 @@ from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinea
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 
-from vizlight.vtk.arrays import dimensions, points_of
-from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, finite_faces, places
+from vizlight.vtk.arrays import points_of
+from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, dimensions, finite_faces, places
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
