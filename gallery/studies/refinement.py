@@ -16,9 +16,9 @@ from pyvista import examples
 
 from studies import PIXEL, SHINY, Curve, Row, Study
 from vizlight import data
+from vizlight.filters.lighting import part_of
 from vizlight.filters.refine import refine
 from vizlight.mesh import splitting
-from vizlight.mesh.batches import inputs_of
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
@@ -119,7 +119,7 @@ def measure(name, errors, parts):
 
 def _lit(mesh, options, seed):
     """Return light between points, the lit cells, the light at points, and random places."""
-    inputs = inputs_of(mesh, "", SCENE, options)
+    inputs = part_of(mesh, "", SCENE, options).inputs
     shading = engine.run(inputs, SCENE, options)
     between, cells = Between(inputs, SCENE, options), splitting.simplices(mesh)
     cells = cells[shading.valid[cells].all(axis=1)]

@@ -529,13 +529,13 @@ def _varying(arrays: pv.DataSetAttributes) -> list[str]:
 
 def _explain(lit: pv.DataSet, asked: LightOptions) -> str:
     """Return the plan by which a mesh was lit, in words."""
-    from vizlight.mesh.batches import inputs_of
+    from vizlight.filters.lighting import part_of
     from vizlight.mesh.blocks import all_blocks
     from vizlight.shading.plan import decide
 
     record = vizlight.provenance(lit, asked.name)
     scene = vizlight.Scene.from_dict(record["scene"])
-    inputs = inputs_of(next(all_blocks(lit)), "", scene, asked)
+    inputs = part_of(next(all_blocks(lit)), "", scene, asked).inputs
     layout = inputs.layout._replace(dimmed=bool(asked.bundle))
     return decide(scene, layout, asked, record["precision"]).explain()
 

@@ -10,7 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
-from vizlight.mesh import batches, blocks, bundles, normals, refining
+from vizlight.mesh import blocks, bundles, normals, refining
 from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions
@@ -216,12 +216,10 @@ def light_mesh(
         for sided, one, other in zip(known, skied, taken, strict=True)
     ]
     taken = skied
-    # Each mesh is refined alone, and has shares of light inside its own bundle.
-    # Small blocks are joined, so that many cost little more than one.
-    groups, parts = batches.parts_of(
-        taken, [path for _, path in named], scene, early,
-        join=not (error or options.bundle), known=known, told=told,
-    )  # fmt: skip
+    parts = [
+        lighting.part_of(own, path, scene, early, sided, told)
+        for own, (_, path), sided in zip(taken, named, known, strict=True)
+    ]
     _tell_of_averages(named, options)
     rest: list[refining.Left] = []
     if error:
@@ -252,14 +250,10 @@ def light_mesh(
         scene,
         progress_bar=progress_bar,
     )
-    # Back from batches to the meshes that they were joined from.
-    results = batches.split(groups, shadings)
-    sides = batches.split(groups, [part.sided for part in parts])
-    sides = [normals.to_keep(own, sided) for own, sided in zip(taken, sides, strict=True)]
+    sides = [normals.to_keep(own, part.sided) for own, part in zip(taken, parts, strict=True)]
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
     parts.clear()
-    groups.clear()
     out, lit = mesh, taken
     if not (inplace or error):
         # Split meshes are new.
@@ -280,7 +274,7 @@ def light_mesh(
         refining.forget(block, options.name)
     inside = sum(int(sided.inside) for sided in sides if sided is not None)
     lighting.finish(
-        lit, results, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
+        lit, shadings, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
     )
     _warn_of_normals(lit, sides, options)
     for block, left in zip(lit, rest, strict=False):

@@ -17,7 +17,6 @@ from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, normals, records, splitting
-from vizlight.mesh.batches import inputs_of
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
@@ -275,7 +274,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             normals=_on_surface(mesh, "normals", asked.normals, ids),
             tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
         )
-    inputs = inputs_of(surface, "", scene, asked)
+    inputs = lighting.part_of(surface, "", scene, asked).inputs
     (lit,), fitted = lighting.light([(inputs, asked)], scene, progress_bar=False)
     invalid = int(np.count_nonzero(~lit.valid[used]))
     if invalid:

@@ -1,4 +1,4 @@
-"""What every filter does with inputs that are ready: light them all, then attach."""
+"""What every filter does: take the inputs of each mesh, light them all, then attach."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _progress
-from vizlight.mesh import bundles, records
+from vizlight.mesh import bundles, normals, records, splitting
 from vizlight.shading import engine
 from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
+from vizlight.vtk import parts as vtk_parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,8 +23,36 @@ if TYPE_CHECKING:
     from vizlight.mesh.bundles import Dimming
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Bundle, ShadingOptions
+    from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
     from vizlight.shading.results import Record
+    from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.parts import Part
+
+
+def part_of(
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    known: Sided | None = None,
+    told: Told | None = None,
+) -> Part:
+    """Return what one mesh is lit by; see :func:`vizlight.vtk.parts.part_of`.
+
+    ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
+    decides of its sides.
+    """
+    part = vtk_parts.part_of(
+        mesh,
+        path,
+        scene,
+        options,
+        kept_normals=normals.kept if known is None else lambda _: known,
+        kept_tangents=splitting.kept_tangents,
+        told=told,
+    )
+    cells = lambda: splitting.simplices(mesh)  # noqa: E731
+    return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))
 
 
 def light(
@@ -138,12 +167,12 @@ def finish(
 
     Points inside volumes, ``inside`` in number, have no normal and are not counted.
     """
-    shared: dict[int, str] = {}
+    shared: dict[tuple[object, ...], str] = {}
     invalid = -inside
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
-        plan = id(shading.plan)
+        plan = shading.plan.dtype, shading.plan.terms, shading.plan.exponent
         record: Record = {"points": shading.valid.size, "invalid": shading.invalid}
-        # Blocks that share a plan share most of their record: it is written as text once.
+        # Blocks that are lit alike share most of their record: it is written as text once.
         if plan not in shared:
             all_of = of_light(shading, filter_name, scene, options)
             shared[plan] = json.dumps({k: v for k, v in all_of.items() if k not in record})

@@ -13,7 +13,6 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, records
-from vizlight.mesh.batches import part_of
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
 from vizlight.shading import engine
@@ -104,7 +103,7 @@ def read(
         got = repr(options.feature_angle)
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
     own = with_sky([mesh], options.occlusion)[0] if own is None else own
-    part = part_of(own, path, scene, options)
+    part = lighting.part_of(own, path, scene, options)
     inputs, sided = part.inputs, part.sided
     shares: bundles.Dimmed | None = None
     if isinstance(options.bundle, Bundle):

@@ -18,7 +18,7 @@ from vizlight import _check
 from vizlight.geometry.solids import parallel_rays
 from vizlight.mesh import blocks
 from vizlight.vtk.cells import faces_only, triangles
-from vizlight.vtk.topology import Owners, coincident
+from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -119,7 +119,7 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
     if not np.all(np.isfinite(points[corners])):
         raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
     # Zeros are added, because -0 is 0.
-    first = coincident(points + 0.0, Owners())
+    first = coincident(points + 0.0)
     there = np.zeros(len(points), np.bool_)
     there[corners] = True
     used = np.flatnonzero(there)

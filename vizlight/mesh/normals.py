@@ -27,7 +27,7 @@ from vizlight.vtk.cells import (
 from vizlight.vtk.corners import numbered, split_faces
 from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
 from vizlight.vtk.orientation import MANY_SHARP, SHARP
-from vizlight.vtk.topology import Owners, coincident
+from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -224,7 +224,7 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     found = _at(mesh, corners, ends, origin)
     if (sided := kept(mesh)) is not None:
         # The surface is as smooth as it was.
-        keep(found, dataclasses.replace(sided.part(0, origin), kept=False))
+        keep(found, dataclasses.replace(sided.at(origin), kept=False))
     return found, origin
 
 
@@ -397,7 +397,7 @@ def keep_normals(mesh: pv.PolyData) -> None:
         return
     if not mesh.point_data or mesh.point_data.active_normals is not None:
         return
-    first = coincident(np.asarray(mesh.points), Owners())
+    first = coincident(np.asarray(mesh.points))
     if first is None:
         return
     ids, ends = connectivity(mesh.GetPolys())
@@ -406,4 +406,4 @@ def keep_normals(mesh: pv.PolyData) -> None:
     whole.SetPolys(blocks.cell_array(first[ids], ends))
     sided = computed_normals(whole)
     if not sided.sharp:
-        keep(mesh, sided.part(0, first))
+        keep(mesh, sided.at(first))

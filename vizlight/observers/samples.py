@@ -19,9 +19,9 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 from vizlight import _check
 from vizlight.draw.backends import BackendError, choose_backend, window_class
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
+from vizlight.filters.lighting import part_of
 from vizlight.filters.tint import values_of
 from vizlight.mesh import blocks, records, splitting
-from vizlight.mesh.batches import part_of
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
 from vizlight.scene import Scene, View

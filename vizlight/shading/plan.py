@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -362,6 +363,8 @@ def _half(scene: Scene, index: int) -> Vector | None:
     return None if size < 1e-6 else tuple((both / size).tolist())
 
 
+# A thousand blocks of one scene ask a thousand times.
+@functools.lru_cache(maxsize=16)
 def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
     """Return the scene with a view and the lights that have an effect, and the terms they need."""
     lights = tuple(light for light in scene.lights if light.intensity > 0)

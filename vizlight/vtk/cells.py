@@ -43,7 +43,6 @@ point_data: Callable[[Foreign], vtkPointData] = vtkDataSet.GetPointData
 cell_data: Callable[[Foreign], vtkCellData] = vtkDataSet.GetCellData
 field_data: Callable[[Foreign], vtkFieldData] = vtkDataObject.GetFieldData
 grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
-point_count: Callable[[Foreign], int] = vtkPointSet.GetNumberOfPoints
 vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Foreign = numpy_support

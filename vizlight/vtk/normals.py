@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -43,7 +44,6 @@ from vizlight.vtk.orientation import (
     toward_eye,
 )
 from vizlight.vtk.topology import (
-    Owners,
     edge_numbers,
     inner_edges,
     is_closed,
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -85,15 +85,14 @@ class Sided:
         1 for points of pieces with a border, or whose faces have no common side, as in a Klein
         bottle: either side may be seen. From 2 on the number of such a piece that is a height
         field; 0 for others.
-    sharp : float or ndarray
-        Share of edges that are creases, across which normals were averaged; one for each mesh of
-        a batch.
+    sharp : float
+        Share of edges that are creases, across which normals were averaged.
     kept : bool
         Whether the normals come from an earlier result.
     computed : bool
         Whether they are computed from the surface, not an array of the user.
-    inside : int or ndarray
-        Number of points of a volume that are not on its surface; one for each mesh of a batch.
+    inside : int
+        Number of points of a volume that are not on its surface.
     averted : ndarray of bool, or None
         By the numbers of ``open``, the height fields that show the eye their back, where that is
         known from a whole of which these points are a part; a single one says that none is open.
@@ -102,10 +101,10 @@ class Sided:
     vectors: Array
     lean: Array | None = None
     open: Indices | int = 0
-    sharp: float | Array = 0.0
+    sharp: float = 0.0
     kept: bool = False
     computed: bool = False
-    inside: int | Indices = 0
+    inside: int = 0
     averted: Bools | None = None
 
     @property
@@ -113,18 +112,11 @@ class Sided:
         """Whether a piece has a border."""
         return bool(np.any(self.open)) if self.averted is None else len(self.averted) > 1
 
-    def part(self, i: int, rows: Slice | Indices, /) -> Sided:
-        """Return what belongs to a mesh of a batch, by its number and its points."""
-        return Sided(
-            self.vectors[rows],
-            None if self.lean is None else self.lean[rows],
-            self.open[rows] if isinstance(self.open, np.ndarray) else self.open,
-            float(self.sharp[i]) if isinstance(self.sharp, np.ndarray) else self.sharp,
-            self.kept,
-            self.computed,
-            int(self.inside[i]) if isinstance(self.inside, np.ndarray) else self.inside,
-            self.averted,
-        )
+    def at(self, rows: Indices, /) -> Sided:
+        """Return the normals of some points, which may be there more than once."""
+        lean = None if self.lean is None else self.lean[rows]
+        border = self.open[rows] if isinstance(self.open, np.ndarray) else self.open
+        return dataclasses.replace(self, vectors=self.vectors[rows], lean=lean, open=border)
 
     def facts(self) -> Array:
         """Return for each point its lean, and its number of :attr:`open`."""
@@ -254,14 +246,12 @@ def sided_normals(
     facing: Facing,
     *,
     kept: Callable[[Foreign], Sided | None] | None = None,
-    starts: Indices | None = None,
     told: Told | None = None,
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
-    With ``starts`` the mesh is a batch of members that stay apart. ``kept`` is a function of
-    the mesh that returns normals of its surface which are known already, or None. ``told`` is what
-    the whole, of which the mesh is a part, decides of its sides.
+    ``kept`` is a function of the mesh that returns normals of its surface which are known already,
+    or None. ``told`` is what the whole, of which the mesh is a part, decides of its sides.
 
     Raises
     ------
@@ -271,10 +261,10 @@ def sided_normals(
     given = given_normals(mesh, value, n)
     if given is None:
         if facing == "as given":
-            return computed_normals(mesh, as_wound=True, sides=False, starts=starts)
+            return computed_normals(mesh, as_wound=True, sides=False)
         if told is not None:
             return computed_normals(mesh, told=told)
-        return (kept and kept(mesh)) or computed_normals(mesh, starts=starts)
+        return (kept and kept(mesh)) or computed_normals(mesh)
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
     # These two need no pieces; in n-space there is no order of corners that tells a side.
@@ -286,26 +276,21 @@ def sided_normals(
     if surface is None:
         return Sided(given)
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
-    owners = Owners(starts, origin)
-    size = [len(given)] if starts is None else np.diff(starts)
-    mesh_of = np.repeat(np.arange(owners.count), size)
     if told is None:
-        closed, alike = is_closed(surface, owners)
+        closed, alike = is_closed(surface)
         # A closed surface whose faces have no common side, such as Boy's, has no outside.
-        if np.any(closed & ~alike):
-            closed &= ~_inside_out(surface, owners)
-        inward = closed & _inward(places(surface), np.flatnonzero(used(surface)), own, owners)
+        closed = closed and (alike or not _inside_out(surface))
+        inward = closed and _inward(places(surface), np.flatnonzero(used(surface)), own)
+        number = sides_of(given, None, np.array([not closed]))
     else:
-        inward = told.sign < 0
-    if inward.any():
-        given = given * np.where(inward, -1, 1).astype(given.dtype)[mesh_of, np.newaxis]
-    side = sides_of(given, mesh_of, ~closed) if told is None else told.number
-    lean = None
-    if np.any(side > 1):
-        lean = _lean_of_given(Shape(surface, owners), own)
+        inward, number = bool(told.sign[0] < 0), told.number
+    if inward:
+        given = -given
+    side, lean = int(number[0]), None
+    if side > 1:
+        lean = _lean_of_given(Shape(surface), own)
         lean = lean if origin is None else scattered(lean, origin, len(given))
-        lean = np.where((side > 1)[mesh_of], lean, 0)
-    return Sided(given, lean, open=side[mesh_of], averted=None if told is None else told.averted)
+    return Sided(given, lean, open=side, averted=None if told is None else told.averted)
 
 
 def _lean_of_given(shape: Shape, normals: Array) -> Array:
@@ -313,23 +298,17 @@ def _lean_of_given(shape: Shape, normals: Array) -> Array:
     return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
 
 
-def _inward(points: Array, ids: Indices, normals: Array, owners: Owners) -> Bools:
-    """Return of each closed mesh whether its normals at its outermost points point inside."""
+def _inward(points: Array, ids: Indices, normals: Array) -> bool:
+    """Return whether the normals of a closed mesh at its outermost points point inside."""
     ids = ids[np.isfinite(points[ids]).all(axis=1) & np.isfinite(normals[ids]).all(axis=1)]
-    outward = np.zeros(owners.count)
+    outward = 0.0
     if not len(ids):
-        return outward < 0
+        return False
     # At the outermost points along each axis an outward normal points along it: six votes.
     for axis in range(3):
         for sign in (1, -1):
             along = sign * points[ids, axis]
-            if owners.of is None:
-                outward += sign * normals[ids[along.argmax()], axis]
-                continue
-            # The first of the farthest points of each.
-            order = np.lexsort((-along, owners.of[ids]))
-            own, first = np.unique(owners.of[ids][order], return_index=True)
-            outward[own] += sign * normals[ids[order[first]], axis]
+            outward += sign * normals[ids[along.argmax()], axis]
     return outward < 0
 
 
@@ -357,8 +336,8 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
         points.append(where[ends])
         normals.append(own[ends])
     outermost, own = np.concatenate(points), np.concatenate(normals)
-    inward = _inward(outermost, np.arange(len(outermost)), own, Owners())
-    return Sided(-given if inward[0] else given)
+    inward = _inward(outermost, np.arange(len(outermost)), own)
+    return Sided(-given if inward else given)
 
 
 def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
@@ -383,7 +362,6 @@ def computed_normals(
     view: View | None = None,
     as_wound: bool = False,
     sides: bool = True,
-    starts: Indices | None = None,
     told: Told | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
@@ -407,8 +385,6 @@ def computed_normals(
         Whether the normals have the sides that the order of the corners of each face gives them.
     sides : bool
         Whether lean and share of sharp edges are found.
-    starts : ndarray of int, optional
-        First point of each mesh of a batch, and the number of points.
     told : Told, optional
         What the whole, of which this is a part, decides of the pieces.
 
@@ -425,19 +401,17 @@ def computed_normals(
     part = None if told is None else told.side
     # First normals that agree with each other on each piece, then the side of each piece as a
     # whole.
-    found = wound_normals(mesh, as_wound=as_wound, starts=starts, side=part)
-    if found is None and starts is None and is_scan(mesh):
+    found = wound_normals(mesh, as_wound=as_wound, side=part)
+    if found is None and is_scan(mesh):
         return _of_cloud(mesh, view)
     if found is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
     shape, vectors, first, origin = found
-    owners = shape.owners
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
-    sharp: Array = np.zeros(owners.count)
-    inside = np.zeros(owners.count, dtype=np.intp)
+    sharp, inside = 0.0, 0
     if sides or not as_wound:
         sums, leaning = shape.survey(vectors)
         if told is not None:
@@ -452,22 +426,19 @@ def computed_normals(
     number = side[shape.piece]
     if origin is not None:
         if dimension(mesh) == 3:
-            size = [count] if starts is None else np.diff(starts)
             # Points inside a volume have no normal; they are no fault.
-            inside = size - owners.counts(np.flatnonzero(origin >= 0))
+            inside = count - int(np.count_nonzero(origin >= 0))
         vectors = scattered(vectors, origin, count)
         number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)
     averted = None if told is None else told.averted
-    all_of = Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
-    return all_of.part(0, slice(None)) if starts is None else all_of
+    return Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
 
 
 def wound_normals(
     mesh: Dataset,
     *,
     as_wound: bool = False,
-    starts: Indices | None = None,
     side: NDArray[np.int8] | None = None,
 ) -> tuple[Shape, Array, Indices | None, Indices | None] | None:
     """Return the outer surface of a mesh and the normals of its points, None where it has none.
@@ -487,7 +458,7 @@ def wound_normals(
             # Where the part is cut from the others faces arise that join what is apart.
             outer = finite_faces(surface, side == 0)
             surface = outer if has_faces(outer) else surface
-    shape = Shape(surface, Owners(starts, origin), side)
+    shape = Shape(surface, side)
     wound = _wound(surface, shape, as_wound=as_wound)
     vectors = surface_normals(wound)
     if shape.seam.any() and not as_wound:
@@ -561,7 +532,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     lines = [place_numbers(line) for line in hull.rim(mesh)]
     # Edges of the rim that one part has alone are a border, unless another part has them too.
     single, ends = single_edges(lines)
-    sums, counts = [], np.zeros((4, 1), dtype=np.intp)
+    sums, counts = [], np.zeros(4, dtype=np.intp)
     for part in hull.parts(mesh):
         surface, own = part.surface, part.side == 0
         normals = surface_normals(surface)
@@ -586,7 +557,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         vectors,
         lean if sides else None,
         int(side[0]),
-        float(crease_share(counts)[0]) if sides else 0.0,
+        crease_share(counts) if sides else 0.0,
         computed=True,
         inside=count - on_surface,
     )
@@ -610,12 +581,11 @@ def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData
     return found
 
 
-def _inside_out(surface: vtkPolyData, owners: Owners) -> Bools:
-    """Return of each mesh whether it has a piece without an outer side, such as a Klein bottle."""
-    shape = Shape(surface, owners)
+def _inside_out(surface: vtkPolyData) -> bool:
+    """Return whether a surface has a piece without an outer side, such as a Klein bottle."""
+    shape = Shape(surface)
     _wound(surface, shape, as_wound=False)
-    points = np.flatnonzero(shape.inside_out[shape.piece])
-    return owners.counts(points) > 0
+    return bool(shape.inside_out.any())
 
 
 def piece_numbers(mesh: Dataset) -> Indices:
@@ -624,7 +594,7 @@ def piece_numbers(mesh: Dataset) -> Indices:
     surface, origin = _skin(mesh)
     if surface is None:
         return np.zeros(count, dtype=np.intp)
-    piece = topology(triangles(surface), places(surface), Owners()).piece
+    piece = topology(triangles(surface), places(surface)).piece
     return piece if origin is None else scattered(piece, origin, count)
 
 

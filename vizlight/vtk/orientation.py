@@ -10,7 +10,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.cells import faces, places, triangles
-from vizlight.vtk.topology import BLOCK, Owners, SortedEdges, ends_of, sorted_edges, topology
+from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -104,13 +104,11 @@ class Shape:
     Coincident points are connected, so that triangles that share no point can form one piece.
     """
 
-    def __init__(
-        self, surface: vtkPolyData, owners: Owners, side: NDArray[np.int8] | None = None
-    ) -> None:
+    def __init__(self, surface: vtkPolyData, side: NDArray[np.int8] | None = None) -> None:
         #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for
         #: points of the one before. Cells belong to the part in which they begin.
         self.side = side
-        self.points, self.owners = places(surface), owners
+        self.points = places(surface)
         self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
         self.triangles = triangles(surface)
         self._start_count()
@@ -119,7 +117,7 @@ class Shape:
     def _find_pieces(self, surface: vtkPolyData) -> None:
         """Find the connected pieces."""
         own = None if self.side is None else self.side == 0
-        found = topology(self.triangles, self.points, self.owners, own, self._count)
+        found = topology(self.triangles, self.points, own, self._count)
         self.piece, self.open, self.alike, folded, self.same = found
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
@@ -147,8 +145,8 @@ class Shape:
         """Find the directions of the triangles, between which :meth:`_count` counts sharp edges."""
         self._unit = np.zeros((3, len(self.triangles)), dtype=np.float32)
         self._full = np.zeros(len(self.triangles), dtype=np.bool_)
-        #: Number of edges of two faces of each mesh, and of sharp ones by three limits.
-        self.edges = np.zeros((4, self.owners.count), dtype=np.intp)
+        #: Number of edges of two faces, and of sharp ones by three limits.
+        self.edges = np.zeros(4, dtype=np.intp)
         for block in _pool.blocks(len(self.triangles), BLOCK):
             corners = [self.points.take(at, axis=0).T for at in self.triangles[block].T]
             a, b, c = (at.astype(np.float64) for at in corners)
@@ -174,29 +172,22 @@ class Shape:
             against = edges.forward[at] != edges.forward[at + 1]
             cosine = kernels.dot(self._unit.take(one, axis=1), self._unit.take(other, axis=1))
             cosine = np.where(against, cosine, -cosine)
-            for count, beyond in zip(self.edges, (2.0, *least), strict=True):
-                sharp = np.flatnonzero(full & (cosine < beyond))
-                count += self.owners.counts(self.triangles[one[sharp], 0])
+            self.edges += [np.count_nonzero(full & (cosine < beyond)) for beyond in (2.0, *least)]
 
     @cached_property
-    def frame(self) -> tuple[Array, Array]:
-        """The centroid of each piece, shape (3, n_pieces), and the size of each mesh about it."""
+    def frame(self) -> tuple[Array, float]:
+        """The centroid of each piece, shape (3, n_pieces), and the size of the mesh about them."""
         piece = self.piece
         size = np.maximum(np.bincount(piece, self.finite, self.count), 1)
         middle = np.empty((3, self.count))
         for row, axis in zip(middle, self.points.T, strict=True):
             own = np.where(self.finite, axis, 0).astype(np.float64)
             row[:] = np.bincount(piece, own, self.count) / size
-        largest = np.zeros(self.owners.count)
+        largest = 0.0
         for block in _pool.blocks(len(self.points), BLOCK):
-            far = np.abs(self._from_middle(block, middle)).max(axis=0)
-            if self.owners.of is None:
-                largest[0] = max(largest[0], far.max())
-            else:
-                np.maximum.at(largest, self.owners.of[block], far)
+            largest = max(largest, float(np.abs(self._from_middle(block, middle)).max()))
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-        largest[largest == 0] = 1.0
-        return middle, largest
+        return middle, largest or 1.0
 
     def _from_middle(self, rows: Indices | Slice, middle: Array) -> Array:
         """Return the ways from the centroids of the pieces to some points."""
@@ -211,7 +202,7 @@ class Shape:
         """Return some points, shape (3, n), each piece about its centroid, at a size of 1."""
         middle, largest = self.frame
         away = self._from_middle(rows, middle)
-        away /= largest[0] if self.owners.of is None else largest[self.owners.of[rows]]
+        away /= largest
         return away
 
     @cached_property
@@ -315,8 +306,8 @@ class PartShape(Shape):
     def __init__(
         self, surface: vtkPolyData, side: NDArray[np.int8], middle: Array, scale: float
     ) -> None:
-        super().__init__(surface, Owners(), side)
-        self.frame = middle[:, np.newaxis], np.array([scale])
+        super().__init__(surface, side)
+        self.frame = middle[:, np.newaxis], scale
 
     def _find_pieces(self, surface: vtkPolyData) -> None:  # noqa: ARG002
         self.piece, self.count = np.zeros(len(self.points), dtype=np.intp), 1
@@ -398,12 +389,12 @@ def middles(
     return middle
 
 
-def crease_share(counts: Indices) -> Array:
-    """Return of each mesh the share of sharp edges where these are creases, else 0.
+def crease_share(counts: Indices) -> float:
+    """Return the share of sharp edges where these are creases, else 0.
 
     Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
     are more of those, and no edge is meant to be seen. ``counts`` are :attr:`Shape.edges`.
     """
     beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
-    return np.where(apart | (nearly - share <= STAND_APART * share), share, 0.0)
+    return float(share) if apart or nearly - share <= STAND_APART * share else 0.0

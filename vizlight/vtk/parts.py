@@ -18,7 +18,7 @@ from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vizlight._types import Array, Dataset, Foreign, Indices
+    from vizlight._types import Array, Dataset, Foreign
     from vizlight.scene import Scene, View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
@@ -48,14 +48,12 @@ def part_of(
     *,
     kept_normals: Callable[[Foreign], Sided | None] | None = None,
     kept_tangents: Callable[[Foreign], Array | None] | None = None,
-    starts: Indices | None = None,
     told: Told | None = None,
 ) -> Part:
     """Return what one mesh is lit by; an error names the path of its block.
 
-    With ``starts`` the mesh is a batch, see :mod:`vizlight.mesh.batches`; with ``told`` it is a
-    part of a whole, see :mod:`vizlight.vtk.sides`. Without a view both sides of an open
-    surface are lit alike.
+    With ``told`` it is a part of a whole, see :mod:`vizlight.vtk.sides`. Without a view both sides
+    of an open surface are lit alike.
 
     Raises
     ------
@@ -78,7 +76,6 @@ def part_of(
                 n,
                 options.facing,
                 kept=kept_normals,
-                starts=starts,
                 told=told,
             )
             if tangents is None and n == 3 and polylines.has_several_kinds(mesh):

@@ -47,7 +47,7 @@ class Look(NamedTuple):
         The outermost normals of each piece, and their pieces.
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
         Numbers of the places of points that other parts have too, their pieces and normals.
-    edges : ndarray of int, shape (4, 1)
+    edges : ndarray of int, shape (4,)
         See :attr:`.orientation.Shape.edges`.
     """
 
@@ -227,4 +227,4 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
 
 def creases(looks: Sequence[Look]) -> bool:
     """Return whether the sharp edges of the whole are creases."""
-    return bool(crease_share(np.sum([one.edges for one in looks], axis=0))[0] > 0)
+    return crease_share(np.sum([one.edges for one in looks], axis=0)) > 0

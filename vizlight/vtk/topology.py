@@ -22,31 +22,6 @@ if TYPE_CHECKING:
 EDGES, PARTS = 1 << 19, 16
 
 
-class Owners:
-    """Which mesh of a batch each point of a surface belongs to; of one mesh all do.
-
-    Parameters
-    ----------
-    starts : ndarray of int, or None
-        First point of each mesh of a batch, followed by the number of points.
-    origin : ndarray of int, or None
-        Point of the batch that each point of the surface is.
-    """
-
-    def __init__(self, starts: Indices | None = None, origin: Indices | None = None) -> None:
-        self.count = 1 if starts is None else len(starts) - 1
-        self.of: Indices | None = None
-        if starts is not None:
-            self.of = np.repeat(np.arange(self.count), np.diff(starts))
-            self.of = self.of if origin is None else self.of[origin]
-
-    def counts(self, points: Indices) -> Indices:
-        """Return how many of some points belong to each mesh."""
-        if self.of is None:
-            return np.array([len(points)])
-        return np.bincount(self.of[points], minlength=self.count)
-
-
 class Topology(NamedTuple):
     """Connected pieces of the points of a surface, and how its triangles are wound.
 
@@ -152,7 +127,6 @@ def sorted_edges(
 def topology(
     corners: Indices,
     points: Raw,
-    owners: Owners,
     own: Bools | None = None,
     visit: Callable[[SortedEdges], object] = len,
 ) -> Topology:
@@ -163,7 +137,7 @@ def topology(
     """
     count = len(points)
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
-    same = coincident(points, owners)
+    same = coincident(points)
     single: list[Indices] = []
     folded: list[Indices] = []
     # What is not filled takes no memory.
@@ -273,45 +247,35 @@ def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
     return root[:count], root[count:]
 
 
-def coincident(points: Raw, owners: Owners) -> Indices | None:
+def coincident(points: Raw) -> Indices | None:
     """Return the first point at the place of each point, None if all places differ.
 
-    Points that are not finite differ from all others, as do points of two meshes.
+    Points that are not finite differ from all others.
     """
-    number = place_numbers(points)
-    if owners.of is not None:
-        number ^= place_numbers(np.repeat(owners.of[:, np.newaxis], 3, axis=1))
-    same = firsts(number)
+    same = firsts(place_numbers(points))
     if same is None:
         return None
     again = np.flatnonzero(same != np.arange(len(points)))
     apart = np.any(points[again] != points[same[again]], axis=1)
-    if owners.of is not None:
-        apart |= owners.of[again] != owners.of[same[again]]
     same[again[apart]] = again[apart]
     return None if apart.all() else same
 
 
-def is_closed(surface: vtkPolyData, owners: Owners) -> tuple[Bools, Bools]:
-    """Return of each mesh whether all its edges have an even number of faces, all wound alike.
+def is_closed(surface: vtkPolyData) -> tuple[bool, bool]:
+    """Return whether all edges have an even number of faces, and whether these are wound alike.
 
     Places make an edge. The numbers of the edges, made from the coordinates of their ends, cancel
     by pairs, and with a sign where the two faces are wound alike.
     """
     rows, number = triangles(surface), place_numbers(places(surface))
-    odd, sums = np.zeros((2, owners.count), np.uint64)
+    odd = sums = np.uint64(0)
     for block in _pool.blocks(len(rows), BLOCK):
         a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
         edges = edge_numbers(a, b)
         signed = np.where(a < b, edges, ~edges + np.uint64(1))
-        if owners.of is None:
-            odd ^= np.bitwise_xor.reduce(edges)
-            sums += np.add.reduce(signed)
-        else:
-            own = np.repeat(owners.of[rows[block][:, 0]], 3)
-            np.bitwise_xor.at(odd, own, edges)
-            np.add.at(sums, own, signed)
-    return np.asarray(odd == 0), np.asarray(sums == 0)
+        odd = np.bitwise_xor.reduce(edges, initial=odd)
+        sums = np.add.reduce(signed, initial=sums)
+    return bool(odd == 0), bool(sums == 0)
 
 
 #: Number of points or triangles that are worked on at once.
