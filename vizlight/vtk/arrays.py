@@ -28,15 +28,19 @@ class GridPoints:
 
     def __init__(self, grid: vtkImageData | vtkRectilinearGrid) -> None:
         self.shape: tuple[int, ...] = (grid.GetNumberOfPoints(), 3)
+        # The extent of a part of an image need not begin at 0, but its origin is the place of index
+        # 0.
         low = np.array(grid.GetExtent()[::2])
         self._dimensions = dimensions(grid)
         if isinstance(grid, vtkImageData):
+            # It has the directions of the axes too, as of a scanner, beside origin and spacing.
             own = grid.GetIndexToPhysicalMatrix()
             matrix = np.array([[own.GetElement(i, j) for j in range(4)] for i in range(3)])
             self._place: Callable[[Indices], Array] = lambda ijk: (
                 (ijk + low) @ matrix[:, :3].T + matrix[:, 3]
             )
         else:
+            # Coordinates are stored from the begin of the extent on.
             stored = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
             axes = [as_numpy(axis).astype(np.float64) for axis in stored]
             self._place = lambda ijk: np.stack(
@@ -93,6 +97,7 @@ def array_of(
         what = f"{value!r} with "
     else:
         array, what = _check.floats(name, value), ""
+        # Several tangents per point, one after the other, as a point array of VTK has them.
         if array.ndim == 3:
             array = array.reshape(len(array), -1)
         if array.ndim == 0 or len(array) != mesh.GetNumberOfPoints():
@@ -167,6 +172,7 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
     assert of_cells is not None
     rows = _real_rows(argument, of_cells, f"{value!r} with ")
     k = _checked_tangents(argument, value, rows, n).shape[1] // n
+    # Opposite tangents of two cells are one line, but would cancel in a mean of vectors.
     products = means(mesh, line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n))
     found, _ = line_fields.principal(products.reshape(-1, n, n), k)
     kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
@@ -175,6 +181,7 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
 
 def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     """Return the means at the points of a mesh of the rows of the cells around each."""
+    # Without the other arrays, which the filter would average too.
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
     only.GetCellData().AddArray(as_vtk(rows, "rows"))

@@ -53,12 +53,16 @@ def as_numpy(array: vtkAbstractArray) -> AnyArray:
     if isinstance(array, vtkStringArray):
         return np.array([array.GetValue(i) for i in range(array.GetNumberOfValues())], dtype=str)
     own: Foreign = array
+    # Variants and the like have no type in NumPy; their shape is enough, since whoever asks for
+    # numbers refuses the type object.
     if not isinstance(array, vtkDataArray):
         return np.empty((array.GetNumberOfTuples(), array.GetNumberOfComponents()), dtype=object)
     if array.IsA("vtkBitArray"):
+        # VTK packs bits eight to a byte, in which NumPy cannot index.
         own = vtkUnsignedCharArray()
         own.DeepCopy(array)
     elif not array.HasStandardMemoryLayout():
+        # Components that are stored apart, or values that are computed, are no rows in memory.
         own = vtkDataArray.CreateDataArray(array.GetDataType())
         own.DeepCopy(array)
     found: AnyArray = _SUPPORT.vtk_to_numpy(own)
@@ -67,7 +71,9 @@ def as_numpy(array: vtkAbstractArray) -> AnyArray:
 
 def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:
     """Return an array of VTK with a copy of some values."""
+    # VTK has no truth values of one byte.
     own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
+    # Values in the byte order of another machine are swapped as they are assigned below.
     kind = own.dtype.newbyteorder("=")
     # Twice as fast as VTK's own way, which counts where there are many small meshes.
     array: Foreign = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
@@ -83,12 +89,14 @@ def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:
 
 def places(mesh: Foreign) -> AnyArray:
     """Return the points that a dataset stores."""
+    # A dataset that never got any points has no vtkPoints at all.
     points = mesh.GetPoints()
     return np.zeros((0, 3), np.float32) if points is None else as_numpy(points.GetData())
 
 
 def connectivity(cells: vtkCellArray) -> tuple[Indices, Indices]:
     """Return the points of all cells, and the offset of each cell in them."""
+    # VTK holds these numbers in 32 or in 64 bits, as the file or the filter made them.
     return (
         as_numpy(cells.GetConnectivityArray()).astype(np.intp, copy=False),
         as_numpy(cells.GetOffsetsArray()).astype(np.intp, copy=False),
@@ -131,6 +139,8 @@ def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
     ids, offsets = connectivity(polys)
 
     def some(points: Bools) -> Bools:
+        # Prefix sums: their difference between two offsets counts the marked corners of one
+        # polygon.
         return np.diff(np.concatenate([[0], np.cumsum(points[ids])])[offsets]) > 0
 
     return _faces(surface, ~some(~known) if own is None else ~some(~known) & some(own))
@@ -157,10 +167,13 @@ def first_twins(cells: vtkCellArray) -> Indices | None:
     ids, offsets = connectivity(cells)
     number = np.zeros(max(len(offsets) - 1, 0), dtype=np.uint64)
     with np.errstate(over="ignore"):
+        # Sums of mixed numbers do not depend on the order of the corners; from 1 on, as 0 is mixed
+        # to 0 and the first point would not count.
         of_point = mixed(np.arange(1, int(ids.max(initial=0)) + 2, dtype=np.uint64))
         for block in _pool.blocks(len(number), 1 << 16):
             ends = offsets[block.start : block.stop + 1]
             corners = of_point[ids[ends[0] : ends[-1]]]
+            # Sums wrap around at 2^64, which their differences undo.
             sums = np.concatenate([[np.uint64(0)], np.cumsum(corners, dtype=np.uint64)])
             number[block] = np.diff(sums[ends - ends[0]])
     return firsts(number)
@@ -168,6 +181,7 @@ def first_twins(cells: vtkCellArray) -> Indices | None:
 
 def firsts(numbers: NDArray[np.uint64]) -> Indices | None:
     """Return the first place at which each of some numbers stands, None if they all differ."""
+    # Mostly all differ, which a plain sort tells without the indices that np.unique makes.
     ordered = np.sort(numbers)
     if not np.any(ordered[1:] == ordered[:-1]):
         return None
@@ -231,6 +245,7 @@ def _halves(quads: Indices, points: Raw) -> Indices | None:
         dots = [kernels.dot(sides[i - 1], sides[i]) for i in range(_QUAD)]
         # Products of the area vectors of the halves, by Lagrange's identity.
         across = kernels.dot(sides[0], sides[2]) * kernels.dot(sides[1], sides[3])
+        # First the halves by the diagonal from the second corner, then those by the other diagonal.
         if not (np.all(across > dots[1] * dots[3]) and np.all(across > dots[0] * dots[2])):
             return None
         one, other = c - a, d - b

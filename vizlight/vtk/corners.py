@@ -98,10 +98,13 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
         if s == 3:
             across = kernels.cross(sides[0], sides[1])
         else:
+            # Twice the area vector, summed over a fan: right for dented polygons too, and a mean
+            # direction of those that are not plane.
             across = np.zeros_like(places[0])
             for i in range(1, s - 1):
                 across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
         face, area = kernels.unit(across)
+        # Twice the area over the square of the longest side is the height as a share of that side.
         height = np.minimum(area / (FLAT * longest), 1)
         # Fourth root of each length: the product of two is the square root of their geometric
         # mean.
@@ -120,6 +123,8 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
                 # A polygon that is not plane has another normal at each corner.
                 corner, size = kernels.unit(kernels.cross(ahead, behind))
                 inward = kernels.dot(corner, face)
+                # Sides in one line have no plane of their own, and at a dent their product points
+                # to the back of the face.
                 flat = size <= FLAT * np.maximum(squares[i], before[1][i])
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
             # The angle of the corner, exact for sharp and for blunt ones.
@@ -129,6 +134,8 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
             # A corner at the place of the next has no angle: it counts where nothing else does.
             same = near == 0
             weight[same] = LEAST * height[same] / np.sqrt(np.sqrt(longest[same]))
+            # Corners of points that are not finite say nothing, but must not spoil those around
+            # them.
             weight[~np.isfinite(weight)] = 0
             for k in range(3):
                 # Faster than np.add.at, as long as a block has points near each other.
@@ -183,12 +190,17 @@ def split_faces(
 
     alike = True
     for own, one, other, a, b, against in _neighbours(len(points), ids, ends, twins):
+        # The normal of one of two faces that are wound against each other is turned to compare
+        # them.
         cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         smooth = np.where(against, cosine, -cosine) > least
+        # Both corners of a pair are at the same point, so that each point is split by itself.
         joins = np.sort([one[smooth], other[smooth]], axis=0)
         root[own] = own[components(joins[0], joins[1], len(own))]
         alike = alike and bool(against[sided(a, b)].all())
     if twins is not None:
+        # A twin may begin at another corner or run the other way round: only the first face of its
+        # points and the point itself tell which corner goes with which.
         corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
         _, first, number = np.unique(corner, return_index=True, return_inverse=True)
         root = root[first[number.reshape(-1)]]
@@ -202,6 +214,7 @@ def split_faces(
             edges.append((a[known], np.where(against, b, b + count)[known]))
         one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
         up, down = double_cover(one, other, count)
+        # The copies that agree with the first face of their piece as it is have the lower number.
         turned = up > down
     return *numbered(root, ids, len(points)), turned
 
@@ -224,6 +237,8 @@ def _neighbours(
         at, toward = np.tile(ids[own], 2), np.concatenate([after, before])
         known = at != toward
         if twins is not None:
+            # A face that is there again would make each of its edges one of several faces, which
+            # joins none of them.
             known &= np.tile(twins[face] == face, 2)
         rows = np.flatnonzero(known)
         key = at[rows].astype(np.int64) << 32 | toward[rows]
@@ -266,6 +281,7 @@ def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]
     """
     roots = np.flatnonzero(root == np.arange(len(root), dtype=root.dtype))
     own = ids[roots]
+    # The first root keeps the row of its point, so that arrays of the old points stay valid there.
     first = np.zeros(len(roots), dtype=np.bool_)
     first[np.unique(own, return_index=True)[1]] = True
     place = np.empty(len(root), dtype=root.dtype)
@@ -319,6 +335,7 @@ def joined(points: Raw, surface: vtkPolyData) -> Indices | None:
     # Chains of slivers have one first point; whether they stay near is tested below.
     first = components(lower, upper, len(points))
     reach = np.zeros(len(points))
+    # A group may extend as far as the longest of its triangles allows.
     np.maximum.at(reach, first[lower], NEAR * np.sqrt(longest))
     ends = np.unique(np.concatenate([lower, upper]))
     low, high = np.full((2, len(points), 3), np.inf)
@@ -359,10 +376,13 @@ def common_normals(
     # Slivers have a direction by rounding alone.
     rows = rows[np.all(first[rows] != first[np.roll(rows, 1, axis=1)], axis=1)]
     common = corner_normals(points, [first[rows]])[first]
+    # Their own normals without the slivers, by which the common one is judged.
     normals = np.where(several[:, np.newaxis], corner_normals(points, [rows]), normals)
     cosine = np.einsum("ij,ij->i", normals, common)
+    # Points of slivers alone have no normal of their own, and so no objection to the common one.
     apart = several & ~(cosine >= least) & np.any(normals, axis=1)
     kept = np.ones(len(first), dtype=np.bool_)
+    # One point that differs, as at a sharp edge, leaves its whole group as it was.
     kept[first[apart]] = False
     chosen = several & kept[first]
     found = normals.copy()

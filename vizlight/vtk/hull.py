@@ -88,6 +88,8 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         numbers = np.arange(mesh.GetNumberOfPoints(), dtype=np.float64)
         numbered.GetPointData().AddArray(as_vtk(numbers, NUMBERS))
         take: Foreign = vtkDataSetSurfaceFilter()
+        # Level 1 cuts a curved face by all of its nodes; 0 would drop those between its corners,
+        # and more would add points that the mesh does not have.
         take.SetNonlinearSubdivisionLevel(1)
     else:
         take = vtkGeometryFilter()
@@ -115,6 +117,7 @@ def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
 def scattered(rows: AnyArray, origin: Indices, count: int) -> AnyArray:
     """Return an array of all points of a mesh from one of its surface; other rows are zero."""
     found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
+    # The index -1 would write to the last row.
     there = origin >= 0
     found[origin[there]] = rows[there]
     return found
@@ -156,12 +159,14 @@ def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
     # A cube has few points on its surface; a sheet has all of them there.
     if count - np.maximum(size - 2, 0).prod() <= FEW * count:
         return False
+    # Hidden cells may cut a grid into several pieces, while its parts are taken for one.
     return not any(data.HasArray(GHOSTS) for data in (mesh.GetPointData(), mesh.GetCellData()))
 
 
 def parts(mesh: Grid) -> Iterator[Part]:
     """Yield the surface of a grid by layers across its longest axis."""
     size = dimensions(mesh)
+    # Of axes of equal length the last: the later the axis, the longer the stretches of memory.
     axis = max(range(3), key=lambda i: (size[i], i))
     count = size[axis]
     layers = max(PART * count // mesh.GetNumberOfPoints(), 1)
@@ -170,10 +175,14 @@ def parts(mesh: Grid) -> Iterator[Part]:
         low, high = max(start - 1, 0), min(stop + 1, count)
         # A layer more on either side: normals and borders at the cut are then those of the whole.
         surface, own = outer_surface(_layers(mesh, axis, low, high))
+        # The number of a point in the layers becomes its number in the grid: VTK's first index
+        # varies fastest.
         inner = (*size[:axis], high - low, *size[axis + 1 :])
         index = list(np.unravel_index(own, inner, order="F"))
         index[axis] = layer = index[axis] + low
         side = (layer >= stop).astype(np.int8) - (layer < start)
+        # The cut itself makes faces too: those between points of the added layers alone are no
+        # surface of the grid.
         around = finite_faces(surface, side == 0)
         yield Part(around, np.ravel_multi_index(index, size, order="F"), side)
 
@@ -181,6 +190,7 @@ def parts(mesh: Grid) -> Iterator[Part]:
 def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
     """Return some layers of a grid across an axis as a grid."""
     bare: Foreign = mesh.NewInstance()
+    # Without the arrays, which would be copied for each part.
     bare.CopyStructure(mesh)
     extent = list(mesh.GetExtent())
     extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
@@ -211,5 +221,6 @@ def rim(mesh: Grid) -> list[Raw]:
         return []
     row, _ = (n for n in size if n > 1)
     points, last = points_of(mesh, None), mesh.GetNumberOfPoints()
+    # First and last row, then first and last column.
     lines = slice(row), slice(last - row, last), slice(0, last, row), slice(row - 1, last, row)
     return [points[line] for line in lines]

@@ -48,6 +48,7 @@ class _Option:
         self.name = name
         self.__doc__ = f"Option ``{name}`` of light, as for :func:`vizlight.illuminate`."
         words = "".join(word.capitalize() for word in name.split("_"))
+        # Methods as all filters of VTK have them, by which wrappers and scripts set properties.
         setattr(owner, f"Get{words}", lambda own: getattr(own, name))
         setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
 
@@ -210,6 +211,7 @@ class Illuminate(VTKPythonAlgorithmBase):
                 "ErrorEvent", _check.message("input", "a vtkDataSet or blocks of them", kind)
             )
             return 0
+        # An output of the right type stays, so that whoever holds it sees each new run.
         if made is None or made.GetClassName() != data.GetClassName():
             information = out.GetInformationObject(0)
             information.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance())
@@ -219,11 +221,13 @@ class Illuminate(VTKPythonAlgorithmBase):
         """Light the input."""
         data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
         asked = out.GetInformationObject(0)
+        # 0 where nobody asked for pieces.
         pieces = asked.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) or 1
         try:
             self.prepare()
             arrays, record = self._lit(data, pieces)
         except (TypeError, ValueError) as error:
+            # The light of an earlier run must not stay there as if it were that of this input.
             made.Initialize()
             self._tell("ErrorEvent", str(error))
             return 0
@@ -243,12 +247,16 @@ class Illuminate(VTKPythonAlgorithmBase):
         check_whole(data, "input")
         part = self._part(data, scene, pieces)
         shading = engine.run(part.inputs, scene, part.options)
+        # All pieces have the same arrays, whether or not a point of one of them could not be lit.
         arrays = arrays_of(shading, self.name, valid=pieces > 1)
+        # With a record of this name the arrays are light of an earlier filter, which may be
+        # replaced.
         if not data.GetFieldData().HasArray(record_key(self.name)):
             for name in arrays:
                 if data.GetPointData().HasArray(name):
                     expected, remedy = "one that the input has no array of", "pass another name="
                     raise ValueError(_check.message("name", expected, repr(name), remedy))
+        # Points inside a volume are on no surface: they are no fault to warn of.
         inside = 0 if part.sided is None else int(part.sided.inside)
         if shading.invalid > inside:
             count = shading.luminance.size - inside
@@ -268,12 +276,16 @@ class Illuminate(VTKPythonAlgorithmBase):
         if not uses_normals(data, options):
             options = dataclasses.replace(options, facing="auto")
         elif pieces > 1:
+            # Which side is the outer one the whole surface tells, of which a piece sees a part.
             if options.facing == "outward":
                 expected = "'eye' or 'as given' where the pipeline runs in several pieces"
                 raise ValueError(_check.message("facing", expected, "'outward'"))
             if options.facing == "auto":
+                # Toward the eye each point is turned by itself, wherever the cut lies.
                 options = dataclasses.replace(options, facing="eye")
         part = part_of(data, "", scene, options)
+        # Tangents of lines and normals of faces depend on neighbours, which lie in other pieces at
+        # the cut.
         own = options.tangents is None and part.inputs.tangents is not None
         computed = part.sided is not None and part.sided.computed
         if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(GHOSTS):
@@ -283,6 +295,7 @@ class Illuminate(VTKPythonAlgorithmBase):
     def _tell(self, event: str, text: str) -> None:
         """Report an error (``ErrorEvent``) or a warning (``WarningEvent``) as filters of VTK do."""
         words = f"{type(self).__name__}: {text}"
+        # VTK's own macros do so: with an observer they print nothing.
         if self.HasObserver(event):
             self.InvokeEvent(event, words)
             return

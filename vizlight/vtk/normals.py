@@ -151,6 +151,7 @@ class Sided:
         # A height field shows an eye above it more of its upper side, whatever its borders do.
         shown = facing_of(self.vectors[some], points[some], view)
         found: Bools = np.bincount(number, shown, most + 1) < 0
+        # Numbers 0 and 1 are no height fields: these are never turned, or point by point.
         found[:2] = False
         return found
 
@@ -204,8 +205,11 @@ def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
         shown = normals[:, 2]
     else:
         toward, far = kernels.unit(toward_eye(view, points))
+        # The solid angle of a patch about the eye; divided twice, as the square of a tiny distance
+        # would underflow.
         with np.errstate(all="ignore"):
             shown = kernels.dot(normals.T, toward) / far / far
+    # A point at the eye itself has no direction toward it, and one that is not finite no place.
     return np.where(np.isfinite(shown), shown, 0.0)
 
 
@@ -265,6 +269,7 @@ def sided_normals(
         if told is not None:
             return computed_normals(mesh, told=told)
         return (kept and kept(mesh)) or computed_normals(mesh)
+    # Integers without a sign, such as normals in bytes, could not be turned over.
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
     # These two need no pieces; in n-space there is no order of corners that tells a side.
@@ -275,12 +280,14 @@ def sided_normals(
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(given)
+    # The index -1, of a point that the mesh does not have, would take the last normal.
     own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
     if told is None:
         closed, alike = is_closed(surface)
         # A closed surface whose faces have no common side, such as Boy's, has no outside.
         closed = closed and (alike or not _inside_out(surface))
         inward = closed and _inward(places(surface), np.flatnonzero(used(surface)), own)
+        # Given normals agree with each other by themselves, so that the mesh counts as one piece.
         number = sides_of(given, None, np.array([not closed]))
     else:
         inward, number = bool(told.sign[0] < 0), told.number
@@ -295,6 +302,7 @@ def sided_normals(
 
 def _lean_of_given(shape: Shape, normals: Array) -> Array:
     """Return the sine of the largest angle between normals and faces, however these are wound."""
+    # Against normals of the wrong sign all faces look averted, and the lean is 1.
     return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
 
 
@@ -322,6 +330,7 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
             return Sided(given, open=side)
         lean = np.zeros(len(given), dtype=np.float32)
         for part in hull.parts(mesh):
+            # A lean is an angle, which needs neither the centroid of the whole nor its size.
             shape = PartShape(part.surface, part.side, np.zeros(3), 1.0)
             on = part.side == 0
             lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
@@ -332,6 +341,7 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
         own = given[part.origin]
         known = np.isfinite(where).all(axis=1) & np.isfinite(own).all(axis=1) & (part.side == 0)
         where, own = where[known], own[known]
+        # Only the outermost points of a part can be the outermost ones of the whole.
         ends = [f(axis) for axis in where.T for f in (np.argmax, np.argmin) if len(where)]
         points.append(where[ends])
         normals.append(own[ends])
@@ -421,6 +431,7 @@ def computed_normals(
         if sides:
             lean = leaning if first is None else leaning[first]
             side = sides_of(vectors, shape.piece, border) if told is None else told.number
+            # What has no two sides is no height field, even where its normals fit in a half space.
             side = np.where(shape.inside_out, 1, side)
             sharp = crease_share(shape.edges)
     number = side[shape.piece]
@@ -453,6 +464,7 @@ def wound_normals(
     if surface is None:
         return None
     if side is not None and origin is not None:
+        # From here on the points are those of the surface, which may have others or another order.
         side = side[origin]
         if dimension(mesh) == 3:
             # Where the part is cut from the others faces arise that join what is apart.
@@ -468,6 +480,8 @@ def wound_normals(
     if first is not None:
         least = float(np.cos(np.radians(SHARP)))
         vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
+        # The faces around joined points meet at the first of them, where the survey then looks at
+        # all of them for one lean.
         shape.triangles = first[shape.triangles]
     return shape, vectors, first, origin
 
@@ -479,6 +493,7 @@ def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
     """
     fans = []
     for rows in corners_by_size(surface):
+        # Each corner of each face with the one ahead of it and the one behind it.
         corners = np.stack([np.roll(rows, -i, axis=1).ravel() for i in (0, 1, -1)])
         fans.append(corners[:, shape.seam[corners[0]]])
     fan = np.concatenate(fans, axis=1)
@@ -486,7 +501,9 @@ def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
     across = kernels.unit(kernels.cross(ahead - at, behind - at))[0]
     _, first, number = np.unique(fan[0], return_index=True, return_inverse=True)
     turned = kernels.dot(across, across[:, first[number]]) < 0
+    # Ahead and behind change places: the corner is wound as the first at its point.
     fan[1:, turned] = fan[:0:-1, turned]
+    # Each corner becomes a triangle with two ends of its own, whose normals nobody asks for.
     apart = np.arange(fan[1:].size).reshape(2, -1) + len(first)
     points = shape.points[np.concatenate([fan[0, first], *fan[1:]])]
     found = corner_normals(points, [np.stack([number, *apart], axis=1)])
@@ -504,10 +521,12 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     estimate = vtkPCANormalEstimation()
     estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
+    # A plane has no side: each takes that of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
     found = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
     found[~np.isfinite(found).all(axis=1)] = 0
+    # Where an eye is known it decides, point by point: no side of a scan is the outer one for sure.
     if view is not None:
         found = np.where(_averted(found, places(mesh), view, None)[:, np.newaxis], -found, found)
     return Sided(found, open=True, computed=True)
@@ -520,6 +539,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     lean = np.zeros(count if sides else 0, dtype=np.float32)
     low, high, total = np.full(3, np.inf), np.full(3, -np.inf), np.zeros(3)
     size = on_surface = 0
+    # A first walk for centroid and size of the whole, about which the second one takes its sums; to
+    # hold all parts would take the memory that is saved by them.
     for part in hull.parts(mesh):
         points = places(part.surface)[part.side == 0]
         on_surface += len(points)
@@ -528,6 +549,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         high = np.maximum(high, points.max(axis=0, initial=-np.inf))
         total, size = total + points.sum(axis=0), size + len(points)
     middle = total / max(size, 1)
+    # Lengths are scaled, since products of huge or of tiny ones leave the range of numbers.
     scale = float(np.maximum(high - middle, middle - low).max()) if size else 1.0
     lines = [place_numbers(line) for line in hull.rim(mesh)]
     # Edges of the rim that one part has alone are a border, unless another part has them too.
@@ -537,6 +559,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         surface, own = part.surface, part.side == 0
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
+        # Normals in the added layers lack the faces beyond; the next part has these points as its
+        # own.
         vectors[part.origin[own]] = normals[own]
         own_sums, own_lean = shape.survey(normals)
         sums.append(own_sums._replace(score=shape.score(normals, view)))
@@ -571,7 +595,9 @@ def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData
     if as_wound or shape.alike:
         return surface
     rewind = vtkPolyDataNormals()
+    # Split points would be new ones, and the faces no longer those of the points here.
     rewind.SplittingOff()
+    # Across an edge of three faces or more there is no winding to carry on.
     rewind.NonManifoldTraversalOff()
     rewind.SetInputData(surface)
     rewind.Update()

@@ -78,15 +78,19 @@ def part_of(
                 kept=kept_normals,
                 told=told,
             )
+            # Lines and vertices beside faces: each point is lit as what it is, in one call of the
+            # engine.
             if tangents is None and n == 3 and polylines.has_several_kinds(mesh):
                 tangents, sided, dimensions = _several(mesh, sided)
             normals = sided.facing(options.facing, points, scene.view)
+            # Without an eye there is nothing to turn a surface to whose outer side is unknown.
             alike = scene.view is None and (
                 options.facing == "eye" or (options.facing == "auto" and sided.any_open)
             )
     except (TypeError, ValueError) as error:
         if not path:
             raise
+        # The same kind of error, so that callers tell a wrong type from a wrong value.
         raise type(error)(f"block {path}: {error}") from error
     # Means of cell arrays have a line but no sign.
     own = options.tangents
@@ -133,6 +137,7 @@ def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightO
     def turned(normals: Array, facts: Array, points: Array) -> Array:
         if options.facing not in ("auto", "eye") or view is None:
             return normals
+        # Facts come interpolated, and rounding may have moved the number of a piece.
         own = Sided(normals, lean=facts[:, 0], open=np.rint(facts[:, 1]).astype(np.intp))
         return Turned(own, points, view, options.facing, averted)[:]
 
@@ -162,6 +167,7 @@ def _several(mesh: Dataset, sided: Sided) -> tuple[Array | None, Sided, Array | 
         return None, sided, None
     tangents, vectors = polylines.line_tangents(mesh), sided.vectors.copy()
     tangents = tangents.astype(vectors.dtype)
+    # A vector of length 0 would make the engine call the point one that cannot be lit.
     tangents[(kinds != 1) & ~np.any(tangents, axis=1)] = 1
     vectors[kinds < 2] = 1
     return tangents, dataclasses.replace(sided, vectors=vectors), kinds
@@ -185,6 +191,7 @@ def _refuse_sides(options: LightOptions) -> None:
     """Raise ValueError if an option fits only a surface, which has two sides."""
     for name in ("normals", "facing"):
         value = getattr(options, name)
+        # An array of normals has no truth value, and compares with a text element by element.
         if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
             remedy = "pass conditioned=True, or leave one of them out"
             expected = f"no {name} beside tangents, which have no sides"

@@ -44,6 +44,8 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
     vertices. A point that a face and a line have in common is the face's.
     """
     surface, origin = _flat(mesh)
+    # What is written later counts more: a carried normal than a vertex, a line than both, a face
+    # than all.
     found = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
     found[connectivity(surface.GetVerts())[0]] = 0.0
     own = ~carried if origin is None else (origin < 0) | ~carried[origin]
@@ -52,6 +54,7 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
     for ids, _ in faces(surface):
         found[ids] = 2.0
     if origin is not None:
+        # Points that the surface lacks count as on faces, and without a normal are not lit.
         whole = np.full(mesh.GetNumberOfPoints(), 2.0, dtype=np.float32)
         whole[origin[origin >= 0]] = found[origin >= 0]
         found = whole
@@ -103,11 +106,13 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
     ids, offsets = connectivity(lines)
     # Segments that have an end in common.
     if np.any(np.diff(offsets) == 2) and np.bincount(ids).max() > 1:
+        # Lines alone: the filter would also make strips of triangles.
         bare = vtkPolyData()
         bare.SetPoints(mesh.GetPoints())
         bare.SetLines(lines)
         join = vtkStripper()
         join.JoinContiguousSegmentsOn()
+        # By default VTK cuts a line after 1000 segments.
         join.SetMaximumLength(mesh.GetNumberOfPoints() + 1)
         join.SetInputData(bare)
         join.Update()
@@ -119,6 +124,7 @@ def segments(lines: vtkCellArray) -> Indices:
     """Return the two points of each segment of all lines, shape (M, 2)."""
     ids, offsets = connectivity(lines)
     inside = np.ones(len(ids), dtype=np.bool_)
+    # The last point of a line begins no segment.
     inside[offsets[1:] - 1] = False
     start = np.flatnonzero(inside)
     return np.stack([ids[start], ids[start + 1]], axis=1)

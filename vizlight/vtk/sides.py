@@ -91,6 +91,7 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
     if given is not None:
+        # The index -1 takes the normal of the last point, and is left out below.
         vectors = given[of_mesh]
         piece, border = np.zeros_like(piece), np.array([shape.open.any()])
     has = np.isfinite(vectors).all(axis=1) & vectors.any(axis=1) & shape.finite
@@ -144,10 +145,14 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
             found += [one, -one]
             of.append(np.full(2, i))
             continue
+        # With the middle, two directions across it: the rows of a singular value decomposition are
+        # orthonormal.
         _, u, v = np.linalg.svd(middle[i][np.newaxis])[2]
         directions = np.outer(u, np.cos(angles)) + np.outer(v, np.sin(angles))
         most, which = np.full(AROUND, -np.inf), np.zeros(AROUND, dtype=np.intp)
         for block in _pool.blocks(len(rows), BLOCK):
+            # A central projection on the plane across the middle, where the normals furthest out in
+            # each direction stand for all within their hull.
             leaning = (normals[rows[block]] @ directions) / cosine[block, np.newaxis]
             best = leaning.argmax(axis=0)
             top = leaning[best, np.arange(AROUND)]
@@ -175,6 +180,7 @@ def decided(looks: Sequence[Look]) -> list[Told]:
     for i in range(6):
         most = np.full(whole, -np.inf)
         np.maximum.at(most, group, far[:, i, 0])
+        # Where several pieces reach equally far, as at a point in common, the last one decides.
         there = np.flatnonzero(np.isfinite(far[:, i, 0]) & (far[:, i, 0] == most[group]))
         component = np.zeros(whole)
         component[group[there]] = sign[there] * far[there, i, 1]
@@ -210,10 +216,12 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
     places = np.concatenate([one.places for one in looks])
     at = np.concatenate([one.at + first for one, first in zip(looks, start, strict=True)])
     along = np.concatenate([one.along for one in looks])
+    # Of a place in more than two parts each is compared with the next one.
     order = np.argsort(places, kind="stable")
     twice = np.flatnonzero(places[order[1:]] == places[order[:-1]])
     one, other = order[twice], order[twice + 1]
     pairs, number = np.unique(at[one] * total + at[other], return_inverse=True)
+    # Normals of length 0 have no opinion and join their pieces as they are.
     cosines = kernels.dot(along[one].T, along[other].T)
     alike, most = (np.bincount(number, of, len(pairs)) for of in (cosines, CLEAR * abs(cosines)))
     a, b = np.divmod(pairs, max(total, 1))

@@ -66,6 +66,7 @@ class SortedEdges(NamedTuple):
     def folded(self) -> Indices:
         """Return the ends of edges of two triangles that run along them the same way."""
         new = _new(self.keys)
+        # Exactly two: three faces at an edge cannot all run against each other.
         pair = new[:-2] & ~new[1:-1] & new[2:]
         first = np.flatnonzero(pair & (self.forward[1:] == self.forward[:-1]))
         return np.concatenate(ends_of(self.keys[first]))
@@ -98,10 +99,12 @@ def sorted_edges(
         low, high = part * count // parts, (part + 1) * count // parts
         keys, places, forward = [], [], []
         for number, block in enumerate(blocks):
+            # A block of triangles whose points all lie beside this range has no edge in it.
             if ranges and not (ranges[number][0] < high and ranges[number][1] >= low):
                 continue
             rows = corners[block] if same is None else same[corners[block]]
             a = rows.ravel()
+            # An edge ends at the next corner of its triangle, the third one at the first corner.
             b = np.empty_like(a)
             b[:-1], b[2::3] = a[1:], a[::3]
             lower = np.minimum(a, b)
@@ -111,11 +114,14 @@ def sorted_edges(
             place = np.arange(3 * block.start, 3 * block.stop)
             if not kept.all():
                 a, b, lower, place = a[kept], b[kept], lower[kept], place[kept]
+            # Both ends in one integer: a plain sort puts the faces of an edge side by side,
+            # whichever way each of them runs along it.
             keys.append(lower.astype(np.int64) << 32 | np.maximum(a, b))
             places.append(place)
             forward.append(lower == a)
         if keys:
             key = np.concatenate(keys)
+            # The pieces are freed before the sort takes memory of its own.
             keys.clear()
             # Keys of neighbouring faces are in order, which other sorts do not use.
             order = np.argsort(key, kind="stable")
@@ -136,6 +142,7 @@ def topology(
     called with all edges, range by range.
     """
     count = len(points)
+    # Half the memory where that is enough: the ends of all edges are the largest array here.
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
     same = coincident(points)
     single: list[Indices] = []
@@ -146,6 +153,8 @@ def topology(
     for part in sorted_edges(corners, count):
         twice = part.keys[1:] == part.keys[:-1]
         edges += len(part.keys)
+        # Two faces that run along an edge the same way are wound against each other, and of three
+        # or more some must be.
         alike = alike and not (
             np.any(twice & (part.forward[1:] == part.forward[:-1]))
             or np.any(twice[1:] & twice[:-1])
@@ -155,6 +164,8 @@ def topology(
             folded.append(part.folded())
         if same is None:
             different += _record(part.keys, ends[:, different:], single, own)
+    # Where points stand twice, the faces on both sides of a seam are neighbours by place alone, so
+    # that the edges are sorted again by the first point at each place.
     if same is not None:
         folded.clear()
         for part in sorted_edges(corners, count, same):
@@ -163,12 +174,14 @@ def topology(
     root = components(ends[0, :different], ends[1, :different], count, kind=kind)
     first_of_all = root == np.arange(count)
     if same is not None:
+        # A place with several points is one thing to count, by the first of them.
         first_of_all &= same == np.arange(count)
         root = root[same]
     piece = (np.cumsum(first_of_all) - 1)[root]
     borders = np.zeros(int(np.count_nonzero(first_of_all)), dtype=np.bool_)
     for one in single:
         borders[piece[one]] = True
+    # A triangle that names a point twice has an edge of no length, and no winding to compare.
     alike = alike and edges == 3 * len(corners)
     return Topology(piece, borders, alike, folded, same)
 
@@ -193,6 +206,7 @@ def _record(
     first = keys[new[:-1]]
     into = ends[:, : len(first)]
     into[0], into[1] = ends_of(first)
+    # At a cut the faces beyond are missing: an edge there has one face and yet is no border.
     alone = into[:, new[1:][new[:-1]]]
     single.append(alone[0, own[alone].all(axis=0)] if own is not None else alone[0].copy())
     return len(first)
@@ -213,8 +227,11 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
         Type of the result.
     """
     root: Indices = np.arange(count, dtype=kind)
+    # Roots have the lower numbers, so that no cycle can form; of several edges at one upper end the
+    # last is taken, and the loop below meets the others again.
     root[b] = a
     while True:
+        # Each step halves the depth of the trees, until every point names its root.
         while not np.array_equal(further := root[root], root):
             root = further
         left_a, left_b = [], []
@@ -226,6 +243,8 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
         a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
         if not len(a):
             return root
+        # Roots are hooked, not points, so that whole trees join, each to the lowest of its
+        # neighbours.
         np.minimum.at(root, b, a)
 
 
@@ -242,6 +261,7 @@ def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
     count : int
         Number of things.
     """
+    # If one agrees with another as it is, so do their turned copies.
     a, b = np.append(a, a + count), np.append(b, (b + count) % (2 * count))
     root = components(np.minimum(a, b), np.maximum(a, b), 2 * count)
     return root[:count], root[count:]
@@ -256,6 +276,7 @@ def coincident(points: Raw) -> Indices | None:
     if same is None:
         return None
     again = np.flatnonzero(same != np.arange(len(points)))
+    # Two places may have one number by chance, and NaN differs from itself: coordinates decide.
     apart = np.any(points[again] != points[same[again]], axis=1)
     same[again[apart]] = again[apart]
     return None if apart.all() else same
@@ -268,10 +289,12 @@ def is_closed(surface: vtkPolyData) -> tuple[bool, bool]:
     by pairs, and with a sign where the two faces are wound alike.
     """
     rows, number = triangles(surface), place_numbers(places(surface))
+    # By blocks and without a sort, which would hold several numbers for each edge at once.
     odd = sums = np.uint64(0)
     for block in _pool.blocks(len(rows), BLOCK):
         a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
         edges = edge_numbers(a, b)
+        # The negative number in two's complement, as these integers have no sign.
         signed = np.where(a < b, edges, ~edges + np.uint64(1))
         odd = np.bitwise_xor.reduce(edges, initial=odd)
         sums = np.add.reduce(signed, initial=sums)
@@ -292,6 +315,8 @@ def place_numbers(points: Raw) -> NDArray[np.uint64]:
             # The sum with 0 makes one of the two zeros.
             where = np.ascontiguousarray(points[block].astype(np.float64) + 0.0)
             for axis, factor in zip(where.view(np.uint64).T, _FACTORS, strict=True):
+                # A product with an odd number is one-to-one in 64 bits, so that it brings no two
+                # coordinates together before the bits are mixed.
                 number[block] = mixed(number[block] ^ (axis * factor))
     return number
 
@@ -299,6 +324,7 @@ def place_numbers(points: Raw) -> NDArray[np.uint64]:
 def edge_numbers(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """Return numbers of edges, made of the numbers of their ends; 0 for edges of no length."""
     with np.errstate(all="ignore"):
+        # Sum and exclusive or are the same in both directions of an edge.
         return np.where(a == b, np.uint64(0), mixed((a + b) ^ mixed(a ^ b)))
 
 
@@ -307,6 +333,8 @@ def single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], .
     none = np.empty(0, dtype=np.uint64)
     edges = np.concatenate([none, *(edge_numbers(line[:-1], line[1:]) for line in lines)])
     numbers, times = np.unique(edges, return_counts=True)
+    # An edge that stands twice is a seam where the sheet closes, as along a cylinder; number 0 is
+    # an edge of no length, as at a pole.
     return numbers[(times == 1) & (numbers != 0)], np.unique(np.concatenate([none, *lines]))
 
 
@@ -314,6 +342,7 @@ def inner_edges(points: Raw, triangles: Indices, ends: NDArray[np.uint64]) -> ND
     """Return the edges between some places that have two faces."""
     number, size = place_numbers(points), len(points)
     near = np.isin(number, ends)
+    # Only a triangle with two corners among the places can have an edge between them.
     rows = triangles[np.count_nonzero(near[triangles], axis=1) > 1]
     a, b = rows.ravel(), rows[:, [1, 2, 0]].ravel()
     keys = np.minimum(a, b).astype(np.int64) * size + np.maximum(a, b)

@@ -27,4 +27,5 @@ class VizlightFinder:
         return importlib.util.spec_from_file_location(name, PACKAGE / "__init__.py")
 
 
+# Last of all, so that a vizlight which is installed comes first.
 sys.meta_path.append(VizlightFinder)

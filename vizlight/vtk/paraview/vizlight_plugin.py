@@ -116,6 +116,7 @@ class VizlightIlluminate(Illuminate):
             self.values[name] = value
             self.Modified()
 
+    # ParaView sets a property by a method of its own; locals() in the body of a class is the class.
     for _name in NAMES:
         locals()[f"Put{_name}"] = setter(_name)
 
