@@ -87,6 +87,7 @@ def probe(backend: Backend) -> Probe:
     _check.choice("backend", backend, get_args(Backend))
     remedy = f"try: {_INSTALL[backend]}"
     found = _probe_window(backend, _WINDOWS[backend], remedy)
+    # VTK may have drawn with another class, which tells nothing of the one that was asked for.
     if found.works and _class_of(found) != _WINDOWS[backend]:
         return Probe(backend, works=False, detail=f"not available ({remedy})")
     return found
@@ -96,8 +97,10 @@ def _drew_before(backend: Backend) -> bool:
     """Return whether a backend is known to draw, or does so now; what draws is kept in a file."""
     folder = _cache.folder("windows")
     kept = None if folder is None else folder / _setting(backend)
+    # A probe starts a Python that loads VTK: what has drawn once is taken to do so again.
     if kept is not None and kept.exists():
         return True
+    # What does not draw is tried again each time, as the library may have been installed since.
     works = probe(backend).works
     if works and kept is not None:
         # Without the file it is found out again.
@@ -198,6 +201,7 @@ def window_class(backend: Backend | None) -> Iterator[None]:
     if backend is None:
         yield
         return
+    # VTK reads the variable whenever it makes a window.
     before = os.environ.get(_VARIABLE)
     os.environ[_VARIABLE] = _WINDOWS[backend]
     try:

@@ -81,10 +81,12 @@ def camera_on(
     centre = box.mean(axis=1)
     if np.any(box[:, 1] < box[:, 0]):
         raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+    # Halved before the difference, which could overflow for the largest coordinates.
     size = float(np.max(box[:, 1] / 2 - box[:, 0] / 2)) * 2
     if size and not SIZES[0] <= size <= SIZES[1]:
         expected = f"a size from {SIZES[0]:g} to {SIZES[1]:g}"
         raise ValueError(_check.message("bounds", expected, f"{size:g}", "scale the mesh"))
+    # A box without an extent is shown like a ball of radius 1.
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     # At this distance the sphere around the box touches the cone of sight.
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
@@ -95,6 +97,7 @@ def camera_on(
         centre = centre + shift
     camera = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = VIEW_ANGLE
+    # A perspective picture grows with a nearer eye, a parallel one by its scale alone.
     distance /= zoom
     camera.focal_point = tuple(centre)
     camera.position = tuple(centre + distance * toward)
@@ -144,6 +147,7 @@ def _outermost(points: Array, axes: Array, aspect: float) -> Array:
     if not len(found):
         return found
     along, (z, sides) = np.concatenate([np.eye(3), axes]), (axes[2], _sides(axes, aspect))
+    # A camera is made of maxima along these rows, each of which a single point attains.
     rows = np.concatenate([along, -along, z + sides, z - sides])
     return found[[int(np.argmax(found @ row)) for row in rows]]
 
@@ -185,7 +189,10 @@ def _fit(points: Array, axes: Array, aspect: float) -> tuple[Array, float, float
     # The centre moves across the view alone; how far the eye is away is a number of its own.
     middle[2] = 0
     half = 0.5 * (high[:2] - low[:2])
+    # Half the height of the picture, as VTK's parallel scale is.
     height = MARGIN * float(max(half[0] / aspect, half[1]))
+    # As the centre has moved across the view, the two margins of each side change by this amount,
+    # one up and one down.
     shift = rows[3:5] @ axes.T @ middle
     distance = float(max(np.max(high[3:5] - shift), np.max(high[5:] + shift)))
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.

@@ -196,10 +196,13 @@ class Component:
             if is_cloud:
                 actors.append(_add_cloud(plotter, block, here, keywords_of))
                 continue
+            # Empty blocks have sources too: taken before they are left out, so that both stay in
+            # step.
             source = next(lit)
             if not block.n_points:
                 continue
             shown, tints = (here, {}) if here is not None else tinted(source.mesh)
+            # What the caller passes counts over what a tint was made with.
             keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
             keywords_of |= keywords.whole_range(block, here, keywords_of)
             live = _live(source, used, light, keywords_of)
@@ -364,6 +367,8 @@ class Component:
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
         if others := len(visible) - len(found):
             _check.warn(f"{others} actors without light of vizlight are not in the page")
+        # Until its first picture a plotter of PyVista has no view of its data, and a page takes
+        # none.
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
         return found
@@ -435,6 +440,7 @@ class Component:
         self, plotter: pv.BasePlotter, live: Live, scalars: str | None, drawing: Keywords
     ) -> pv.Actor:
         """Draw a mesh, light it once, and let its light follow."""
+        # The first frame comes at the end, when the mesh has its light.
         rendered = drawing.pop("render", True)
         asked = drawing.get("scalar_bar_args") or {}
         if scalars is not None:
@@ -489,6 +495,7 @@ class Component:
         lives[address] = live
         actor.AddObserver("DeleteEvent", lambda *_: lives.pop(address, None))
 
+        # The observer lives as long as its renderer, and must not keep the component alive.
         def update(renderer: vtkRenderer, _: str) -> None:
             component = me()
             if component is not None:
@@ -576,6 +583,7 @@ def _stroke(source: Source, drawing: Keywords) -> Stroke:
     diameter = drawing.pop("line_diameter", None)
     if not has_lines_only(source.mesh):
         return Stroke()
+    # Across a line of one pixel there is no roundness to show.
     wide = diameter is not None or drawing.get("line_width", pv.global_theme.line_width) > 1
     return Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
 
@@ -631,6 +639,7 @@ def add_recorded(
     stroke = _stroke(source, drawing)
     if _reason(source, drawing, stroke):
         return None
+    # The array of the light has no colours, whatever those of the lamps: it is drawn in grey.
     live = Fragments(source, scene if name == RGB else _colorless(scene), stroke, follow=False)
     own: Component = plotter.vizlight
     return own._add(plotter, live, scalars, colors | drawing)

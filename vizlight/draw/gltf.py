@@ -191,6 +191,8 @@ class _File:
             "COLOR_0": self.put(_linear(shown), "<u2", "VEC4", _VERTICES, normalized=True),
         }
         primitives: list[dict[str, object]] = []
+        # Modes of glTF for points, lines and triangles: after the filter all cells of a kind are of
+        # one size.
         for mode, cells, size in ((0, flat.verts, 1), (1, flat.lines, 2), (4, flat.faces, 3)):
             corners = np.asarray(cells).reshape(-1, size + 1)[:, 1:]
             corners = corners[np.all(good[corners], axis=1)]
@@ -206,6 +208,7 @@ class _File:
 
     def put(self, rows: Raw, kind: str, shape: str, target: int, **extra: object) -> int:
         """Append an array to the buffer and return the index of its accessor."""
+        # Rows are multiples of 4 bytes, so that each array begins where the standard wants it to.
         data = np.ascontiguousarray(rows, kind)
         self.views.append(
             {
@@ -226,6 +229,8 @@ class _File:
         root = {
             "name": "z up", "rotation": _UPRIGHT, "children": list(range(1, len(self.nodes) + 1))
         }  # fmt: skip
+        # Viewers leave out the back of what is not double-sided; one that does not know the
+        # extension shows a dull material in its place, which comes nearest.
         material: dict[str, object] = {
             "doubleSided": True,
             "extensions": {"KHR_materials_unlit": {}},
@@ -252,6 +257,7 @@ class _File:
         # with zeros.
         text += b" " * (-len(text) % 4)
         data = bytes(self.buffer) + b"\0" * (-len(self.buffer) % 4)
+        # The header of the file, and the header and the content of each of two chunks.
         size = 12 + 8 + len(text) + 8 + len(data)
         return b"".join(
             [

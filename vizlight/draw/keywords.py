@@ -193,6 +193,7 @@ def _attached(
         expected = f"{mesh.n_points} rows, one per point, or {mesh.n_cells}, one per cell"
         raise ValueError(_check.message("scalars", expected, rows))
     copy = mesh.copy(deep=False)
+    # Where there are as many cells as points, the rows are the points' unless cells are asked for.
     at_cells = len(rows) == mesh.n_cells and (of_cells or len(rows) != mesh.n_points)
     (copy.cell_data if at_cells else copy.point_data)[name] = rows
     return copy

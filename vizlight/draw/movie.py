@@ -92,6 +92,7 @@ def save(
     _check.iterable("frames", frames, "an iterable of meshes or Panels, or of pictures")
     drawing = _drawing(picture)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
+    # A package that is missing, or a size that does not fit, is told before anything is drawn.
     writer = _writer(path, fps, drawing["size"])
     known = len(frames) if isinstance(frames, Sized) else 0
     rest: Iterator[Foreign] = iter(frames)
@@ -205,11 +206,14 @@ def turn(
 
     def steps(settings: Mapping[str, Given], scene: Scene | None) -> Iterator[Mesh]:
         for i in range(count):
+            # The last frame is a step short of the whole turn, so that a loop does not show it
+            # twice.
             turned = (plane, whole * i / count)
             rotation = turned if before is None else [before, turned]
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 step = project(mesh, scene=scene, rotation=rotation, **settings)
+            # At most one of each frame, as the frames are counted by them.
             notes.extend(str(warning.message) for warning in caught[:1])
             yield step
 
@@ -222,6 +226,7 @@ def turn(
             bounds = _check.coordinates("mesh", common_bounds("mesh", unlit))
             camera = render.camera_on(bounds)
             done = count
+            # The same steps come once more with their light, and would be counted twice.
             notes.clear()
         drawing["camera"] = camera
         files = writer(_counted(render.pictures(steps(options, scene), **drawing), report, done))
@@ -295,6 +300,7 @@ def _range(arrays: Iterable[Raw]) -> tuple[float, float] | None:
     if not finite.size:
         return None
     low, high = float(finite.min()), float(finite.max())
+    # A single value has a range too, in whose middle it lies.
     return (low, high) if low < high else (low - 0.5, low + 0.5)
 
 
@@ -312,12 +318,15 @@ def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]
     if path.suffix.lower() == ".png":
         return lambda pictures: _write_sequence(path, pictures)
     _need("imageio")
+    # Milliseconds of a frame, and no end to the repetitions.
     options = {"duration": 1000 / fps, "loop": 0}
     if path.suffix.lower() == ".mp4":
         _need("imageio_ffmpeg")
+        # The films that all players show hold colour at half the width and the height.
         if any(side % 2 for side in pixels):
             expected = "an even width and height for MP4"
             raise ValueError(_check.message("size", expected, f"{pixels[0]}x{pixels[1]}"))
+        # By default imageio scales a picture to multiples of 16 pixels, which blurs thin lines.
         options = {"fps": fps, "macro_block_size": 2}
     return lambda pictures: [replace_file(path, lambda to: _write_movie(to, pictures, options))]
 

@@ -148,6 +148,7 @@ class _Component:
         plotter = self._plotter()
         if plotter is None:
             raise AttributeError(name)
+        # Once this is out of the way, the plotter makes the real component under the same name.
         vars(plotter).pop(TRAME, None)
         _guard(plotter, getattr(plotter, TRAME))
         return getattr(getattr(plotter, TRAME), name)
@@ -159,6 +160,7 @@ def guard_exports(plotter: pv.BasePlotter) -> None:
     if "trame_pyvista" in sys.modules:
         _guard(plotter, getattr(plotter, TRAME))
     elif importlib.util.find_spec("trame_pyvista") is not None:
+        # Not imported yet: a stand-in spares the import until something of it is asked for.
         vars(plotter).setdefault(TRAME, _Component(plotter))
 
 

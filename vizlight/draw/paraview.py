@@ -343,6 +343,7 @@ def _made(
     given = [number._replace(space="") if number.name in own else number for number in given]
     normal_array, tangent_array, dialect = normals, None, dialects.PARAVIEW
     if not plan.surface:
+        # VTK 9.1 takes an array of any type as normals, but as tangents one of float32 alone.
         normal_array, tangent_array, dialect = tangents, normals, dialects.PARAVIEW_TANGENTS
     replacements = [
         {"type": stage.lower(), "original": mark, "replacement": text}

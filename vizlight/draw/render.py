@@ -208,6 +208,7 @@ def make_plotter(
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:
         _check.coordinates("panels", common_bounds("panels", [meshes]))
+        # All panels have one size, of which this is the aspect.
         camera = camera_on(meshes, aspect=pixels[0] * rows / (pixels[1] * columns))
     ink = ink_on(back)
     with window_class(choose_backend(backend)):
@@ -239,6 +240,8 @@ def make_plotter(
                 text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
+            # A copy for each panel: the clipping planes fit what it shows, and the caller's camera
+            # stays as it was.
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if key is not None:
@@ -251,6 +254,7 @@ def make_plotter(
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(made)
     except BaseException:
+        # A plotter that nobody gets would keep its window and the memory of its pictures.
         plotter.close()
         raise
     return plotter
@@ -443,6 +447,7 @@ def _draw(
             cmap=None if colour else cmap,
             clim=None if colour else clim,
             nan_color=NO_DATA,
+            # The array is light already, which VTK's lamps would light once more.
             lighting=False,
             line_width=width["line_width"],
             show_scalar_bar=False,
@@ -469,7 +474,9 @@ def _lifted(points: Array, camera: pv.Camera, by: float) -> Foreign:
     eye = np.array(camera.position)
     toward = eye - np.asarray(points, dtype=np.float64)
     if camera.parallel_projection:
+        # Parallel rays have one direction: to move along it changes no pixel.
         back = eye - np.array(camera.focal_point)
         return points + by * back / np.linalg.norm(back)
     distance = np.linalg.norm(toward, axis=1, keepdims=True)
+    # No more than half the way, or points next to the eye would pass behind it.
     return points + toward * np.minimum(by / np.where(distance > 0, distance, 1), 0.5)

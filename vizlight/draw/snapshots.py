@@ -59,6 +59,7 @@ def same_picture(request: pytest.FixtureRequest) -> Callable[..., testing.Differ
     callable
         Takes the picture and its name, returns a :class:`~vizlight.draw.testing.Difference`.
     """
+    # Names of tests with parameters have brackets and signs that names of files cannot have.
     module, test = request.path.stem, re.sub(r"[^\w.]+", "-", request.node.name).strip("-")
     failed = request.config.rootpath / "failed_pictures" / module
     add = bool(request.config.getoption("add_missing"))
@@ -74,6 +75,7 @@ def same_picture(request: pytest.FixtureRequest) -> Callable[..., testing.Differ
         kept = request.path.parent / "pictures" / module / file
         if add and not kept.exists():
             kept.parent.mkdir(parents=True, exist_ok=True)
+            # Properties travel with the report, also from the other processes of pytest-xdist.
             request.node.user_properties.append((_ADDED, str(kept)))
         return testing.assert_same_picture(
             got, kept, background=background, failed=failed, add_missing=add, **limits

@@ -200,8 +200,10 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     # The pixels next to the background are left out, because drivers draw edges differently.
     apart = [np.any(np.abs(x - back) > 8, axis=-1) for x in (a, b)]
     pixels, inside = 0.0, binary_erosion(apart[0] & apart[1], np.ones((3, 3), np.bool_))
+    # Lines have hardly an inside, of whose few pixels a share would tell nothing.
     if np.mean(inside) >= 1e-2:
         light, wanted = a[inside].sum(axis=0), b[inside].sum(axis=0)
+        # In a channel that is almost dark the least rounding is a large share.
         least = 0.02 * wanted.max() + 1
         brightness = max(brightness, np.max(np.abs(light - wanted) / np.maximum(wanted, least)))
         pixels = float(np.mean(outside[inside].max(axis=-1) > 7))
