@@ -20,12 +20,16 @@ class App {
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
     this.canvas = document.getElementById('canvas');
+    // The picture is kept after it was shown, for who saves or prints it; without alpha, as else
+    // the page would shine through what is translucent.
     const gl = this.canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true, alpha: false });
     if (!gl) throw new Error('this page needs WebGL 2 to draw, which this browser does not have or has switched off');
     this.gl = gl;
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    // The balls are drawn beside the canvas, and without depths: half a ball hides nothing of
+    // itself.
     this.small = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.small);
     const texture = gl.createTexture();
@@ -46,6 +50,7 @@ class App {
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     this.meshes.forEach(({ places }) => {
       for (let i = 0; i < places.length; i += 1) {
+        // What is not finite is neither less nor more, and so is left out.
         if (places[i] < low[i % 3]) low[i % 3] = places[i];
         if (places[i] > high[i % 3]) high[i % 3] = places[i];
       }
@@ -78,6 +83,7 @@ class App {
     this.saved = from.pop();
     this.state = JSON.parse(this.saved);
     this.lamp = Math.max(0, Math.min(this.lamp, this.lamps.length - 1));
+    // It names the colour, so that the meshes get that of the earlier state.
     this.change({ color: this.state.color }, false);
   }
 
@@ -132,10 +138,13 @@ class App {
     const { camera } = this.state;
     const middle = -place(view, this.centre)[2];
     const far = middle + 1.01 * this.radius;
+    // The near plane stays off the eye, next to which most steps of a depth buffer lie.
     const near = Math.max(middle - 1.01 * this.radius, camera.parallel ? -Infinity : Math.abs(far) / 5000 || 1e-9);
     const found = {
+      // Far stays beyond near, even where all of the meshes are behind the eye.
       MCVCMatrix: view, MCPCMatrix: product(lens(camera, aspect, near, Math.max(far, 2 * near)), view),
       normalMatrix: [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => view[i]),
+      // A direction has 0 as its fourth number, a position 1.
       vizEye: camera.parallel ? [0, 0, 1, 0] : [0, 0, 0, 1], vizAxis: [0, 0, 1, 0], vizFrom: [0, 0, 0],
       ownCut: [0, 0, 0, 0], ownSize: [this.canvas.width, this.canvas.height],
     };
@@ -208,6 +217,7 @@ class App {
     this.sized(ratio);
     const started = performance.now();
     const view = viewOf(state.camera);
+    // The weights are about those of luminance: words over the picture are dark or light by it.
     canvas.parentElement.dataset.tone = dot(shares(this.background), [0.3, 0.6, 0.1]) < 0.5 ? 'dark' : 'light';
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...shares(this.background), 1);
@@ -220,6 +230,7 @@ class App {
     const meshes = this.meshes.filter((mesh) => this.shown(mesh));
     meshes.filter((m) => m.given.opacity >= 1).forEach((m) => draw(m));
     gl.enable(gl.BLEND);
+    // What is opaque hides what is translucent, which hides nothing itself.
     gl.depthMask(false);
     meshes.filter((m) => m.given.opacity < 1).forEach((m) => draw(m, !this.moving || !this.slow));
     gl.depthMask(true);
@@ -229,6 +240,7 @@ class App {
     if (!this.moving) return;
     // The time of a frame is known when a pixel of it is read.
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    // As if at all pixels, whose number goes with the square of the ratio.
     const took = (performance.now() - started) * (ratio < whole ? this.slow ** 2 : 1);
     if (took > SLOW && !this.slow) this.slow = Math.min(4, Math.max(2, Math.round(Math.sqrt(took / SLOW))));
   }
@@ -258,6 +270,7 @@ class App {
     this.drawn = said;
     const flat = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
     const all = {
+      // Depths in clip space grow away from the eye, and z toward it; halved, none reaches the end.
       ...lit.numbers, MCVCMatrix: flat, MCPCMatrix: flat.map((x, i) => (i === 10 ? -0.5 : x)), normalMatrix: [1, 0, 0, 0, 1, 0, 0, 0, 1],
       vizEye: [0, 0, 1, 0], ownCut: [0, 0, 0, 0], ownSize: [BALL, BALL], ownOpacity: [1], ownWide: [1], ...given.numbers, vizNormalMCSize: [1], vizTangentMCSize: [1], vizSky: [0],
     };
@@ -317,6 +330,7 @@ class App {
     const blob = await new Promise((done) => { this.canvas.toBlob(done, 'image/png'); });
     const link = make('a', { href: URL.createObjectURL(blob), download: `${this.page.stem}.png` });
     link.click();
+    // The browser reads the picture after the click, and would find nothing if it were freed now.
     setTimeout(() => URL.revokeObjectURL(link.href), 5000);
   }
 
@@ -335,6 +349,7 @@ class App {
     const { camera, canvas } = { ...this.state, canvas: this.canvas };
     const away = minus(camera.position, camera.focal);
     const high = camera.parallel ? 2 * camera.scale : 2 * norm(away) * Math.tan((camera.angle * Math.PI) / 360);
+    // The size of a pixel where the focal point is, which then stays under the pointer.
     const pixel = high / Math.min(canvas.clientHeight, canvas.clientWidth);
     const right = unit(cross(camera.up, away));
     const shift = plus(scaled(right, -dx * pixel), unit(cross(away, right)), dy * pixel);
@@ -377,6 +392,7 @@ function steer(app) {
     return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.hypot(a.x - b.x, a.y - b.y) };
   };
   canvas.addEventListener('pointerdown', (e) => {
+    // A drag goes on where the pointer leaves the picture.
     canvas.setPointerCapture(e.pointerId);
     held.set(e.pointerId, { x: e.clientX, y: e.clientY });
   });
@@ -386,6 +402,7 @@ function steer(app) {
     const before = held.size === 2 ? spread() : null;
     const [dx, dy] = [e.clientX - last.x, e.clientY - last.y];
     held.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    // Two fingers shift and zoom; the right and the middle button, 2 and 4, shift too.
     if (before) {
       const after = spread();
       app.pan(after.x - before.x, after.y - before.y);
@@ -401,8 +418,10 @@ function steer(app) {
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   canvas.addEventListener('wheel', (e) => {
     e.preventDefault();
+    // By factors, so that turns of the wheel to and fro end where they began.
     app.zoom(Math.exp(-e.deltaY / 600));
     clearTimeout(app.wheel);
+    // A wheel tells no end of its motion: after a pause it is one step to undo.
     app.wheel = setTimeout(() => app.change({}), 300);
   }, { passive: false });
   const step = Math.PI / 36;

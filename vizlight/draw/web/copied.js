@@ -91,6 +91,7 @@ function commandOf(app) {
   const { cut } = app;
   const half = Math.tan((ANGLE * Math.PI) / 360);
   const words = [
+    // A name that begins with a minus would be taken for an option.
     'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command.filter((w) => w !== '--sky' || state.sky),
     '--scene', `${stem}.scene.json`, '--view', `${stem}.view.json`,
     ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),

@@ -88,6 +88,7 @@ async function unpackPlaces(packed) {
 // ---- cells [n, i, j, ..., n, i, ...] as corners of triangles, ends of strokes or points
 const SHAPES = {
   fan: (c, put) => { for (let i = 2; i < c.length; i += 1) put(c[0], c[i - 1], c[i]); },
+  // Every other triangle of a strip runs the other way round, so two of its corners change places.
   strip: (c, put) => { for (let i = 2; i < c.length; i += 1) put(c[i - 2], c[i - 1 + (i % 2)], c[i - (i % 2)]); },
   path: (c, put) => c.forEach((x) => put(x)),
   ring: (c, put) => { c.forEach((x) => put(x)); put(c[0]); },
@@ -124,6 +125,8 @@ void main() {
   gl_PointSize = ownWide;
 //STROKE
 }`;
+// Four corners: the last bit of their number tells the side of a stroke, the other one its end.
+// Clip space is 2 wide: half a width to a side is the width over that of the picture.
 const STROKE = `
   vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
   vec2 way = (b.xy / b.w - a.xy / a.w) * ownSize;
@@ -155,6 +158,7 @@ const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGa
 class Program {
   constructor(gl, text, strokes) {
     const source = { Vertex: VERTEX, Fragment: FRAGMENT };
+    // Put in by a function, as a $ in a text would stand for a part of what is replaced.
     text.forEach(([stage, mark, put]) => { source[stage] = source[stage].replace(mark, () => put); });
     // No eye turns the normals of closed surfaces, or those of a lean of 1; behind a cut their inner side is seen, and lit.
     const lines = /vec3 vizT\b/.test(source.Fragment);
@@ -179,6 +183,8 @@ class Program {
       gl.compileShader(shader);
       gl.attachShader(this.program, shader);
     });
+    // All programs have their attributes at the same places, so that the buffers of a batch serve
+    // each.
     Object.entries(SLOTS).forEach(([name, at]) => ['A', 'B'].forEach((end, i) => gl.bindAttribLocation(this.program, at + i, name + end)));
     gl.linkProgram(this.program);
     // One question at the end lets both shaders be compiled at once.
@@ -192,6 +198,7 @@ class Program {
     Object.entries(numbers).forEach(([name, value]) => {
       if (!uniforms.has(name)) uniforms.set(name, gl.getUniformLocation(this.program, name));
       const at = uniforms.get(name);
+      // A compiler drops what a text does not use.
       if (!at) return;
       if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
       else if (value.length === 9) gl.uniformMatrix3fv(at, false, value);
@@ -223,8 +230,12 @@ class Batch {
     gl.bindVertexArray(this.state);
     gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
     gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
+    // A stroke is an instance, one point of the buffer further on each time; its other end is the
+    // same buffer one point later.
     (this.kind === 'strokes' && name !== 'ownGap' ? [0, 1] : [0]).forEach((end) => {
       gl.enableVertexAttribArray(at + end);
+      // Colours in bytes become shares from 0 to 1; directions stay whole, and the program scales
+      // them.
       gl.vertexAttribPointer(at + end, width, type, whole && name === 'ownColor', stride, end * stride);
       gl.vertexAttribDivisor(at + end, this.kind === 'strokes' ? 1 : 0);
     });
@@ -247,6 +258,7 @@ class Batch {
     const depths = new Float32Array(count);
     for (let k = 0; k < order.length; k += 1) {
       const i = 3 * order[k];
+      // The sum orders triangles as the mean does, without the shift, which all have alike.
       depths[(k / 3) | 0] += view[2] * places[i] + view[6] * places[i + 1] + view[10] * places[i + 2];
     }
     const ranks = Uint32Array.from(depths, (_, t) => t).sort((a, b) => depths[a] - depths[b]);
@@ -260,6 +272,7 @@ class Batch {
     const { gl } = this;
     gl.bindVertexArray(this.state);
     if (this.color) [2, 3].forEach((at) => gl.vertexAttrib4f(at, ...this.color));
+    // One stroke from each point to the next, also between two cells, where the gap hides it.
     if (this.kind === 'strokes') gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count - 1);
     else if (this.order) gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
     else gl.drawArrays(this.kind === 'points' ? gl.POINTS : gl.TRIANGLES, 0, this.count);
@@ -275,6 +288,7 @@ class Mesh {
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
     await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
+    // VTK's numbers: 0 for points, 1 for wires, 2 for faces.
     const style = given.representation;
     const dots = style === 0;
     [['lines', 'path', 'path'], ['polys', 'fan', 'ring'], ['strips', 'strip', 'path'], ['verts', 'path', 'path']].forEach(([key, full, thin]) => {
@@ -294,6 +308,8 @@ class Mesh {
   }
 
   add({ ids, owners }, kind, found, edge) {
+    // Faces share points by their numbers, unless each has a colour of its own and so its own
+    // corners.
     const apart = kind === 'surface' && !this.given.ofCells;
     const batch = new Batch(this.gl, kind, ids.length, apart ? ids : null);
     const from = apart || ids.every((x, i) => x === i) ? null : ids;
@@ -323,6 +339,7 @@ class Mesh {
   colorBy(name, range, [low, high], table) {
     const codes = this.values[name];
     const colors = new Uint8Array(codes.length * 4).fill(255);
+    // Codes from 0 to 65534 span the range of the array; the last one stands for no value.
     const step = (range[1] - range[0]) / (NO_VALUE - 1);
     for (let i = 0; i < codes.length; i += 1) {
       const t = Math.floor((256 * (range[0] + codes[i] * step - low)) / (high - low || 1));
@@ -344,6 +361,7 @@ class Mesh {
     const { given } = this;
     const sizes = { vizNormalMCSize: [given.normals?.scale || 1], vizTangentMCSize: [given.tangents?.scale || 1] };
     const { gl } = this;
+    // Faces are moved back by a little, or they would hide parts of the edges on them.
     (this.edges.length ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };

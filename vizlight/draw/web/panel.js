@@ -8,6 +8,7 @@ const ICONS = {
 function make(kind, properties = {}, ...children) {
   const made = document.createElement(kind);
   Object.entries(properties).forEach(([key, value]) => {
+    // An element has properties, such as onclick; the rest, such as aria-label, are attributes.
     if (key in made) made[key] = value;
     else made.setAttribute(key, value);
   });
@@ -40,6 +41,7 @@ function slider(label, [low, high, step], get, set, first, says = short) {
     number.textContent = says(get());
     input.setAttribute('aria-valuetext', number.textContent);
   };
+  // While it is dragged nothing is kept for undo: the whole drag is one step.
   input.addEventListener('input', () => {
     set(Number(input.value), false);
     show();
@@ -69,7 +71,9 @@ function lampPad(app) {
   const pad = make('div', { className: 'pad', role: 'group', 'aria-label': 'Lamps: drag them over the ball, or past its rim to shine from behind' }, make('canvas', { 'data-ball': 'pad', 'aria-hidden': 'true' }));
   const spot = (v) => {
     const flat = Math.hypot(v[0], v[1]);
+    // Straight from behind all of the rim is right, and one place of it is taken.
     if (flat < 1e-9) return v[2] >= 0 ? [0, 0] : [1, 0];
+    // In front a lamp is where the ball is brightest; beyond the rim the distance tells its angle.
     const behind = Math.acos(Math.max(-1, Math.min(1, v[2]))) / (Math.PI / 2) - 1;
     const r = v[2] >= 0 ? flat * RIM : RIM + (1 - RIM) * behind;
     return [(v[0] / flat) * r, (v[1] / flat) * r];
@@ -87,6 +91,7 @@ function lampPad(app) {
   const drag = (e) => {
     app.put(app.lamps[app.lamp], directionAt(e));
     app.move();
+    // The whole drag is one step to undo, which its end commits.
     app.change({}, false);
   };
   pad.addEventListener('pointerdown', (e) => {
@@ -189,6 +194,7 @@ function materialControls(app) {
   const log = (m) => Math.log10(Math.max(m.shininess, 1));
   const parts = [
     of('Ambient', 'ambient', 1), of('Diffuse', 'diffuse', 1.5), of('Highlight', 'specular', 1.5),
+    // By its logarithm: from 10 to 20 changes a highlight as much as from 100 to 200.
     slider('Sharpness', [0, Math.max(3, log(first())), 0.01], () => log(app.material), (x, done) => set('shininess')(Number(short(10 ** x)), done), () => log(first()), (x) => short(10 ** x, 2)),
   ];
   if (!app.meshes.some((mesh) => mesh.given.cue)) parts.push(slider('Depth fade', [0, 1, 0.01], () => app.state.fade, (fade, done) => app.change({ fade }, done), () => 0));
@@ -199,6 +205,7 @@ function materialControls(app) {
   return { row: section('Material', innerHeight > 760, ...parts.map((part) => part.row)), show: () => parts.forEach((part) => part.show()) };
 }
 
+// Every 17th of 256 colours, three bytes each: both ends are among the 16.
 const gradient = (table) => `linear-gradient(to right, ${Array.from({ length: 16 }, (_, i) => `rgb(${table.slice(51 * i, 51 * i + 3).join(',')})`).join(', ')})`;
 
 function colorControls(app) {
@@ -246,6 +253,7 @@ function viewControls(app) {
     const camera = copyOf(app.state.camera);
     const half = Math.tan((camera.angle * Math.PI) / 360);
     const away = minus(camera.position, camera.focal);
+    // What is as far away as the focal point keeps its size in the picture.
     if (parallel) camera.scale = norm(away) * half;
     else camera.position = plus(camera.focal, unit(away), camera.scale / half);
     app.change({ camera: { ...camera, parallel } });
@@ -420,6 +428,7 @@ async function start() {
     document.getElementById('panel').remove();
     document.body.classList.add('folded');
     notice(`The scene cannot be turned: ${error.message}`);
+    // Without WebGL 2 the notice says all; any other fault is for the console too.
     if (document.createElement('canvas').getContext('webgl2')) throw error;
   }
 }
