@@ -282,6 +282,7 @@ def project(files: list[Path], /, *, how: object, common: Common) -> int:
         mesh = scenes.data(path, Part(), time)
         found = mesh.run()
         rows = found.point_data.get(given.get("positions", POSITION))
+        # Light after the projection is in the space of the picture.
         n = 3 if given.get("light") == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
         lit = look.step("projected", "project", mesh, **given, scene=look.scene_in(n))
         return Job(lit, look, look.camera(lit), kind=None, suffix=".vtk")

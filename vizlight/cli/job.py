@@ -139,6 +139,7 @@ def carry_out(
                 else:
                     codes.append(_run(job, last, out))
         except (TypeError, ValueError, OSError) as error:
+            # The error of a single file is that of the command.
             if len(files_) == 1:
                 raise
             complain(f"{path}: {one_line(error)}")
@@ -193,6 +194,7 @@ def _outputs(job: Job, stem: str, out: Output, inputs: Sequence[Path]) -> list[S
             from vizlight.draw.paraview import beside
 
             path = beside(path)
+        # The files are compared, not their names: a link or another spelling leads to the same one.
         if any(path.exists() and file.exists() and path.samefile(file) for file in inputs):
             raise files.FileError(message("output", "another file than the input", f"'{path}'"))
         whole = step.path == "files.write_mesh" and not (job.parts and step.arguments[0] is job.lit)
@@ -247,6 +249,7 @@ def _written(job: Job, mesh: Step, path: Path, out: Output) -> Step:
         key = None if job.look.lights.key else False
         chosen |= known(camera=job.camera, source=list(job.source) or None, key=key)
         chosen |= {name: value for name, value in drawing(out).items() if name != "backend"}
+    # No scene: the one in the record of the mesh is taken.
     return Step("", writer, mesh, None, path, **chosen)
 
 
@@ -255,6 +258,7 @@ def _run(job: Job, last: Sequence[Step], out: Output) -> int:
     from vizlight import files
 
     lit = _light(job, out)
+    # All formats are checked before the first file is written.
     for step in last:
         if step.path == "files.write_mesh":
             mesh, path = step.arguments
@@ -290,6 +294,7 @@ def _light(job: Job, out: Output) -> pv.DataSet:
     """Light the mesh and print how."""
     from vizlight.mesh.blocks import all_blocks
 
+    # What is read and cut comes before, so that the time is that of the light.
     for value in job.lit.parts():
         if isinstance(value, Step):
             value.run()

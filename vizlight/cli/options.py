@@ -336,6 +336,7 @@ def plane(
 
 def interval(name: str, text: str) -> tuple[str, float, float]:
     """Return the name of an array and the ends of a range, infinite where one is empty."""
+    # From the right, as the name of an array may have colons of its own.
     array, *ends = text.rsplit(":", 2)
     found = [
         numbers(end, (1,)) if end else (empty,)
@@ -473,6 +474,7 @@ def keywords(how: Foreign) -> Keywords:
     found: Keywords = {}
     for one in fields(how):
         value, name = getattr(how, one.name), one.metadata["name"]
+        # In Python 1, 1.0 and True are equal, but not the same option.
         if value != one.default or type(value) is not type(one.default):
             _, read, _ = READ.get(name, (None, None, None))
             found[name] = read(one.name.replace("_", "-"), value) if read else value
@@ -518,8 +520,10 @@ def takes(
     def decorate(command: Callable[..., int]) -> Callable[..., int]:
         own = arguments_of(filter_, without=without, renamed=renamed)
         Parameter(name="*", group=Group(group, sort_key=1))(own)
+        # Cyclopts reads the annotations, and this class was made just now.
         command.__annotations__["how"] = own
         types, signature = get_type_hints(command), inspect.signature(command)
+        # A group of which no option is given has its defaults.
         command.__kwdefaults__ = {
             name: types[name]() if one.default is one.empty else one.default
             for name, one in signature.parameters.items()
@@ -646,6 +650,7 @@ def first_clause(text: str) -> str:
         r"[:;] |, (?=which|such|see|or its|before|in )| \((?=[A-Z])", sentence
     ):
         before = sentence[: found.start()]
+        # No clause ends within brackets.
         if all(before.count(a) == before.count(b) for a, b in ("()", "{}", "[]")):
             ends.append(found.start())
     ends = [end for end in ends if end >= SHORTEST]

@@ -179,6 +179,7 @@ def _threshold(mesh: Step, text: str) -> Step:
     if name not in there:
         expected = f"the name of an array, {one_of(there)}"
         raise ValueError(message("--threshold", expected, repr(name)))
+    # PyVista takes two ends, or one value and what of it is kept: the upper side by default.
     ends: object = (low, high)
     if math.isinf(low) or math.isinf(high):
         ends = low if math.isinf(high) else high
@@ -191,6 +192,7 @@ def _threshold(mesh: Step, text: str) -> Step:
 def _cut(name: str, option: str, mesh: Step, text: str) -> Step:
     """Return the step that cuts a mesh by a plane."""
     normal, offset = options.plane(option, text)
+    # The offset is a distance, whatever the length of the normal that was given.
     length = math.hypot(*normal)
     origin = tuple(offset * component / length for component in normal)
     step = Step(name, f".{option}", mesh, normal=normal, origin=origin)
@@ -233,6 +235,7 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
         expected = f"an array, {one_of([*arrays])}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))
     rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
+    # Colours are told from vectors by their type, which is bytes.
     bytes_ = Step("", "numpy.uint8", rgb)
     return Step("shown", "vizlight.tint", lit, bytes_, light=name, name=TINT), ""
 
@@ -273,6 +276,7 @@ class Look:
         self._material: Step | None = None
         kept: dict[str, object] = dict(material or {})
         if self._file is not None or question is not None:
+            # Who changes one coefficient keeps the others of the file or of the preset.
             kept = known(**vars(base.material)) if changes else {}
         if kept or changes:
             self._material = Step("", "vizlight.Material", **(kept | changes))
@@ -299,6 +303,7 @@ class Look:
         if self._fixed is not None:
             return self._fixed_camera(self._fixed, up)
         toward = (self._toward or (MAP if is_map else VIEW))[:3]
+        # A map is seen from straight above, without perspective.
         parallel = eye.parallel or (is_map and self._toward is None)
         parallel = parallel or (self._view is not None and self._view.parallel)
         given = known(up=up, parallel=parallel or None, zoom=None if eye.zoom == 1 else eye.zoom)
@@ -362,6 +367,7 @@ class Look:
         if asked.headlight:
             lights.append(Step("", "vizlight.Light.headlight"))
         if not lights and self._file is None and not self._fill:
+            # The default of a scene has a second lamp at the eye, and a shadow is cast by one.
             lights = [Step("", "vizlight.Light", direction=shoulder)]
         values = known(
             lights=lights or None,

@@ -234,6 +234,7 @@ class Legibility:
 def of_direction(own: list[Sample], random: np.random.Generator, noise: float) -> Direction:
     """Return the figures of direction."""
     found = [readers.find_direction(one, random, noise) for one in own]
+    # The key lies amid what it explains, since the light of near lamps depends on the place.
     middle = np.concatenate([one.points for one in own]).mean(axis=0)
     by_key = np.concatenate([readers.by_key(one, middle, random, noise) for one in own])
     error = np.concatenate([each.error for each in found])

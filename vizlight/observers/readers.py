@@ -109,12 +109,15 @@ def posterior(observed: Array, table: Array, noise: float) -> Array:
         square = square - 2 * observed @ table.T
     # The likeliest candidate is then 1 before the division, and no row vanishes by underflow.
     square -= square.min(axis=1, keepdims=True)
+    # The noise is Gaussian and alike in all channels, and all candidates are equally likely before,
+    # so that the likelihood of the colour is the probability up to its sum.
     found: Array = np.exp(-square / (2 * (noise**2 + ROUNDING)))
     return np.asarray(found / found.sum(axis=1, keepdims=True))
 
 
 def information(probability: Array) -> Array:
     """Return the bits that each pixel tells of candidates that were equally likely before."""
+    # The entropy of equally likely candidates, less what is left of it.
     bits = probability * np.log2(np.maximum(probability, 1e-300))
     found: Array = np.log2(probability.shape[1]) + bits.sum(axis=1)
     return found
@@ -164,6 +167,7 @@ def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise
         rows = slice(start, start + PLACES)
         own, axis = sample.take(rows), axes[rows]
         tangent = _single(own)
+        # Rodrigues' rotation: what is along the axis stays.
         along = dots(tangent, axis)[:, np.newaxis] * axis
         flat = tangent - along
         # Candidates start anywhere: ties must not favour the true one.
@@ -172,6 +176,8 @@ def _find_turned(sample: Sample, axes: Array, random: np.random.Generator, noise
         side = np.cross(axis, flat)[:, np.newaxis]
         every = np.cos(turn) * flat[:, np.newaxis] + np.sin(turn) * side + along[:, np.newaxis]
         likely = posterior(seen(own.own_light(), random, noise), _lit(own, every), noise)
+        # The first candidate is turned by the offset from the true one, and lines repeat after 180
+        # degrees.
         off = (likely.argmax(axis=1) + offset) % 180
         errors.append(np.minimum(off, 180 - off))
         bits.append(information(likely))
@@ -262,6 +268,7 @@ def mutual_information(steep: Array, light: Array) -> float:
     numbers of classes that occur (Miller 1955).
     """
     rows, columns = (
+        # Quantiles that coincide, as of many equal values, bound one class.
         np.searchsorted(np.unique(np.quantile(x, np.linspace(0, 1, k + 1)[1:-1])), x)
         for x, k in ((steep, STEEP), (light, min(LIGHT, max(2, len(light) // EACH))))
     )
@@ -336,6 +343,7 @@ def find_normal(sample: Sample, random: np.random.Generator, noise: float) -> Fo
     table: Array | None = None
     for start in range(0, len(sample), step):
         own = sample.take(slice(start, start + step))
+        # Far lamps and a far eye light all places alike: one table of candidates serves them.
         if sample.local or table is None:
             lit = own if sample.local else own.take(np.zeros(1, dtype=np.intp))
             table = _table(lit, disc, along)
@@ -379,6 +387,7 @@ def _table(sample: Sample, normals: Array, tangents: Array) -> Array:
     frames = None
     if sample.tangents is not None:
         frames = np.einsum("aj,ijk->iak", tangents, axes).reshape(-1, 1, 3)
+        # Of a plane of tangents the second is across the first.
         if sample.tangents.shape[1] == 2:
             frames = np.concatenate([frames, np.cross(every, frames[:, 0])[:, np.newaxis]], axis=1)
     return shown(sample.light(frames, every, a)).reshape(m, a, 3)
@@ -402,6 +411,7 @@ def decode(colors: Array, positions: Array, bar: Array) -> tuple[Array, Array]:
         Distances on the bar between the value and the nearest colour, in CIELAB and by
         chromaticity, as shares of the range.
     """
+    # A colour of the bar stands for the middle of its step.
     middle = (np.arange(len(bar)) + 0.5) / len(bar)
 
     def missed(known: Array, given: Array) -> Array:

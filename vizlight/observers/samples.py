@@ -118,6 +118,8 @@ class Sample:
         self, tangents: Array | None, normals: Array | None, repeat: int = 1
     ) -> ShadingInputs:
         """Return inputs of the engine of other tangents and normals, ``repeat`` at each place."""
+        # Normals beside tangents are what a reader sees as the shape; light has them where it is
+        # conditioned.
         lit = self.options.conditioned is True or tangents is None
         known = {"points": self.points} | self.shares
         several: Keywords = {name: np.repeat(rows, repeat, axis=0) for name, rows in known.items()}
@@ -125,6 +127,7 @@ class Sample:
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
         """Return the light of other tangents and normals at the places, shape (M repeat, 3)."""
+        # These runs are the observer's, and none of those that a report of the user counts.
         with engine.observed(None):
             found = engine.run(self.given(tangents, normals, repeat), self.scene, self.options)
         if found.rgb is not None:
@@ -166,6 +169,7 @@ def sample(part: Part, cells: Indices, at: Array, camera: pv.Camera, scene: Scen
     valid = np.ones(m, dtype=np.bool_)
     for vectors in (normals, *(() if tangents is None else np.moveaxis(tangents, 1, 0))):
         if vectors is not None:
+            # Vectors are of length 1, or 0 where there is no direction.
             valid &= np.einsum("ij,ij->i", vectors, vectors) > 0.5
     shares = {
         name: np.clip(interpolated(rows[ids].astype(np.float64), places), 0.0, 1.0)
@@ -174,6 +178,7 @@ def sample(part: Part, cells: Indices, at: Array, camera: pv.Camera, scene: Scen
     values = None
     if part.values is not None:
         values = interpolated(part.values[ids].astype(np.float64), places)
+    # In float64, so that no error of the engine is taken for one of the reader.
     options = ShadingOptions.of(vars(part.options) | {"precision": "float64", "components": False})
     return Sample(
         kind=part.kind, points=points, eye=toward, right=right, up=np.cross(toward, right),
@@ -331,6 +336,7 @@ def seen_from(
             raise ValueError(_check.message(name, "vectors of 3 components", n, remedy))
     if is_camera(view):
         camera = camera_on((-1, 1, -1, 1, -1, 1))
+        # A copy, since drawing moves the clipping planes.
         camera.DeepCopy(view)
     elif own is None:
         camera = camera_on(mesh)

@@ -418,7 +418,7 @@ function steer(app) {
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   canvas.addEventListener('wheel', (e) => {
     e.preventDefault();
-    // By factors, so that turns of the wheel to and fro end where they began.
+    // By factors, so that as many turns of the wheel back end where it began.
     app.zoom(Math.exp(-e.deltaY / 600));
     clearTimeout(app.wheel);
     // A wheel tells no end of its motion: after a pause it is one step to undo.
