@@ -54,6 +54,7 @@ def sources_of(
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
+    # The points are split by now, and must not be once more.
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
         np.shape(block.point_data[asked.positions])[-1]
@@ -92,6 +93,7 @@ def sources_in_scene(
 
 def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
     """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
+    # An array of tangents has the rows of the mesh as it is, which split points would not fit.
     if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
         return mesh
     if asked.positions is not None or asked.normals is not None or not uses_normals(mesh, asked):
@@ -193,6 +195,8 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
 
 def _side(size: Indices, axis: int, end: int) -> Indices:
     """Return numbers of the places on a side of a grid, along its two other axes."""
+    # VTK's first index varies fastest: these are the steps from a point to the next along each
+    # axis.
     along = [np.arange(n) * step for n, step in zip(size, np.cumprod([1, *size[:2]]), strict=True)]
     found: Indices = along[axis][end] + np.add.outer(along[axis - 2], along[axis - 1])
     return found

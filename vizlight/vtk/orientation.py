@@ -77,6 +77,8 @@ class Sums(NamedTuple):
         size : ndarray, shape (n,)
             Length of that.
         """
+        # Six times the volumes of tetrahedra about the centroid: those of a closed surface add up
+        # to what it encloses, by the divergence theorem.
         values = [kernels.dot(across, corner), size, *across]
         for into, own in zip([self.volume, self.area, *self.total.T], values, strict=True):
             into += own.sum() if len(into) == 1 else np.bincount(owner, own, len(into))
@@ -119,6 +121,7 @@ class Shape:
         own = None if self.side is None else self.side == 0
         found = topology(self.triangles, self.points, own, self._count)
         self.piece, self.open, self.alike, folded, self.same = found
+        # A polygon and a strip have two triangles less than corners.
         if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
             # A polygon that cannot be split is wound in a way that is not known.
             self.alike = False
@@ -163,9 +166,12 @@ class Shape:
         if self.side is not None:
             lower, upper = ends_of(edges.keys[first])
             first = first[np.minimum(self.side[lower], self.side[upper]) == 0]
+        # The limits of corners, of sharp edges and of nearly sharp ones; 2.0 below counts all
+        # edges.
         least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
         for block in _pool.blocks(len(first), BLOCK):
             at = first[block]
+            # Corners are numbered triangle by triangle.
             one, other = edges.places[at] // 3, edges.places[at + 1] // 3
             full = self._full[one] & self._full[other]
             # Faces that are wound alike run along their common edge against each other.
@@ -242,6 +248,8 @@ class Shape:
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
                 normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
                 with np.errstate(invalid="ignore"):
+                    # The direction of a sliver is rounding, which must not count as a face that is
+                    # averted.
                     cosine = np.where(wide, kernels.dot(normal, unit), 1.0)
                     np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
@@ -250,6 +258,7 @@ class Shape:
             near = least[block]
             sine = np.where(near > 0, np.sqrt(np.clip(1 - near * near, 0, 1)), 1)
             bent = bend[block]
+            # Where the surroundings of a point lie above its tangent plane the surface is concave.
             lean[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
         return sums, lean
 
@@ -340,6 +349,8 @@ def sides_of(
     """
     side: Indices = border.astype(np.intp)
     if border.any():
+        # Along the mean direction and the three axes: the least component, and the least of the
+        # opposite.
         low, high = np.full((2, 4, len(border)), np.inf)
         middle = middles(vectors, piece, border, total)
         for block in _pool.blocks(len(vectors), BLOCK):
@@ -385,6 +396,7 @@ def middles(
         beyond = (along <= least[of]) & (along <= 0)
         if not beyond.any():
             break
+        # The step of a perceptron: what is furthest beyond a right angle draws the direction to it.
         np.add.at(middle, of[beyond], own[beyond])
     return middle
 

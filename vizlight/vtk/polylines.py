@@ -112,7 +112,6 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
         bare.SetLines(lines)
         join = vtkStripper()
         join.JoinContiguousSegmentsOn()
-        # By default VTK cuts a line after 1000 segments.
         join.SetMaximumLength(mesh.GetNumberOfPoints() + 1)
         join.SetInputData(bare)
         join.Update()
