@@ -129,7 +129,7 @@ def outermost(
     Returns
     -------
     ndarray, shape (m, 3)
-        At most 18 points of each 65,536.
+        At most 16 points of each 65,536.
 
     Raises
     ------
