@@ -100,7 +100,7 @@ def dim(
     for mesh, given in zip(meshes, inputs, strict=True):
 
         def report(count: int, done: int = len(made) * len(lights)) -> None:
-            # What is done was counted before this mesh: its own grids are not counted twice.
+            # Grids of the meshes before, counted when the function is made, and of this one.
             progress(done + count, len(meshes) * len(lights))
 
         made.append(Dimmed(mesh, given, work, names).by(lights, report))
