@@ -77,12 +77,14 @@ def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
     grid = joined(mesh)
     kinds, first = np.unique(grid.celltypes, return_index=True)
+    # One cell of each type tells for all.
     dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
     # OpenFOAM and Exodus have side sets beside the volume that they bound.
     if len(set(dimensions)) > 1:
         keep = kinds[dimensions == dimensions.max()]
         cells: Foreign = np.flatnonzero(np.isin(grid.celltypes, keep))
         grid = grid.extract_cells(cells, pass_point_ids=False, pass_cell_ids=False)
+    # Joining drops the field data of the whole, such as the time of a step.
     for key in mesh.field_data:
         grid.field_data[key] = np.array(mesh.field_data[key])
     return grid
@@ -146,10 +148,12 @@ def box(mesh: pv.DataSet) -> tuple[Array, float]:
     Points that are not finite are ignored. The side is 1 if the mesh has no extent.
     """
     low, high = np.reshape(mesh.bounds, (3, 2)).T
+    # VTK's bounds leave out NaN, but one infinite point spoils them.
     if not np.all(np.isfinite([low, high])) and isinstance(mesh, pv.PointSet | pv.PolyData):
         points = np.asarray(mesh.points, dtype=np.float64)
         points = points[np.all(np.isfinite(points), axis=1)]
         low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+    # Halves first: the difference of two huge coordinates would be infinite.
     side = float(np.max(high / 2 - low / 2)) * 2
     if not (np.isfinite(side) and side > 0):
         return np.nan_to_num(low / 2 + high / 2, posinf=0.0, neginf=0.0), 1.0
@@ -161,6 +165,7 @@ def near_origin(mesh: pv.DataSet) -> Vector:
 
     It is the centre of the mesh if that is farther from 0 than the longest side, else 0.
     """
+    # float32 rounds by a share of the distance from 0: far away a small mesh has few digits.
     middle, side = box(mesh)
     far = np.abs(middle).max() > side
     return tuple(float(x) if far else 0.0 for x in middle)
@@ -170,6 +175,7 @@ def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT
     """Return a mesh with each point p at ``scale (p + offset)``, in float64."""
     out = mesh.copy(deep=False)
     scale = np.broadcast_to(scale, 3)
+    # Images and rectilinear grids stay such, since they have axes in place of points.
     if isinstance(out, pv.ImageData):
         out.origin = tuple(scale * (np.array(out.origin) + offset))
         out.spacing = tuple(scale * np.array(out.spacing))
@@ -179,6 +185,7 @@ def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT
             setattr(out, axis, scale[i] * (ticks + offset[i]))
     else:
         points = scale * (np.asarray(mesh.points, dtype=np.float64) + offset)
+        # Infinite points become NaN: all points without a place are alike.
         points[~np.isfinite(points)] = np.nan
         # Assigning to out.points would move the points that the shallow copy shares with the mesh.
         out.SetPoints(pv.vtk_points(points))

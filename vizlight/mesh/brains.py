@@ -70,6 +70,7 @@ def read(path: Path) -> pv.PolyData:
         raise ValueError(
             "values over a surface, without one: read the surface, with this file as its overlay"
         )
+    # Native float32 stays; all else, such as bytes in another order, becomes float64.
     kind = points.dtype if points.dtype == np.float32 else np.float64
     mesh: pv.PolyData = pv.PolyData.from_regular_faces(points.astype(kind), faces)
     for key, rows in arrays.items():
@@ -96,13 +97,16 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     name = re.sub(r"\.gz$", "", path.name)
     own = name.removesuffix(".gii")
     if name.endswith(".mz3"):
+        # Such a file may have a surface beside its values.
         found = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
     elif name.endswith(".gii"):
         found = _gifti(path)[2]
     elif name.endswith(".annot"):
+        # Indices of regions in the table of colours, -1 for none; colours and names are left out.
         found = {"values": nibabel.freesurfer.read_annot(path)[0]}
     elif name.endswith((".mgh", ".mgz")):
         volume: Foreign = nibabel.load(path)
+        # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
         found = {"values": np.asarray(volume.dataobj).reshape(-1)}
     else:
         found = {"values": nibabel.freesurfer.read_morph_data(path)}
@@ -131,6 +135,7 @@ def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray]]:
             arrays[name if name not in arrays else f"{name}_{i}"] = np.asarray(part.data)
     points = parts.get(_POINTS)
     if points is not None:
+        # Arrays of another length are those of faces, or of another surface.
         arrays = {key: rows for key, rows in arrays.items() if len(rows) == len(points)}
     return points, parts.get(_TRIANGLES), arrays
 
@@ -144,6 +149,7 @@ def _mz3(path: Path) -> dict[str, AnyArray]:
         If it is no such file, or shorter than it states.
     """
     data = path.read_bytes()
+    # Most are packed by gzip, and their names do not say so.
     if not data.startswith(_MAGIC):
         try:
             data = gzip.decompress(data)
@@ -151,15 +157,19 @@ def _mz3(path: Path) -> dict[str, AnyArray]:
             raise ValueError(f"no .mz3 file: {error}") from error
     if not data.startswith(_MAGIC):
         raise ValueError("no .mz3 file")
+    # The header: two bytes of magic, bits of what is there, then the numbers of faces, of points
+    # and of bytes to skip before the first part.
     parts = int.from_bytes(data[2:4], "little")
     faces, points, skip = (int(number) for number in np.frombuffer(data, "<u4", 3, 4))
     at, found = 16 + skip, {}
+    # Parts stand in the order of their bits.
     for bit, (name, (kind, width)) in enumerate(_MZ3.items()):
         if parts >> bit & 1:
             rows = faces if name == "faces" else points
             array = np.frombuffer(data, kind, rows * width, at)
             at += array.nbytes
             found[name] = array.reshape(rows, width) if width > 1 else array
+    # The fourth is the opacity.
     if "rgb" in found:
         found["rgb"] = found["rgb"][:, :3]
     return found
@@ -184,8 +194,10 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
     blob = np.ascontiguousarray(parts["track"]).tobytes()
     lines, at = [], 0
     while at < len(blob):
+        # The first three coordinates have four bytes each, all others are steps of one byte.
         size = int.from_bytes(blob[at : at + 4], "little") - 3
         first = np.frombuffer(blob, "<i4", 3, at + 4)
+        # In int64, for a running sum of bytes would overflow.
         steps = np.frombuffer(blob, "i1", size, at + 16).reshape(-1, 3).astype(np.int64)
         lines.append(np.cumsum(np.concatenate([first[np.newaxis], steps]), axis=0))
         at += 16 + size
@@ -195,5 +207,6 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
         turn = np.reshape(parts["trans_to_mni"], (4, 4))
         points = places @ turn[:3, :3].T + turn[:3, 3]
     else:
+        # In mm along the axes of the image, from its first voxel.
         points = places * np.ravel(parts["voxel_size"])
     return points, np.cumsum(counts) - counts, counts

@@ -100,6 +100,7 @@ def dim(
     for mesh, given in zip(meshes, inputs, strict=True):
 
         def report(count: int, done: int = len(made) * len(lights)) -> None:
+            # Grids of the meshes before, counted when the function is made, and of this one.
             progress(done + count, len(meshes) * len(lights))
 
         made.append(Dimmed(mesh, given, work, names).by(lights, report))
@@ -122,11 +123,13 @@ class Work:
             if given.points.shape[1] != 3:
                 got = f"points of {given.points.shape[1]} components"
                 raise ValueError(_check.message("bundle", "points in 3-space", got))
+        # Among the lines that are lit a point must not be in the shade of its own line.
         self.own, self.bundle = bundle.lines is None, bundle
         self.lines = joined(meshes) if self.own else _lines_of(bundle.lines)
         if not len(self.lines.ids):
             remedy = "pass Bundle(lines=...) to dim another mesh by lines"
             raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
+        # Shares that a mesh has kept hold only for the same lines and the same options.
         asked = repr([bundle.diameter, bundle.depth, bundle.grid, self.own])
         self.source = records.source(*self.lines, np.array([asked]))
 
@@ -138,27 +141,33 @@ class Work:
 
 def _lights(scene: Scene) -> list[Light]:
     """Return the lights that shine, where the view of a scene has them."""
+    # A lamp that is off would cost a grid of voxels for nothing.
     return [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
 
 
 def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
     """Return the medium of lines and their diameter."""
     ends = lines.points[lines.ids].astype(np.float64)
+    # Only points of lines count, since others would make the box and all voxels larger.
     ends = ends[np.isfinite(ends).all(axis=1)]
     box = np.ptp(ends, axis=0) if len(ends) else np.zeros(3)
     longest, diagonal = float(box.max()), float(np.linalg.norm(box))
+    # Cubes, so many along the longest side. Lines that are all in one place get a side of 1.
     voxel = longest / bundle.grid or 1.0
     diameter, coarse = bundle.diameter, None
     if diameter is None:
         diameter = diagonal * THICKEST or 1.0
+        # The default diameter depends on how crowded the lines are, which a first medium tells.
         coarse = geometry.medium(*lines, voxel=voxel)
         ids = lines.ids[:: max(1, len(lines.ids) // SAMPLE)]
         lengths = geometry.line_lengths(*lines)[ids]
         tangents = _tangents(*lines)[ids]
         places = coarse.targets(lines.points[ids], tangents, lengths)
         depth = coarse.crowded(places, SIDES)
+        # The optical depth is that per diameter times the diameter in voxels: it is limited here.
         if depth * diameter > bundle.depth * voxel:
             diameter = bundle.depth * voxel / depth
+    # The first medium serves, unless its voxels are too narrow for what are meant as thin lines.
     if coarse is not None and voxel >= geometry.LEAST_VOXEL * diameter:
         return coarse, diameter
     voxel = max(voxel, geometry.LEAST_VOXEL * diameter)
@@ -185,21 +194,25 @@ class Dimmed:
     ) -> None:
         self._work = work
         points = np.asarray(inputs.points[:])
+        # Inputs far from 0 are relative to an origin for the sake of float32; the lines are not.
         if inputs.origin is not None and any(inputs.origin):
             points = points.astype(np.float64) + np.array(inputs.origin)
         vectors = inputs.normals if inputs.tangents is None else inputs.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
         lengths: Array | None = None
         if inputs.tangents is not None:
+            # Length 0 stands for a point on no line of the medium, which adds nothing to its depth.
             lengths = np.zeros(len(points))
             if work.own and polylines.has_lines_only(mesh):
                 lengths = polylines.of_points(mesh, geometry.line_lengths)
         if rows is not None and len(rows) * inputs.repeat == len(points):
+            # One vector may serve several points, as on a fibre of fur.
             rows = np.repeat(rows, inputs.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
             # Several tangents per point: a surface or a volume that light reaches from all sides.
             rows = lengths = None
         self._targets = points, rows, lengths
+        # None has no bytes for a digest; an empty array stands for it.
         arrays = (np.empty(0) if x is None else x for x in self._targets)
         self._source = f"{work.source} {records.source(*arrays)}"
         self._known = _kept(mesh, names, self._source)
@@ -211,9 +224,11 @@ class Dimmed:
         facts: Record = {}
         if known is not None:
             if known.keys == keys:
+                # The same object, by which callers see that nothing has changed.
                 return known
             columns = dict(zip(known.keys, known.transmittance.T, strict=True))
             facts = known.record
+        # Where one lamp moves, the others keep their shares.
         missing = [i for i, key in enumerate(keys) if key not in columns]
         if missing:
             medium, diameter = self._work.medium
@@ -245,6 +260,7 @@ def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
     found = np.zeros((len(points), 3))
     step = points[ids[first + 1]].astype(np.float64) - points[ids[first]]
     found[ids[first + 1]] = step
+    # Written second: an inner point has the step after it, the last of a line the one before.
     found[ids[first]] = step
     return found
 
@@ -261,6 +277,8 @@ def _key(light: Light) -> str:
     place, near = _place(light)
     if not near:
         size = float(np.linalg.norm(place))
+        # Of a light at infinity only the direction counts. Adding 0 makes 0.0 of -0.0, whose text
+        # differs from it.
         place = tuple(round(x / size, 15) + 0.0 for x in place)
     return f"{'near' if near else 'far'} {place}"
 
@@ -273,6 +291,7 @@ def _kept(mesh: pv.DataSet, names: tuple[str, str], source: str) -> Dimming | No
     keys = record.get("lights")
     if not isinstance(keys, list) or names[1] not in records.made(mesh, names[0]):
         return None
+    # VTK has no arrays of one column: of a single light they are flat.
     shares = np.asarray(mesh.point_data[names[1]]).reshape(mesh.n_points, -1)
     return Dimming(shares, record, keys) if shares.shape[1] == len(keys) else None
 
@@ -299,6 +318,7 @@ def joined(meshes: Sequence[pv.DataSet]) -> Lines:
     return Lines(
         np.concatenate(points),
         np.concatenate([own + start for own, start in zip(ids, starts, strict=False)]),
+        # The first offset of a mesh, 0, is where the mesh before ends.
         np.concatenate(
             [[0], *(own[1:] + end for own, end in zip(offsets, ends, strict=False))]
         ).astype(np.intp),

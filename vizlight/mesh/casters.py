@@ -58,6 +58,7 @@ class CasterOptions(Options):
         given: object = self.occluders
         if isinstance(given, pv.DataObject):
             given = [given]
+        # Text and arrays can be iterated, too, but are no meshes.
         if isinstance(given, str | np.ndarray) or not isinstance(given, Iterable):
             expected = "a closed surface or several"
             raise TypeError(_check.message("occluders", expected, _check.describe(given)))
@@ -103,6 +104,7 @@ class FieldCaster:
     """Shadows of a height field."""
 
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
+        # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         field = self._field = height_field.make(found.x, found.y, found.z, border=options.border)
@@ -114,7 +116,9 @@ class FieldCaster:
         self.depth = _depth(options.depth, height_field.default_depth(field))
         self.points = found.points()
         known = np.isfinite(found.z)
+        # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
         upright = found.to_points(np.where(known[..., np.newaxis], self._normal @ self._turn, 0))
+        # Interpolated from the nodes around, normals are shorter than 1.
         self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(known * 1.0) > 0)
         if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * field.size:
@@ -159,6 +163,7 @@ class SolidCaster:
 
     def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
         thickness = options.thickness
+        # Whether it is closed is told before its normals are computed; a shell needs them.
         if thickness is None:
             body = closed_meshes.closed(mesh)
         vectors = normals.normals_of(
@@ -200,6 +205,8 @@ class SolidCaster:
             cosine = np.clip(np.einsum("ij,ij->i", normal, way), 0, 1)
             t[good] = np.where(length > 0, 0.0, cosine)
         else:
+            # t = d / r (cos-theta, section 2), which is the cosine on a plane; a ray shorter than d
+            # is free.
             t[good] = depth / np.maximum(length, depth)
         return t
 
@@ -215,6 +222,7 @@ class SolidCaster:
         if light.direction is not None:
             way = kernels.unit_rows([light.direction])
             return np.repeat(way, len(start), axis=0), np.full(len(start), np.inf)
+        # Lights are in the unit of the mesh, rays in sizes of the solid.
         place = np.array(light.position) - self._origin
         place /= max(self._unit, np.abs(place).max() / FAR)
         if any(closed_meshes.is_inside(body, place) for body in self._solids):

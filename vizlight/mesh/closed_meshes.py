@@ -48,6 +48,7 @@ def embree_tree(corners: Array) -> EmbreeScene | None:
         from embreex.rtcore_scene import EmbreeScene
     except ImportError:
         return None
+    # In float32, as Embree has it: callers move and scale the triangles to size 1 beforehand.
     scene = EmbreeScene()
     TriangleMesh(scene, np.ascontiguousarray(corners, dtype=np.float32))
     return scene
@@ -70,6 +71,7 @@ class Tracer:
         if self._scene is not None:
             rays = np.asarray(start, np.float32), np.asarray(way, np.float32)
             return np.asarray(self._scene.run(*rays), dtype=np.intp)
+        # VTK writes its results into these; only the number of the cell is used.
         t, part, cell = mutable(0.0), mutable(0), mutable(0)
         place, weights = [0.0] * 3, [0.0] * 3
         find: Foreign = self._tree.IntersectWithLine
@@ -84,6 +86,7 @@ class Tracer:
         """Return whether rays meet no triangle."""
         if self._scene is None:
             return self.first(start, way, reach) < 0
+        # Any hit is enough here, which is faster than the first one; Embree marks it by 0.
         hit: Indices = np.asarray(self._scene.run(start, way, query="OCCLUDED"))
         return np.asarray(hit != 0)
 
@@ -97,6 +100,7 @@ class Solid:
         self.vertices, self.triangles = (vertices - origin) / unit, triangles
         self.corners = self.vertices[triangles]
         a, b, c = self.corners.transpose(1, 0, 2)
+        # As long as twice the area: signs and quotients of products do not need a unit length.
         self.normals = np.cross(b - a, c - a)
         self.size = float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
@@ -126,6 +130,7 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
     kept, same = np.unique(used if first is None else first[used], return_inverse=True)
     corners = same.reshape(-1)[(np.cumsum(there) - 1)[corners]]
     a, b, c = corners.T
+    # A triangle that is an edge once its corners are merged has no side of its own.
     return points[kept], corners[(a != b) & (b != c) & (c != a)], used, same.reshape(-1)
 
 
@@ -148,6 +153,7 @@ def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
         )
         got = f"one with {len(opened)} open edges"
         raise ValueError(_check.message(name, "a closed surface", got, remedy))
+    # Each edge has its faces by pairs, but some faces are turned over: VTK turns all outward.
     oriented = blocks.polydata(vertices, triangles).compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )
@@ -167,9 +173,12 @@ def shell(surface: object, thickness: float, normals: Array) -> tuple[Array, Ind
     total = np.zeros_like(vertices)
     np.add.at(total, same, normals[used])
     size = np.linalg.norm(total, axis=1, keepdims=True)
+    # Where normals cancel there is no direction: the copy stays at the place.
     under = vertices - thickness * total / np.where(size > 0, size, 1)
     n = len(vertices)
     a, b = _open_edges(triangles, directed=True).T
+    # Two triangles for each open edge, wound against its face, so that every edge is used both
+    # ways.
     walls = [np.stack([b, a, a + n], axis=1), np.stack([b, a + n, b + n], axis=1)]
     faces = np.concatenate([triangles, triangles[:, ::-1] + n, *walls])
     if len(_open_edges(faces, directed=True)):
@@ -189,6 +198,7 @@ def _open_edges(triangles: Indices, *, directed: bool) -> Indices:
     first = np.flatnonzero(np.diff(keys >> 1, prepend=-1))
     pairs = np.stack(np.divmod(keys[first] >> 1, count), axis=1)
     times = np.diff(first, append=len(keys))
+    # An edge of four faces, as where two cubes touch, is closed: an even number is enough.
     if not directed:
         return np.asarray(pairs[times % 2 == 1])
     forward = 2 * np.add.reduceat(keys & 1, first)
@@ -203,6 +213,7 @@ def hits(
     Parallel rays are projected along their direction, which takes about 2 microseconds each. Other
     rays take about 1 microsecond by Embree and 11 by VTK, with a hit each.
     """
+    # Rays of a sun need no search tree, and where they meet an edge there are exact rules.
     if len(way) and np.all(way == way[0]):
         found = parallel_rays.hits(body.vertices, body.triangles, start, way[0])
         if found is not None:
@@ -217,6 +228,7 @@ def hits(
         rays.append(row)
         cells.append(cell)
         places.append(place)
+        # By rounding a hit may lie behind the start of its ray, which goes on all the same.
         s[row] = np.maximum(place, s[row]) + STEP * body.size
         row = row[s[row] < reach[row]]
         if not len(row):

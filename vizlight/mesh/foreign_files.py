@@ -51,6 +51,7 @@ def missing(path: Path) -> str:
     package, extra = PACKAGES.get(path.suffix.lower(), ("", ""))
     if not package:
         return ""
+    # By an import, since a package that is installed may still fail to load.
     try:
         importlib.import_module(MODULES.get(package, package))
     except ImportError:
@@ -83,6 +84,7 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return _of_meshio(path, ("abaqus",))
     if PACKAGES.get(suffix, ("",))[0] == "meshio" and missing(path) == "":
         return _of_meshio(path)
+    # PyVista has readers for the parallel files of grids, but none for those of surfaces.
     if suffix == ".pvtp":
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
@@ -104,6 +106,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
     """
     import meshio
 
+    # The class is replaced for the whole process: meshio makes a console for each message.
     meshio._common.Console, _SAID.texts = _Console, []
     kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
@@ -111,6 +114,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
         try:
             found = reader.read(path)
         except meshio.ReadError:
+            # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
                 raise
         else:
@@ -152,6 +156,7 @@ def _refuse_narrow(path: Path) -> None:
 def _tracts(path: Path) -> pv.PolyData:
     import nibabel
 
+    # nibabel applies the affine of the header: points are in RAS+ and in mm, not in voxels.
     tracts: Foreign = nibabel.streamlines.load(path).tractogram
     lines = tracts.streamlines
     if path.suffix.lower() == ".trk":
@@ -175,6 +180,7 @@ def _tracts_of_trx(path: Path) -> pv.PolyData:
     try:
         return _of_trx(trx_file_memmap.load(str(path)))
     except Exception as error:
+        # The lines may be whole where data beside them are not: they are read alone from a copy.
         with tempfile.TemporaryDirectory() as folder:
             bare, left = Path(folder) / "bare.trx", []
             with zipfile.ZipFile(path) as whole, zipfile.ZipFile(bare, "w") as part:
@@ -183,6 +189,7 @@ def _tracts_of_trx(path: Path) -> pv.PolyData:
                         left.append(name)
                     else:
                         part.writestr(name, whole.read(name))
+            # Nothing was left out, so the lines themselves are at fault.
             if not left:
                 raise
             lines = _of_trx(trx_file_memmap.load(str(bare)))
@@ -203,6 +210,7 @@ def _of_trx(tracts: Foreign) -> pv.PolyData:
         lines = tracts.streamlines
         of_lines = dict(tracts.data_per_streamline)
         for name, members in tracts.groups.items():
+            # A line may be in several groups, so each group is a mask of its own.
             of_lines[name] = np.isin(np.arange(len(lines)), members).astype(np.uint8)
         return _polylines(
             lines._data,
@@ -212,6 +220,7 @@ def _of_trx(tracts: Foreign) -> pv.PolyData:
             of_lines,
         )
     finally:
+        # Packed files lie in a temporary folder until then; the mesh has copies.
         tracts.close()
 
 
@@ -226,6 +235,7 @@ def _polylines(
     lengths = np.asarray(lengths, dtype=np.intp)
     starts = np.asarray(starts, dtype=np.intp)[lengths > 0]
     ends = np.concatenate([[0], np.cumsum(lengths[lengths > 0])])
+    # Lines need not follow one another in the file: each is gathered from where it begins.
     rows = np.arange(ends[-1]) + np.repeat(starts - ends[:-1], np.diff(ends))
     if not len(rows):
         return pv.PolyData()
@@ -250,6 +260,7 @@ def _polylines(
 
 def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
     """Attach numbers as rows; rows of one component become flat."""
+    # Files may have the bytes in the order of another machine, which VTK does not take.
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
@@ -265,11 +276,13 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
     import xarray
 
     # With all coordinates, corners of cells are none of the variables.
+    # Times stay numbers, which every calendar of a climate model has.
     with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
         if any(one.attrs.get("cf_role") == "mesh_topology" for one in file.variables.values()):
             raise ValueError("a mesh of UGRID, not a grid; convert it to .vtu")
         fields: Keywords = {}
         clocks = [dim for dim in file.sizes if _is_time(file, dim)]
+        # A file may have several clocks: the one with most steps tells them.
         clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
         step, ticking = 0, [0.0]
         if clock is not None and file.sizes[clock] > 1:
@@ -281,10 +294,12 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
                 rest = [dim for dim in variable.dims if dim not in times]
                 first = dict.fromkeys((*times, *rest[:-3]), 0)
                 first |= {clock: step} if clock in times else {}
+                # Axes of one value, such as a single level, are none of the grid.
                 fields[str(name)] = variable.isel(first).squeeze(drop=True)
         fields = {name: field for name, field in fields.items() if field.ndim in (2, 3)}
         if not fields:
             raise ValueError("no variable on a grid of two or three axes")
+        # One grid has one set of axes, which those of the largest variable are.
         dims = max(fields.values(), key=lambda field: int(field.size)).dims
         axes, backward = [], []
         for dim in dims:
@@ -292,13 +307,17 @@ def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
                 file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
             )
             ticks = ticks.astype(np.float64)
+            # Depths and pressures count downward: with their sign changed, z is up.
             if dim in file.coords and file[dim].attrs.get("positive") == "down":
                 ticks = -ticks
             widths = np.diff(ticks)
             if not (np.all(widths > 0) or np.all(widths < 0)):
                 raise ValueError(f"the axis {dim!r} does not rise or fall throughout")
+            # Axes of VTK rise: an axis that falls, as from north to south, is turned over with its
+            # values.
             backward.append(bool(widths[0] < 0))
             axes.append(np.sort(ticks))
+        # The last axis of a variable varies fastest in memory, as x does in VTK.
         grid = _of_axes([*reversed(axes)])
         turned = tuple(i for i, back in enumerate(backward) if back)
         for name, field in fields.items():
@@ -331,6 +350,7 @@ def _is_time(file: Foreign, dim: object) -> bool:
 def _of_axes(axes: list[Array]) -> pv.ImageData | pv.RectilinearGrid:
     """Return a grid on axes x, y and perhaps z; an image where their steps are equal."""
     axes += [np.zeros(1)] * (3 - len(axes))
+    # An axis of one value has no step: any but 0 will do.
     steps = [(axis[-1] - axis[0]) / max(len(axis) - 1, 1) or 1.0 for axis in axes]
     if all(_even(axis, step) for axis, step in zip(axes, steps, strict=True)):
         counts = tuple(len(axis) for axis in axes)

@@ -58,7 +58,9 @@ def in_metres(mesh: DataSetT) -> DataSetT:
     if not _in_degrees(mesh):
         return mesh
     x, y, _ = mesh.center
+    # At a pole all meridians meet: a degree of longitude would have no length.
     across = METRES * math.cos(math.radians(min(max(y, -89.0), 89.0)))
+    # An equirectangular map that is true to scale at its centre; heights stay as they are.
     moved = blocks.moved(mesh, np.array([-x, -y, 0.0]), np.array([across, METRES, 1.0]))
     moved.field_data[UNIT] = ["metre"]
     return moved
@@ -78,6 +80,7 @@ def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
         Name of a point array.
     """
     bounds = grid.bounds
+    # Longitudes run from -180 to 180 or from 0 to 360.
     places = bounds.x_min >= -180 and bounds.x_max <= 360 and abs(grid.center[1]) <= 90
     degrees = places and max(abs(bounds.y_min), abs(bounds.y_max)) <= 90
     # Pixels of an image that has no place are one apart.
@@ -99,6 +102,7 @@ def exaggeration(mesh: pv.DataSet, heights: str) -> float:
         Name of a point array of one component.
     """
     sides = sorted(in_metres(mesh).bounds_size)
+    # The two longer sides are those of the map. One row of points has no area.
     return _factor(_spread(mesh, heights), math.sqrt(sides[1] * sides[2]) or sides[2])
 
 
@@ -119,9 +123,12 @@ def stretch(mesh: pv.DataSet) -> float:
 def _factor(spread: float, side: float) -> float:
     if not (spread > 0 and side > 0) or ENOUGH[0] <= spread / side <= ENOUGH[1]:
         return 1.0
+    # The factor that takes the share just to the nearer end of the range.
     wanted = min(max(spread / side, ENOUGH[0]), ENOUGH[1]) * side / spread
     power = 10.0 ** math.floor(math.log10(wanted))
+    # By way of text: 5 times 1e-6 is 4.9999999999999996e-06, which a message would show.
     steps = [float(f"{step * power:.3g}") for step in (1, 2, 5, 10)]
+    # Nearest by ratio: 1 and 10 are equally far from 3.16.
     return min(steps, key=lambda step: abs(math.log(step / wanted)))
 
 
@@ -179,8 +186,10 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     grid.set_active_scalars(next(iter(arrays)))
     if crs is not None:
         grid.field_data["crs"] = [crs.to_wkt()]
+        # A projected system has a unit of length, which it names.
         unit = DEGREE if crs.is_geographic else crs.linear_units
         grid.field_data[UNIT] = [unit]
+    # Many files of elevations name no system: then only the numbers tell of degrees.
     elif seem_degrees(grid, next(iter(arrays))):
         grid.field_data[UNIT] = [DEGREE]
     return grid
@@ -192,6 +201,7 @@ def _bands(file: Foreign) -> dict[str, Raw]:
     found: dict[str, Raw] = {}
     for i in range(count):
         if np.dtype(file.dtypes[i]).kind not in "iuf":
+            # Complex numbers, as of radar, are no heights.
             continue
         name = file.descriptions[i] or ("elevation" if count == 1 else f"band_{i + 1}")
         found[name] = _band(file, i)
@@ -201,6 +211,7 @@ def _bands(file: Foreign) -> dict[str, Raw]:
     if kinds == [*_COLORS] and all(file.dtypes[i] == "uint8" for i in range(3)):
         colors = [*found.values()]
         rest = dict([*found.items()][3:])
+        # A pixel that is marked as missing has no colour: it is black.
         rgb: Raw = np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)
         return {"rgb": rgb} | rest
     return found
@@ -211,6 +222,7 @@ def _band(file: Foreign, i: int) -> Raw:
     rows = file.read(i + 1, masked=True)
     scale, offset = file.scales[i], file.offsets[i]
     holes = np.ma.getmaskarray(rows)
+    # Labels and colours without a hole stay integers, in a half or a quarter of the memory.
     if scale == 1 and offset == 0 and not holes.any():
         return np.asarray(rows.data)
     # 24 bits hold integers of 16, not of 32.
@@ -222,11 +234,14 @@ def _band(file: Foreign, i: int) -> Raw:
 
 def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice, Slice]]:
     """Return the grid of a raster, and the order of rows and columns along which x and y rise."""
+    # Column u and row v of a raster are at x = a u + b v + c and y = d u + e v + f.
     a, b, c, d, e, f = tuple(file.transform)[:6]
     if file.transform.is_identity:
         e, f = -1.0, float(file.height)  # a picture, whose first row is its top
+    # Values are those of the middle of a pixel, half of one from the corner that is mapped.
     columns, rows = np.arange(file.width) + 0.5, np.arange(file.height) + 0.5
     if b == d == 0:
+        # Axes of VTK rise. Rows mostly run from north to south, so they are turned over.
         turned = slice(None, None, -1 if e < 0 else 1), slice(None, None, -1 if a < 0 else 1)
         x: Array = (c + a * columns)[turned[1]]
         y: Array = (f + e * rows)[turned[0]]
@@ -236,6 +251,7 @@ def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice,
             origin=(x[0], y[0], 0.0),
         )
         return image, turned
+    # Rows that are turned or sheared: each point has a place of its own.
     u, v = np.meshgrid(columns, rows)
     points = np.stack([a * u + b * v + c, d * u + e * v + f, np.zeros_like(u)], axis=-1)
     grid = pv.StructuredGrid()

@@ -54,6 +54,7 @@ class Heights:
     def to_points(self, values: Array) -> Array:
         """Return values at the nodes, shape (ny, nx, ...), in the order of the points."""
         result = np.empty((self.place.size, *values.shape[2:]), values.dtype)
+        # Rows and columns may have been exchanged or turned over: numbers lead back to the points.
         result[self.place] = values
         return result
 
@@ -61,6 +62,7 @@ class Heights:
         """Return the nodes in the order of the points, shape (ny nx, 3)."""
         x, y = np.meshgrid(self.x, self.y)
         found = self.to_points(np.stack([x, y, self.z], axis=-1))
+        # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
         return found if self.turn is None else found @ self.turn
 
 
@@ -83,7 +85,10 @@ class Raster(Heights):
 
     def to_points(self, values: Array) -> Array:
         """Return values at the nodes interpolated to the points, bilinear."""
+        # Rows are y: the order is y, x. Points without a place read any node, and are not covered.
         own = np.nan_to_num(self.own[:, 1::-1])
+        # By rounding a point may lie beyond the outermost nodes, where the interpolator raises an
+        # error.
         beside = np.clip(own, [self.y[0], self.x[0]], [self.y[-1], self.x[-1]])
         between = scipy.interpolate.RegularGridInterpolator((self.y, self.x), values)
         return np.asarray(between(beside))
@@ -113,13 +118,16 @@ def heights_of(
     z = _elevation(grid, elevation, nodes[..., 2])
     place = np.arange(z.size).reshape(z.shape)
     turn = _turn(nodes, rounding)
+    # The grid is turned to the axes in place of the axes to it; lights are turned likewise.
     if turn is not None:
         nodes = nodes @ turn.T
     x, y = nodes[..., 0], nodes[..., 1]
+    # Where the first index of the points runs along y, rows are columns.
     if np.ptp(x[0]) < np.ptp(x[:, 0]):
         x, y, z, place = x.T, y.T, z.T, place.T
     _check_square(x, y, rounding)
     x, y = x[0], y[:, 0]
+    # Fields need rising nodes, and rows from north to south have falling ones.
     if x[0] > x[-1]:
         x, z, place = x[::-1], z[:, ::-1], place[:, ::-1]
     if y[0] > y[-1]:
@@ -134,31 +142,38 @@ def _sampled(
     points: Array = np.asarray(points_of(mesh, None)[:], dtype=np.float64)
     z = _elevation(mesh, elevation, points[:, 2])
     points = np.column_stack([points[:, :2], factor * np.asarray(z, dtype=np.float64)])
+    # Only to raise errors: a cloud of points and a grid of many layers have no one height.
     if isinstance(mesh, pv.PolyData):
         blocks.surface(mesh, "mesh")
     else:
         _check_layer(mesh)
     triangles = splitting.simplices(mesh)
+    # A face with a corner that has no height is a hole.
     known = np.all(np.isfinite(points), axis=1)
     triangles = triangles[np.all(known[triangles], axis=1)]
     if not len(triangles) or triangles.shape[1] < 3:
         raise ValueError(_check.message("mesh", "faces with heights", "none"))
+    # Points of no face would make the raster larger.
     used = points[np.unique(triangles)]
     low, sides = used.min(axis=0)[:2], np.ptp(used, axis=0)[:2]
+    # By default there are about as many nodes as points.
     step = spacing or float(np.sqrt(sides[0] * sides[1] / len(used)))
     if not (step > 0 and step <= sides.min()):
         expected = f"a spacing up to {sides.min():g}, the shorter side of the mesh"
         raise ValueError(_check.message("raster", expected, step))
     with np.errstate(over="ignore"):
+        # A tiny spacing gives an infinite number, which is no integer and no help in a message.
         count = np.minimum(np.round(sides / step) + 1, 2 * LARGEST)
     if count[0] * count[1] > LARGEST:
         got = f"{count[0]:g} x {count[1]:g} nodes"
         raise ValueError(_check.message("raster", f"a raster of at most {LARGEST} nodes", got))
     x, y = (np.linspace(low[a], low[a] + sides[a], int(count[a])) for a in (0, 1))
+    # Seen from above: of several layers, as at a bridge, the highest counts.
     heights = depth_map(x, y, points, triangles)
     if np.isnan(heights).all():
         raise ValueError(_check.message("raster", "nodes that the mesh covers", "none"))
     place = np.arange(heights.size).reshape(heights.shape)
+    # Points at the outline interpolate nodes beyond it, which so have the height of the nearest.
     return Raster(x, y, height_field.filled(heights), place, own=points)
 
 
@@ -185,6 +200,8 @@ def _nodes(grid: Grid) -> tuple[Array, float]:
         sides = np.ptp(points, axis=0)
         if sides[2] > LEVEL * np.linalg.norm(sides):
             raise _tilted()
+    # Rows that are straight bend by the rounding of their largest coordinate, however near its
+    # nodes are to each other.
     eps = np.finfo(np.float32 if points.dtype == np.float32 else np.float64).eps
     nodes: Array = np.asarray(points, dtype=np.float64).reshape(ny, nx, 3)
     return nodes, float(eps * np.nanmax(np.abs(nodes[..., :2])))
@@ -193,8 +210,10 @@ def _nodes(grid: Grid) -> tuple[Array, float]:
 def _check_square(x: Array, y: Array, rounding: float) -> None:
     """Check that x depends on the column alone and y on the row alone, up to rounding."""
     for axis in (x[0], y[:, 0]):
+        # Rows or columns whose nodes are above one another: the grid stands upright.
         if len(axis) > 1 and np.ptp(axis) <= 4 * rounding:
             raise _tilted()
+    # In this form NaN fails, too.
     if not max(np.ptp(x, axis=0).max(), np.ptp(y, axis=1).max()) <= 8 * rounding:
         expected = "rows and columns that are straight and at right angles"
         raise ValueError(_check.message("mesh", expected, "other rows and columns", REMEDY))
@@ -210,6 +229,7 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
 
     Nodes have shape (ny, nx, 3); each coordinate may be off by the rounding.
     """
+    # From the first node to the last of its row, and to the last of its column.
     along, across = (nodes[end][:2] - nodes[0, 0, :2] for end in ((0, -1), (-1, 0)))
     # The longer side gives more digits of the angle.
     longer = np.hypot(*along) >= np.hypot(*across)
@@ -217,6 +237,7 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
     if not min(abs(x), abs(y)) > 2 * rounding:
         return None
     size = np.hypot(x, y)
+    # Takes the direction of the rows to the x axis; heights stay.
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
 
 
@@ -231,6 +252,7 @@ def elevation_name(grid: Grid | pv.PolyData) -> str | None:
     name = heights_name(grid)
     if name is not None and isinstance(grid, pv.StructuredGrid | pv.PolyData):
         z = np.asarray(grid.points)[:, 2]
+        # Points that differ in z are raised already; level ones need an array.
         return None if np.nanmin(z) < np.nanmax(z) else name
     return name
 

@@ -191,6 +191,7 @@ def split_or_normals(
         return mesh, None
     if angle == "auto":
         found = kept(mesh) or computed_normals(mesh)
+        # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
         if not found.sharp:
             return mesh, found
         angle = SHARP
@@ -202,6 +203,7 @@ def split_or_normals(
     if turned.any():
         # Pieces that are taken apart would not know that they had a side in common.
         size = np.diff(ends)
+        # A place of the face is subtracted from this, which runs through its corners backward.
         last = np.repeat(ends[:-1] + ends[1:] - 1, size)
         at = np.arange(len(ids))
         corners = corners[np.where(np.repeat(turned, size), last - at, at)]
@@ -214,6 +216,7 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     The origin of a point is the point that it was. Values that are averaged from cells to points
     are then the cells' own.
     """
+    # Cells are in the order of VTK's kinds: vertices and lines come before all faces.
     values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
     ids, ends = _corners(mesh)
     _, kind = np.unique(values, axis=0, return_inverse=True)
@@ -248,6 +251,7 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
     """
     found = pv.PolyData()
     found.SetPoints(pv.vtk_points(places(mesh)[origin]))
+    # Copies, for a result shares no memory with the mesh.
     for put, cells in ((found.SetVerts, mesh.GetVerts()), (found.SetLines, mesh.GetLines())):
         own = pv.CellArray()
         own.DeepCopy(cells)
@@ -261,6 +265,7 @@ def _at(mesh: pv.PolyData, corners: Indices, ends: Indices, origin: Indices) -> 
 def _rows(mesh: pv.PolyData) -> Indices:
     """Return the cell of a mesh that each cell is once its strips are triangles."""
     size = np.diff(connectivity(mesh.GetStrips())[1])
+    # A strip of n points, the last kind of cells, is n - 2 triangles.
     rows = np.repeat(np.arange(mesh.n_cells - len(size), mesh.n_cells), np.maximum(size - 2, 0))
     return np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
 
@@ -362,9 +367,11 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     """
     if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_cells:
         return mesh
+    # Adding 0 makes 0.0 of -0.0, so that equal places have equal bytes.
     parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
     if any(part.dtype.kind not in "biuf" for part in parts):
         return mesh
+    # By bytes, in which NaN equals NaN: a vertex without a value is welded like any other.
     rows = [np.ascontiguousarray(part.reshape(len(part), -1)).view(np.uint8) for part in parts]
     table = np.ascontiguousarray(np.hstack([row.reshape(mesh.n_points, -1) for row in rows]))
     _, first, same = np.unique(
@@ -403,6 +410,7 @@ def keep_normals(mesh: pv.PolyData) -> None:
     ids, ends = connectivity(mesh.GetPolys())
     whole = pv.PolyData()
     whole.SetPoints(mesh.GetPoints())
+    # By place alone: a seam of texture or colour is no edge of this surface.
     whole.SetPolys(blocks.cell_array(first[ids], ends))
     sided = computed_normals(whole)
     if not sided.sharp:

@@ -59,8 +59,10 @@ class Turning:
 
     def turned(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
         """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
+        # These have axes in place of points, which projected points do not follow.
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
             mesh = mesh.cast_to_structured_grid()
+        # Deep: the result shares no memory with the mesh, arrays that nothing is done to included.
         out = mesh.copy(deep=True)
         # The normals of the mesh are not the result's.
         out.point_data.active_normals_name = None
@@ -68,13 +70,18 @@ class Turning:
         n = arrays[self.positions].shape[1]
         matrix = None if self.rotation is None else projection.rotation(n, self.rotation)
         plane = None if self.hyperplane is None else _plane(self.hyperplane, n)
+        # The record has the matrix, in whatever form the rotation was given: JSON keeps all digits.
         exact = None if matrix is None else matrix.tolist()
         for name, array in arrays.items():
             if matrix is not None:
+                # An array of k vectors has k n columns, and each of its vectors turns like a
+                # position.
                 array = _blocks(lambda x: projection.turn(x.reshape(len(x), -1, n), matrix), array)
             records.attach_rows(out, name, array)
+        # The hyperplane is one of the turned space, so the cut comes second.
         if plane is not None:
             out = self._sliced(out, *plane, lost)
+            # Arrays by vizlight stay its own on the cut, where new light may replace them.
             records.carry(mesh, out)
         records.write(out, RECORD, self._record(exact, records.read(mesh, RECORD)))
         done.add(mesh.n_points)
@@ -101,6 +108,7 @@ class Turning:
             raise ValueError(_check.message("positions", "places in n-space", got, remedy))
         position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
+        # A rotation needs a plane, and so two axes.
         if n < 2:
             got = f"{self.positions!r} with {n}"
             remedy = "name an array of positions in n-space"
@@ -111,6 +119,7 @@ class Turning:
             given.append(("frame", self.frame))
         for argument, name in given:
             array = _named(mesh, argument, name)
+            # A frame of n tangents spans all of n-space, where no normal is left to light by.
             most = n - 1 if argument == "frame" else array.shape[1]
             if array.shape[1] % n or not 0 < array.shape[1] // n <= most:
                 expected = f"a point array of {n} k components, as positions have {n}"
@@ -118,7 +127,9 @@ class Turning:
                 remedy = "name another array"
                 raise ValueError(_check.message(argument, expected, got, remedy))
             found[name] = array
+        # Positions have no array of images: these are the points of the result.
         _refuse_overwriting(mesh, [PROJECTED + name for name in list(found)[1:]])
+        # Integers do not hold turned vectors.
         return {
             name: array if array.dtype.kind == "f" else array.astype(np.float64)
             for name, array in found.items()
@@ -127,6 +138,8 @@ class Turning:
     def _sliced(self, mesh: pv.DataSet, normal: Array, offset: float, lost: Counter) -> pv.PolyData:
         """Return the section of a mesh by a hyperplane, with its frame restricted to it."""
         position = np.asarray(mesh.point_data[self.positions])
+        # Signed distances from the hyperplane, as the normal has length 1. They are in float64,
+        # since their sign decides which cells are cut.
         heights = np.empty(len(position))
         with np.errstate(all="ignore"):
             for block in _pool.blocks(len(position), BLOCK):
@@ -138,11 +151,14 @@ class Turning:
         if self.frame is None:
             return cut(mesh, heights)
         k = mesh.point_data[self.frame].shape[1] // n
+        # A curve is cut to points, which have no tangents.
         if k == 1:
             del mesh.point_data[self.frame]
             return cut(mesh, heights)
         out = cut(mesh, heights, spaces={self.frame: n})
         tangents = np.asarray(out.point_data[self.frame])
+        # By the digits of the array: its rounding hides a rank, not that of the float64 computed
+        # in.
         rtol = default_rtol(n, tangents.dtype)
         rows = _blocks(
             lambda x: slices.slice_frame(x.reshape(-1, k, n), normal, rtol=rtol), tangents, k - 1, n
@@ -172,6 +188,8 @@ class Turning:
             whole, mesh = mesh, _without(mesh, ~good)
             records.carry(whole, mesh)
             position = np.asarray(mesh.point_data[self.positions])
+            # Extraction drops the points that no cell is left for, too: rows are those of its
+            # result.
             points, _ = self._points(position)
         out = mesh.copy(deep=False)
         out.SetPoints(pv.vtk_points(points))
@@ -179,6 +197,7 @@ class Turning:
             records.attach_rows(out, PROJECTED + name, self._image(out, name, position))
         if self.frame is not None:
             name = PROJECTED + self.frame
+            # An image by an earlier projection would be stale.
             out.point_data.pop(name, None)
             # The image of three tangents is all of 3-space, which light cannot use as a frame.
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
@@ -197,6 +216,8 @@ class Turning:
         """
         points = np.empty((len(position), 3), dtype=position.dtype)
         good = np.empty(len(position), dtype=np.bool_)
+        # Depths are shares of the eye's distance: below the rounding of the positions their sign
+        # means nothing, and the image would be anywhere.
         rounding = 4 * np.finfo(position.dtype).eps
         with np.errstate(all="ignore"):
             for block in _pool.blocks(len(position), BLOCK):
@@ -204,6 +225,8 @@ class Turning:
                 image, depth = projection.image_and_depth(part, distance=self.distance)
                 points[block] = image
                 good[block] = np.all(np.isfinite(part), axis=1) & (depth > rounding)
+                # Near the eye's hyperplane an image in float64 may be too large for the type of the
+                # positions.
                 good[block] &= np.all(np.isfinite(points[block]), axis=1)
         return points, good
 
@@ -252,19 +275,25 @@ def continued(mesh: pv.DataSet, name: str) -> Array | None:
     """
     rows = np.asarray(mesh.point_data[name])
     frame = rows.reshape(len(rows), -1, 3).astype(np.float64)
+    # A row of zeros is past the rank: the projection has flattened the space of that point.
     lost = ~np.all(np.any(frame != 0, axis=2), axis=1)
     if not lost.any() or lost.all():
         return None
     at, around = _neighbours(mesh)
+    # Only neighbours whose own space is whole tell of the limit.
     used = lost[at] & ~lost[around]
     at, around = at[used], around[used]
+    # The projection F^T F onto a space is the same for every basis F of it, so it can be averaged.
     spaces = np.einsum("ika,ikb->iab", frame[around], frame[around]).reshape(-1, 9)
     count = np.bincount(at, minlength=len(rows))
     total = np.stack([np.bincount(at, column, len(rows)) for column in spaces.T], axis=1)
     chosen = np.flatnonzero(count)
     mean = (total[chosen] / count[chosen, np.newaxis]).reshape(-1, 3, 3)
+    # Eigenvectors of the k largest eigenvalues, which eigh puts last, span the space nearest to
+    # all.
     values, vectors = np.linalg.eigh(mean)
     k = frame.shape[1]
+    # The gap is 1 where all spaces around are one, and falls as they differ.
     agree = values[:, 3 - k] - values[:, 2 - k] > AGREEMENT
     frame[chosen[agree]] = vectors[agree][:, :, 3 - k :].transpose(0, 2, 1)
     return frame.reshape(rows.shape).astype(rows.dtype)
@@ -311,9 +340,11 @@ def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
 def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
     """Return a mesh without some points and without the cells that use one of them."""
     kept = np.asarray(np.flatnonzero(~lost), dtype=int)
+    # VTK's ids of the points and cells before would stay in the result as arrays of the user.
     grid: pv.DataSet = mesh.extract_points(
         kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False, progress_bar=False
     )
+    # Extraction has made an unstructured grid of the surface.
     if isinstance(mesh, pv.PolyData):
         grid = grid.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
     for name in set(mesh.point_data) - set(grid.point_data):  # where no point is left
@@ -331,6 +362,7 @@ def _plane(hyperplane: object, n: int) -> tuple[Array, float]:
     if len(normal) != n:
         got = f"a normal of {len(normal)} components"
         raise ValueError(_check.message("hyperplane", expected, got))
+    # By the largest component first, so that no square overflows.
     normal /= np.abs(normal).max()
     return normal / np.linalg.norm(normal), _check.number("hyperplane", hyperplane[1])
 
@@ -374,12 +406,16 @@ def cut(
         If the mesh has neither lines nor faces nor volumes.
     """
     simplices, middles = _simplices(mesh)
+    # The mean point of a hexahedron, a new point behind those of the mesh, has the mean height.
     heights = np.concatenate([heights, heights[middles].mean(axis=1)])
     edges, weights, cells = slices.cut(heights, simplices)
     count, total = mesh.n_points, mesh.n_points + len(middles)
     parts = np.stack([1 - weights, weights], axis=1)
+    # Each row has the weights of the points of the mesh in a point of the cut.
     between = _sparse(parts, edges, total)
     if len(middles):
+        # Mean points are none of the mesh: their weight is spread over the corners that they stand
+        # for.
         spread = _sparse(np.full(middles.shape, 1 / middles.shape[1]), middles, count)
         between = between[:, :count] + between[:, count:] @ spread
     # A point with weight 0 must not contribute a NaN.
@@ -389,6 +425,7 @@ def cut(
         array = np.asarray(value)
         if spaces and key in spaces:
             records.attach_rows(out, key, _mean_frames(array, between, spaces[key]))
+        # Between integers or flags there are fractions. Words have no mean, and are left out.
         elif array.dtype.kind in "biuf":
             kind = array.dtype if array.dtype.kind == "f" else np.float64
             records.attach_rows(out, key, (between @ array.astype(np.float64)).astype(kind))
@@ -400,6 +437,7 @@ def _sparse(parts: Array, columns: Indices, count: int) -> Sparse:
     """Return a sparse array of rows with equally many parts in given columns."""
     ends = np.arange(0, parts.size + 1, parts.shape[1])
     made = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
+    # Where the function is 0 at a point, both ends of its edge are that point.
     made.sum_duplicates()
     return made
 
@@ -409,6 +447,7 @@ def _mean_frames(array: Array, between: Sparse, n: int) -> Array:
     found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
     for block in _pool.blocks(len(found), FRAMES):
         part = between[block]
+        # Only the frames that a block needs are widened to float64.
         used = np.unique(part.indices)
         rows = array[used].astype(np.float64).reshape(len(used), -1, n)
         found[block] = slices.mean_frame(rows, part[:, used]).reshape(-1, array.shape[1])
@@ -439,8 +478,10 @@ def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
         kinds = _cells(grid)
         whole = {pv.CellType.TETRA, pv.CellType.HEXAHEDRON, pv.CellType.VOXEL}
         if kinds and set(kinds) <= whole:
+            # Cells of these types are split here and not by VTK, for the sake of common diagonals.
             return _tetrahedra(kinds, mesh.n_points)
         kinds = _cells(grid.triangulate()) if kinds else {}
+        # From volumes down: side sets beside the cells of highest dimension are not cut.
         for kind in _SIMPLICES:
             if kind in kinds:
                 return kinds[kind], none
@@ -465,13 +506,16 @@ def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indi
     voxels = kinds.get(pv.CellType.VOXEL, none)[:, _VOXEL]
     corners = np.concatenate([kinds.get(pv.CellType.HEXAHEDRON, none), voxels])
     faces = corners[:, _FACES]
+    # Each face begins at its lowest index, from whichever hexahedron it is seen.
     first = np.argmin(faces, axis=2)[..., np.newaxis]
     ring = np.take_along_axis(faces, (first + np.arange(4)) % 4, axis=2)
+    # Numbers of the mean points, in the order in which the cut adds their heights.
     middle = np.broadcast_to(
         count + np.arange(len(corners))[:, np.newaxis, np.newaxis], (len(corners), 6, 1)
     )
     found = [
         np.concatenate([ring[..., part], middle], axis=2).reshape(-1, 4)
+        # Both triangles of a face have the diagonal from its first corner in common.
         for part in ([0, 1, 2], [0, 2, 3])
     ]
     return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *found]), corners

@@ -40,16 +40,21 @@ class Rows(Columns):
     def thinned(self, most: int) -> Rows:
         """Return the rows from the oldest that is there on, without one that is close to others."""
         there = np.any(np.isfinite(self.places), axis=(1, 2))
+        # Rows age in order: one whose particles have all left the mesh is dropped.
         kept = np.arange(np.argmax(there) if there.any() else len(there), len(there))
         if len(kept) > most:
             times = self.times[kept]
+            # The row whose neighbours are nearest in time is missed least; the oldest and the
+            # newest stay. One row is added at a time, so one less is enough.
             kept = np.delete(kept, 1 + np.argmin(times[2:] - times[:-2]))
         return self[kept]
 
     def lines(self, vectors: str, time: str) -> pv.PolyData:
         """Return one line for each seed, more where one is interrupted."""
+        # Seed after seed, as lines are: each has all of its times in a row.
         places = np.swapaxes(self.places, 0, 1)
         there = np.all(np.isfinite(places), axis=2)
+        # A gap before and behind each seed's row, so that no line runs into the next seed's.
         edge = np.zeros((len(there), 1), dtype=bool)
         before = np.concatenate([edge, there[:, :-1]], axis=1)
         after = np.concatenate([there[:, 1:], edge], axis=1)
@@ -73,14 +78,18 @@ class Carrier:
 
     def __init__(self, mesh: pv.DataSet) -> None:
         self._mesh = mesh.copy(deep=False)
+        # The probe interpolates every array of its source, and all but the vectors in vain.
         self._mesh.clear_data()
         k = mesh.GetMaxSpatialDimension()
         sizes = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
+        # A cell that is turned inside out has a negative volume.
         extent = np.abs(sizes.cell_data[("Length", "Area", "Volume")[k - 1]])
+        # The side of a square or cube as large as the typical cell.
         self._cell = float(np.median(extent[extent > 0])) ** (1 / k) if np.any(extent > 0) else 0.0
 
     def between(self, first: Array, second: Array) -> None:
         """Take the vectors of the points at both ends of an interval."""
+        # Side by side: one search for the cell of a place serves both ends of the interval.
         self._mesh.point_data[BOTH] = np.concatenate([first, second], axis=1)
         self._probe = vtkProbeFilter()
         self._probe.SetSourceData(self._mesh)
@@ -97,6 +106,7 @@ class Carrier:
             self._probe.SetInputData(pv.PolyData(places[inside]))
             self._probe.Update()
             found: Foreign = pv.wrap(self._probe.GetOutput())
+            # VTK gives zeros outside of the mesh: only its mask tells them from vectors at rest.
             valid = np.asarray(found.point_data["vtkValidPointMask"], dtype=bool)
             both[inside[valid]] = np.asarray(found.point_data[BOTH])[valid]
         return both
@@ -105,6 +115,7 @@ class Carrier:
         """Return the number of steps of an interval, each of at most ``step`` cell lengths."""
         both = self._both(places).reshape(len(places), 2, 3)
         speed = np.linalg.norm(both, axis=2)
+        # The fastest particle sets the step of all, which advance together.
         fastest = float(np.nanmax(speed)) if np.any(np.isfinite(speed)) else 0.0
         wanted = fastest * duration / (step * self._cell) if self._cell else 1.0
         return int(np.clip(np.ceil(wanted), 1, MOST_STEPS))
@@ -115,6 +126,7 @@ class Carrier:
         The step is ``width`` of the interval, from ``share`` of it on; ``duration`` is its time.
         """
         middle = share + width / 2
+        # A stage outside of the mesh is NaN, and so is the sum: the line ends before this step.
         a = self.at(places, share)
         b = self.at(places + duration / 2 * a, middle)
         c = self.at(places + duration / 2 * b, middle)

@@ -70,16 +70,19 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     place = np.asarray(mesh.points, dtype=np.float64)[ids]
     step = place[1:] - place[:-1]
     same = line[1:] == line[:-1]
+    # Repeated points have no direction: a turn is seen across them.
     moving = np.any(step != 0, axis=1) & same
     # Indices of the steps of non-zero length.
     at = np.flatnonzero(moving)
     back = np.einsum("ij,ij->i", step[at[1:]], step[at[:-1]]) <= 0
     back &= line[at[1:]] == line[at[:-1]]
     last = np.full(len(size), -1)
+    # A line goes to the end of its last step that moves, or to the first point where it turns.
     np.maximum.at(last, line[at], at + 1)
     np.minimum.at(last, line[at[1:][back]], at[1:][back])
     keep_line = last >= 0
     kept = (np.arange(len(ids)) <= np.repeat(last, size)) & np.repeat(keep_line, size)
+    # Nothing is cut off, and no point is left over.
     if kept.size == mesh.n_points and kept.all():
         return mesh
     if not kept.any():
@@ -114,6 +117,7 @@ def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
         return mesh
     ids, offsets = connectivity(mesh.GetLines())
     seed = np.asarray(mesh.cell_data["SeedIds"])
+    # VTK marks the half that runs against the vectors by times below 0.
     time = np.asarray(mesh.point_data["IntegrationTime"])[ids]
     back = np.minimum.reduceat(time, offsets[:-1]) < 0
     runs: dict[int, Indices] = {}
@@ -122,6 +126,7 @@ def joined_at_seeds(mesh: pv.PolyData) -> pv.PolyData:
     for line in np.lexsort((~back, seed)).tolist():
         run, key = ids[offsets[line] : offsets[line + 1]], int(seed[line])
         run = run[::-1] if back[line] else run
+        # Both halves begin at the seed, which the line needs once.
         runs[key] = np.concatenate([runs[key], run[1:]]) if key in runs else run
         first[key] = line
     rows = np.concatenate([*runs.values()])

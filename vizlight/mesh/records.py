@@ -44,6 +44,7 @@ def attach(
     common: str = "",
 ) -> None:
     """Attach point arrays in place of earlier ones of a name, and activate the one of that name."""
+    # Those that the new result does not have go, too: old colours beside new light would mislead.
     for stale in made(mesh, name):
         # PyVista's own way forgets in other copies, too, that an array is one of flags.
         point_data(mesh).RemoveArray(stale)
@@ -67,6 +68,7 @@ def write(
     """
     if not isinstance(arrays, dict):
         data = point_data(mesh)
+        # A caller that has the rows at hand passes a dict, and they are not read back from VTK.
         arrays = {own: as_numpy(data.GetAbstractArray(own)) for own in arrays}
     # VTK has no columns of width 1.
     digests = {
@@ -76,6 +78,7 @@ def write(
     text = json.dumps(record | {"arrays": digests})
     attached = vtkStringArray()
     attached.SetName(record_key(name))
+    # Two JSON objects become one where the first loses its last brace and the second its first.
     attached.InsertNextValue(f"{common[:-1]}, {text[1:]}" if common else text)
     field_data(mesh).AddArray(attached)
 
@@ -90,6 +93,7 @@ def read(mesh: pv.DataSet, name: str) -> Keywords | None:
         return None
     try:
         record = json.loads(str(mesh.field_data[record_key(name)][0]))
+    # Deep brackets in a damaged file end Python's reader of JSON by a RecursionError.
     except (KeyError, IndexError, ValueError, RecursionError):
         return None
     return record if _is_record(record) else None
@@ -103,6 +107,7 @@ def _is_record(record: object) -> bool:
     """Return whether a value read from JSON has the form of a record."""
     if not isinstance(record, dict):
         return False
+    # These two are missing in records of what is kept, such as normals.
     whole: Keywords = {"options": {}, "scene": {}} | record
     if not all(isinstance(whole.get(name), kind) for name, kind in _ENTRIES.items()):
         return False
@@ -113,6 +118,7 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
     """Return a digest of the points and cells of a mesh, None for a kind that keeps no rows."""
     if not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
         return None
+    # A quadrilateral and a tetrahedron have the same connectivity: the types tell them apart.
     arrays = [places(mesh), np.array(sorted(hull.cell_types(mesh)))]
     for cells in cell_arrays(mesh):
         arrays += [as_numpy(cells.GetConnectivityArray()), as_numpy(cells.GetOffsetsArray())]
@@ -121,6 +127,7 @@ def fingerprint(mesh: pv.DataSet) -> str | None:
 
 def source(*arrays: Raw) -> str:
     """Return a digest of arrays from which others are computed."""
+    # Equal bytes of another type are other numbers.
     return " ".join(f"{array.dtype.str}{digest(array)}" for array in arrays)
 
 
@@ -168,6 +175,7 @@ def made(mesh: pv.DataSet, name: str) -> set[str]:
     """
     claimed: dict[str, str] = (read(mesh, name) or {}).get("arrays", {})
     data = point_data(mesh)
+    # An array that was edited since has another digest, and is the user's.
     return {
         own
         for own, made_as in claimed.items()
@@ -194,6 +202,8 @@ def carry(mesh: pv.DataSet, derived: pv.DataSet) -> None:
         if record is not None:
             # What it was computed from is not the derived mesh.
             record.pop("source", None)
+            # Whose an array is shows on the mesh, which has the values of the digests; then they
+            # are anew.
             write(derived, name, record, made(mesh, name) & set(derived.point_data))
 
 
@@ -207,6 +217,7 @@ def refuse_overwriting(
         for array in arrays:
             if data.HasArray(array) and array not in ours:
                 expected = "one under which the mesh has no array of its own"
+                # An array by vizlight that was edited later is the user's own, as the message says.
                 known = array in (read(mesh, name) or {}).get("arrays", {})
                 got = repr(array) + ", changed since it was computed" * known
                 remedy = "pass another name=, rename that array or delete it"
@@ -216,6 +227,7 @@ def refuse_overwriting(
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
     """Replace the filter and the options in the record of an array; options are merged."""
     own = {key: value for each in options for key, value in plain(each).items()}
+    # Filters that light by illuminate take its place in the record, with their own options.
     record = (read(mesh, name) or {}) | {"filter": filter_name, "options": own}
     write(mesh, name, record, made(mesh, name))
 
@@ -256,6 +268,8 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
     for block in blocks.all_blocks(mesh):
         # VTK takes no name with half of a surrogate pair.
         if name in _names(block) and (found := read(block, name)) is not None:
+            # Blocks that were lit together have scene and options in common: one record stands for
+            # all.
             return found
         known |= {own for own in _names(block) if read(block, own) is not None}
     if not known:
@@ -310,6 +324,7 @@ def attach_rows(mesh: pv.DataSet, name: str, array: Raw) -> None:
         # By VTK itself: PyVista's way takes longer than the light of a small mesh, and refuses an
         # array without rows.
         part = getattr(array.base, "nbytes", 0) > array.nbytes
+        # A part that is shared would keep the whole of the larger array in memory.
         copied = part or array.size < _SMALL
         own = as_vtk(array, name) if copied else pv.convert_array(array, name)
         point_data(mesh).AddArray(own)
@@ -340,6 +355,7 @@ def carry_rows(
         attach_rows(derived, name, np.asarray(array)[points])
     for name, array in mesh.cell_data.items():
         derived.cell_data[name] = np.asarray(array)[cells]
+    # VTK marks active arrays in the data of the points, and copies of rows are without marks.
     carry_active(mesh, derived)
     derived.GetFieldData().DeepCopy(mesh.GetFieldData())
 

@@ -101,6 +101,7 @@ def refined(
     ValueError
         If the mesh has cells that fill space, or neither faces nor lines.
     """
+    # Of several blocks the message must say which one it is about.
     try:
         flat = splitting.as_polydata(mesh)
     except ValueError as cause:
@@ -123,6 +124,7 @@ def refined(
     found = splitting.rebuilt(flat, cells, origin, given, places=positions)
     records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
+    # Taken from the refined line, tangents would be those of its straight segments.
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
         tangents = np.asarray(made.inputs.tangents[:])
         records.keep(found, splitting.TANGENTS, "refine", tangents)
@@ -261,6 +263,7 @@ class _Refinement:
         self.between, self.error, self.most = between, error, most
         self.cells, self.count = Cells(between.points, parents), len(between.points)
         self.light = columns(shading)
+        # A point without light, as in a hole, has nothing to be compared with.
         good = shading.valid & np.isfinite(between.points).all(axis=1)
         #: Cells of the mesh between whose points there is light to compare.
         self.measured: Bools = np.asarray(good[parents].all(axis=1))
@@ -277,8 +280,11 @@ class _Refinement:
         codes, share, wrong = self._worst_edges(fresh)
         inside = self._worst_inside(fresh)
         bad = inside > KEPT * self.error
+        # Only once all chosen places are right random ones are looked at: they find what is
+        # between.
         if not len(codes) and not bad.any():
             cell, miss = self._at_random()
+            # The worst place of each part comes first.
             order = np.lexsort((-miss, cell))
             fresh, first = np.unique(cell[order], return_index=True)
             inside = miss[order][first]
@@ -287,19 +293,23 @@ class _Refinement:
         room = max(self.most - len(self.between.points), 0)
         if len(codes) > room:
             self.enough = False
+            # The largest errors have what is left of the budget; numbers of edges must stay sorted.
             worst = np.sort(np.argsort(-wrong, kind="stable")[:room])
             codes, share = codes[worst], share[worst]
         if not len(codes):
             return codes
+        # Errors at random places were those of the parts before.
         self.checked = None
         made = self.cells.split(codes, share)
         added = self.cells.steps[-1]
         self.light = np.concatenate([self.light, self.between.light(added)])
         self.between.extend(added)
+        # With the budget spent no part is split again: there is nothing to measure them for.
         return made if self.enough else made[:0]
 
     def left(self) -> Left:
         """Return what is left."""
+        # Where the last round split nothing, its random places tell what is left.
         wrong = self._at_random()[1] if self.checked is None else self.checked
         share = float(np.mean(wrong > self.error)) if len(wrong) else 0.0
         return Left(float(wrong.max(initial=0)), share, self.enough)
@@ -318,6 +328,7 @@ class _Refinement:
         cell, side = np.divmod(first, codes.shape[1])
         cell, back = fresh[cell], reverse.ravel()[first]
         rank, after = np.arange(len(edges)), (side + 1) % size
+        # Weights of three corners for a place on an edge: the third corner has none.
         ends = np.zeros((len(edges), 2, size))
         ends[rank, 0, side] = 1
         ends[rank, 1, after] = 1
@@ -330,7 +341,9 @@ class _Refinement:
             miss = self._miss(cell, weights)
             better = miss > worst
             best, worst = np.where(better, t, best), np.where(better, miss, worst)
+        # Off the ends, or the parts would be slivers.
         best = np.clip(best, NEAREST, 1 - NEAREST)
+        # Shares count from the end of the smaller number, whichever way this part has the edge.
         best = np.where(back, 1 - best, best)
         chosen = (worst > KEPT * self.error) & self._long(cell, side)
         return edges[chosen], best[chosen], worst[chosen]
@@ -343,6 +356,8 @@ class _Refinement:
         a, b, c = (self.between.points[self.cells.corners[cells, i]] for i in range(3))
         u, v, w = b - a, c - a, c - b
         uu, vv, ww, uv = (np.einsum("ij,ij->i", x, y) for x, y in ((u, u), (v, v), (w, w), (u, v)))
+        # Square of the height over the longest side: Lagrange's identity gives that of twice the
+        # area.
         height = (uu * vv - uv * uv) / np.maximum(np.maximum(uu, vv), ww)
         return np.asarray(good & (height > self.shortest * self.shortest))
 
@@ -370,6 +385,8 @@ class _Refinement:
     ) -> tuple[Indices, Array, Array]:
         """Add the edges of parts that are wrong within and have no edge that is."""
         own, _ = self.cells.edges(cells)
+        # Where one of its edges is split anyway, a part is not cut further before it is measured
+        # anew.
         free = ~np.isin(own, codes).any(axis=1)
         free &= self._seen(cells)
         cells, own, inside = cells[free], own[free], inside[free]
@@ -384,6 +401,7 @@ class _Refinement:
             np.concatenate([codes, added]),
             np.concatenate([share, np.full(len(added), 0.5)]),
         )
+        # Edges must be sorted by number for the split.
         order = np.argsort(codes)
         return codes[order], share[order], np.concatenate([wrong, most])[order]
 

@@ -59,16 +59,21 @@ class Series:
             path, reason = _check.path("series", source), ""
             try:
                 source = reader_of(path)
+            # A file that is missing gets the same message as one without a reader, with its reason
+            # added.
             except OSError as error:
                 source, reason = None, f" ({error})"
             if source is None:
                 expected, got = "the path of a file that PyVista reads", f"'{path}'{reason}"
                 raise ValueError(_check.message("series", expected, got))
+        # By its method, not its class: the wrappers of VTK's readers below are no readers of
+        # PyVista.
         if hasattr(source, "read"):
             if times is not None:
                 remedy = "leave times= out"
                 raise ValueError(_check.message("times", "the times of the reader", "both", remedy))
             self._reader, times = source, times_of(source)
+        # A MultiBlock is a sequence, too: its blocks are then the steps.
         elif isinstance(source, Sequence):
             self._meshes = source
             times = _own_times(source) if times is None else times
@@ -82,10 +87,12 @@ class Series:
             raise ValueError(_check.message("times", expected, f"shape {self.times.shape}"))
         if len(self.times) < 2:
             raise ValueError(_check.message("series", "two steps or more", str(len(self.times))))
+        # A difference with NaN is not above 0, so NaN counts as a fall, too.
         falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~np.isfinite(self.times[1:]))
         if len(falls):
             got = f"{self.times[falls[0]]:g} before {self.times[falls[0] + 1]:g}"
             raise ValueError(_check.message("times", "finite times that rise", got))
+        # The first mesh stays in memory: the points of all others are compared with its points.
         self._first: pv.DataSet | None = None
 
     def mesh(self, step: int) -> pv.DataSet:
@@ -100,6 +107,7 @@ class Series:
             mesh = self._meshes[step]
         else:
             mesh = at(self._reader, float(self.times[step]))
+        # Readers of .pvd wrap a single mesh in blocks, too; joining would make another type of it.
         if isinstance(mesh, pv.MultiBlock):
             mesh = mesh[0] if len(mesh) == 1 else blocks.joined(mesh)
         name = self.name(step)
@@ -108,6 +116,8 @@ class Series:
         if self._first is None:
             self._first = mesh if step == 0 else self.mesh(0)
         first = self._first
+        # Exactly equal: particles are carried in the cells of the first mesh by the vectors of all
+        # steps.
         same = mesh.n_points == first.n_points and mesh.n_cells == first.n_cells
         if not same or not np.array_equal(mesh.points, first.points):
             expected = f"the {first.n_points} points of {self.name(0)}"
@@ -130,6 +140,8 @@ class Series:
             expected = f"the point array {array!r} ({there})"
             raise ValueError(_check.message(name, expected, "none of that name"))
         rows = vectors_of(mesh, name, array, 3)
+        # NaN at one point would reach all cells around it by interpolation; 0 brings particles to
+        # rest.
         return np.where(np.isfinite(rows), rows, 0.0).astype(np.float64)
 
     def name(self, step: int) -> str:
@@ -183,8 +195,11 @@ def chosen(times: Sequence[float], time: object) -> int:
     try:
         number = float(time)  # type: ignore[arg-type]
     except (TypeError, ValueError):
+        # Words are near no time and are no index, so that the error at the end names them.
         number = np.nan
     off = np.abs(np.asarray(times, dtype=float) - number)
+    # A time that was written as text is rounded. Times come before indices: of steps at 0, 0.5 and
+    # 1 the number 1 is the last, not the second.
     if count and np.nanmin(off, initial=np.inf) <= SAME * np.max(np.abs(times)):
         return int(np.nanargmin(off))
     if number == np.floor(number) and -count <= number < count:
@@ -216,6 +231,7 @@ def marked(mesh: Foreign, times: Sequence[float], index: int) -> Foreign:
     times : sequence of float
     index : int
     """
+    # As field data the times stay with the mesh in filters and files, where its reader is gone.
     mesh.field_data[TIME] = [float(times[index])]
     mesh.field_data[STEPS] = [float(time) for time in times]
     return mesh
@@ -254,6 +270,8 @@ def reader_of(path: Path) -> Foreign:
     ----------
     path : pathlib.Path
     """
+    # A .foam file is empty and marks the folder of a case. A case that ran in parallel has its mesh
+    # in processor0, processor1 and so on, until its parts are put together.
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
@@ -297,8 +315,10 @@ def times_of(reader: Foreign) -> list[float]:
     inner: Foreign = getattr(reader, "reader", None)
     if not hasattr(inner, "GetOutputInformation"):
         return []
+    # VTK's pipeline tells the times in a pass of its own, before any data are read.
     inner.UpdateInformation()
     times = inner.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    # VTK has no such key where a file has no times.
     return [float(time) for time in times or ()]
 
 
@@ -315,6 +335,7 @@ def at(reader: Foreign, time: float) -> Foreign:
     if hasattr(reader, "set_active_time_value"):
         reader.set_active_time_value(time)
     else:
+        # The request stays in the pipeline, so that the read below gives this step.
         reader.reader.UpdateTimeStep(time)
     return reader.read()
 
@@ -336,6 +357,7 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     reader = reader_of(path)
     times = times_of(reader)
     if reader is None or not times:
+        # Of a single mesh the first step and the last one are the mesh itself.
         if time not in (None, "first", "last"):
             raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
         return None

@@ -79,8 +79,10 @@ def _netcdf(file: BinaryIO) -> str:
     """Map each variable of a netCDF 3 file; the library of netCDF takes what is missing for 0."""
     head = file.read(64)
     if head.startswith(_HDF):
+        # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
         return _size(file, end) if end else "its header is not whole"
+    # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
     if not head.startswith(_CLASSIC):
@@ -102,6 +104,7 @@ def _stl(file: BinaryIO) -> str:
     head = file.read(_STL_HEAD)
     if len(head) < _STL_HEAD:
         return ""  # VTK's reader says so
+    # Binary files may begin with this word, too, but a text has no bytes of 0.
     if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
         return "" if b"endsolid" in _last(file).lower() else "its end is missing"
     return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
@@ -114,6 +117,7 @@ _SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2,
 
 def _ply(file: BinaryIO) -> str:
     """Compare the lines or the bytes after the header with its counts."""
+    # The data begin right after the line break; white space there may already be numbers.
     whole = re.match(rb"ply\s.*?^end_header\r?\n", file.read(_HEAD), re.DOTALL | re.MULTILINE)
     file.seek(0)
     if whole is None:
@@ -145,14 +149,17 @@ def _stated_bytes(
     """Return the bytes of binary elements, or a number beyond the data where these end earlier."""
     at = 0
     for count, properties in elements:
+        # Rows without a list are all of one length.
         if all(len(sizes) == 1 for sizes in properties):
             at += count * sum(size for (size,) in properties)
             continue
+        # A list has its own count in each row, so rows are followed one by one.
         for _ in range(count):
             for size, *each in properties:
                 if each:
                     at += each[0] * int.from_bytes(data[at : at + size], order)
                 at += size
+            # A damaged count may be in the billions: what is not there is not followed.
             if at > len(data):
                 return at
     return at
@@ -180,6 +187,7 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
     if path.suffix.lower() != ".vtk":
         return ""
     with path.open("rb") as file:
+        # The third line says whether numbers are text; binary files are not looked at.
         if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
             return ""
         # Lines of keywords begin with a letter, as does "nan", which is a number.
@@ -210,5 +218,6 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         sizes = [
             len(connectivity(cells)[0]) + cells.GetNumberOfCells() for cells in cell_arrays(mesh)
         ]
+        # An unstructured grid has a type for each cell, too.
         expected += sum(sizes) + (mesh.n_cells if isinstance(mesh, pv.UnstructuredGrid) else 0)
     return f"{found} of {expected} numbers are there" if found < expected else ""

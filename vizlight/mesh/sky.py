@@ -121,6 +121,7 @@ def skies(
         if field is None:
             shapes[number] = mesh
             continue
+        # The sky of a field is the half space above it: horizons know no other.
         if up is not None and not (up[2] > 0 and up[0] == up[1] == 0):
             remedy = "leave it out, or pass the surface of the grid"
             raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
@@ -165,6 +166,7 @@ def _of_field(
     opened = None
     if openness:
         other = fields.sky(field.x, field.y, field.z, error=error, openness=True, progress=report)
+        # A hole has no horizon: its openness is 0.
         opened = np.nan_to_num(field.to_points(other.share))
     share = field.to_points(made.share)
     valid: Bools = np.isfinite(share)
@@ -200,12 +202,14 @@ def _by_rays(
     report: Callable[[int], None],
 ) -> list[Sky]:
     """Return the skies of meshes that hide one another's sky."""
+    # Only meshes of lines alone become tubes: lines beside faces hide nothing.
     lines = [mesh for mesh in meshes if polylines.has_lines_only(mesh)]
     if diameter is not None and not lines:
         got = "a mesh without lines"
         raise ValueError(_check.message("diameter", "a mesh of lines", got, "leave it out"))
     medium: media.Medium | None = None
     thick = 0.0
+    # A medium also gives the default diameter, which rays need for their tubes.
     if lines and (diameter is None or error >= VOXELS):
         medium, thick = bundles.medium_of(bundles.joined(lines), Bundle(diameter=diameter))
     thick = thick if diameter is None else diameter
@@ -214,6 +218,7 @@ def _by_rays(
     among = medium is not None and error >= VOXELS and len(lines) == len(meshes) and up is None
     if among and medium is not None and medium.middles.shape[1] > MANY:
         return [_in_medium(mesh, medium, thick) for mesh in meshes]
+    # Ground has a sky above it alone, also where it is a bent grid and no field.
     above = [ABOVE if up is None and is_grid(mesh) else up for mesh in meshes]
     shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
@@ -261,6 +266,7 @@ def _by_rays(
 def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
     """Return the triangles of all shapes."""
     counts = np.cumsum([0, *(len(shape.points) for shape in shapes)])
+    # Points of all shapes are numbered one after the other.
     faces = [shape.triangles + at for shape, at in zip(shapes, counts[:-1], strict=True)]
     points = np.concatenate([shape.points for shape in shapes])
     return sky_rays.Occluders(points, np.concatenate(faces))
@@ -273,6 +279,7 @@ def _between(
     places, _ = between.random_places(
         shape.points, shape.triangles, SAMPLES, np.random.default_rng(0)
     )
+    # Where a corner has no sky, nothing is interpolated.
     good = seen.valid[places.corners].all(axis=1)
     places = between.Places(places.corners[good], places.weights[good])
     at = between.interpolated(shape.points, places)
@@ -367,10 +374,13 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
     marks, numbers = mesh.cell_data.get(GHOSTS), None
     if marks is not None:
         hidden = (np.asarray(marks) & HIDDEN) > 0
+        # VTK's filter leaves out faces of cells that another piece has, which hide the sky all the
+        # same.
         mesh = mesh.copy(deep=False)
         del mesh.cell_data[GHOSTS]
         if hidden.any():
             mesh = mesh.extract_cells(np.asarray(~hidden, dtype=bool))
+            # Extraction has numbered the points anew.
             numbers = np.asarray(mesh.point_data["vtkOriginalPointIds"], np.intp)
     if isinstance(mesh, pv.PolyData):
         return mesh, np.arange(mesh.n_points)

@@ -98,6 +98,7 @@ class Occluders:
 
     def __init__(self, points: Array, triangles: Indices) -> None:
         used = points[triangles]
+        # Triangles with a corner that is not finite, or as far away, hide nothing.
         used = used[(np.abs(used) <= _check.FARTHEST).all(axis=(1, 2))]
         low = used.min(axis=(0, 1), initial=np.inf) if len(used) else np.zeros(3)
         high = used.max(axis=(0, 1), initial=-np.inf) if len(used) else np.zeros(3)
@@ -134,6 +135,7 @@ class Occluders:
         """
         ways = np.asarray(places.ways, np.float64)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            # By the largest component first, so that no square overflows or vanishes.
             ways = ways / np.abs(ways).max(axis=1, initial=0, keepdims=True)
             ways /= np.linalg.norm(ways, axis=1, keepdims=True)
         points = (np.asarray(places.points, np.float64) - self.middle) / self.size
@@ -153,6 +155,7 @@ class Occluders:
             valid[dark] = ~self._buried(points[dark], ways[dark])
             return Seen(share, valid, missed, work.rays)
         near, out = places.beside
+        # These have no places beside them, so that they look once more only.
         again = self.seen(Places(near[dark], out[dark]), error=error, up=up)
         share[dark], valid[dark] = again.share, again.valid
         return Seen(share, valid, missed, work.rays + again.rays)
@@ -163,6 +166,7 @@ class Occluders:
         behind = np.zeros(len(points))
         for part, start, way in _starts(points, normals, net, 0.0):
             hit = self.tracer.first(start, way, FAR)
+            # A ray that hits a triangle along its outward normal comes from inside.
             inner = np.einsum("ij,ij->i", way, self.normals[hit]) > 0
             behind[part] = np.reshape((hit >= 0) & inner, (len(net[0]), -1)).mean(axis=0)
         return np.asarray(behind > 1 / 2)
@@ -191,6 +195,7 @@ class _Rays:
             for part, start, way in _starts(self.points[at], self.ways[at], net, self.away):
                 free = self.tracer.free(start, way, FAR)
                 if self.up is not None:
+                    # Below the horizon there is no sky, even where nothing stands.
                     free &= way @ self.up > 0
                 found[own[part]] = free.reshape(count, -1).mean(axis=0)
         return found
@@ -198,6 +203,7 @@ class _Rays:
 
 def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Array, float]:
     """Return the shares of points, and the error that 95 of 100 of them keep to."""
+    # Two halves at first, whose difference tells the error.
     count = added = FEWEST // 2
     going = np.arange(len(work.points))
     one = work.free(going, 0, count)
@@ -217,6 +223,7 @@ def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Ar
             np.bincount(kind, rows, minlength=CLASSES) for rows in (None, square, rule)
         )
         pooled = (found + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
+        # By classes, since a single point may seem right by chance.
         done = (QUANTILE * np.sqrt(pooled) <= error)[kind] | (total >= MOST)
         squares += float(pooled[kind[done]].sum())
         going, one = going[~done], mean[~done]
@@ -232,6 +239,8 @@ def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array
     made = []
     for shift in np.random.default_rng(1).random((shifts, net.shape[1])):
         h = (net + shift) % 1
+        # Even on the disc below the hemisphere and lifted to it, directions are weighted by the
+        # cosine.
         angle, cosine = 2 * np.pi * h[:, 1], np.sqrt(1 - h[:, 0])
         x, y = np.sqrt(h[:, 0]) * np.cos(angle), np.sqrt(h[:, 0]) * np.sin(angle)
         ways, outward = np.stack([x, y, cosine], axis=1), np.tile([0.0, 0.0, 1.0], (count, 1))
@@ -239,6 +248,7 @@ def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array
             # The normal goes round the line, which is the third axis.
             around = 2 * np.pi * h[:, 2]
             c, s = np.cos(around), np.sin(around)
+            # The hemisphere stands on the side of the tube, its x along the line.
             ways = np.stack([cosine * c - y * s, cosine * s + y * c, x], axis=1)
             outward = np.stack([c, s, np.zeros(count)], axis=1)
         made.append((ways.astype(np.float32), outward.astype(np.float32)))
@@ -252,6 +262,7 @@ def _starts(
     toward, outward = net
     count = len(toward)
     for part in _pool.blocks(len(points), max(1, AT_ONCE // count)):
+        # All frames side by side: one product of matrices gives the rays of all points.
         across = _frames(ways[part]).transpose(1, 0, 2).reshape(3, -1)
         way = (toward @ across).reshape(-1, 3)
         start = ((away + OFFSET) * outward @ across).reshape(count, -1, 3)
@@ -333,11 +344,13 @@ def tubes(points: Array, ids: Indices, offsets: Indices, radius: float) -> tuple
     """
     place = points[ids].astype(np.float64)
     tangents = polyline_tangents(place, offsets=offsets)
+    # Where there is no tangent no prism is made, and any frame will do.
     frame = _frames(np.where(np.any(tangents, axis=1, keepdims=True), tangents, [0.0, 0.0, 1.0]))
     turn = 2 * np.pi * np.arange(SIDES) / SIDES
     ring = PRISM * radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     vertices = place[:, np.newaxis] + ring @ frame[:, :2].astype(np.float64)
     first = segment_starts(ids, offsets)
+    # A line has no tangent where it turns back, and so no ring of corners across it.
     good = np.any(tangents[first], axis=1) & np.any(tangents[first + 1], axis=1)
     first = first[good & np.isfinite(place[first] + place[first + 1]).all(axis=1)]
     # The corner of the next ring that is nearest in angle to the first of this one.

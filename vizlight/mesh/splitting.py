@@ -52,6 +52,7 @@ def simplices(mesh: pv.DataSet) -> Indices:
     if origin is None:
         return found.astype(np.intp, copy=False)
     found = origin[found]
+    # Curved cells have points on their surface that are none of the mesh.
     return found[(found >= 0).all(axis=1)]
 
 
@@ -84,6 +85,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
         ):
             ids, offsets = connectivity(get())
             if len(offsets) > 1:
+                # The surface numbers its points anew; cells get the numbers of the mesh again.
                 put(blocks.cell_array(origin[ids], offsets))
         for key, array in surface.cell_data.items():
             found.cell_data[key] = np.asarray(array)
@@ -267,6 +269,7 @@ def rebuilt(
         cells = np.arange(others)
     else:
         out.SetLines(mesh.GetLines())
+        # Parts of one cell stand together, in the order of the cells, as their arrays do.
         order = np.argsort(parts.parent, kind="stable")
         triangles = np.asarray(parts.corners[order], dtype=int)
         out.SetPolys(pv.CellArray.from_regular_cells(triangles))
@@ -302,6 +305,7 @@ def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
             break
         fresh = cells.split(chosen, np.full(len(chosen), 0.5))
         step = cells.steps[-1]
+        # All shares are 1/2, so the mean of both ends is the new point.
         places = np.concatenate([places, places[step.corners].mean(axis=1)])
     return rebuilt(mesh, cells, origin, {})
 
@@ -348,6 +352,7 @@ def _interpolated(rows: Raw, shares: Sparse, *, places: bool = False) -> Raw:
         found = np.asarray(shares @ values)
         if not places and are_unit(values):
             found = kernels.unit_rows(found)
+    # Colours are whole numbers: a type of integers would cut their fractions off.
     found = np.rint(found) if colour else found
     return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
 
@@ -363,10 +368,12 @@ def kept_tangents(mesh: pv.DataSet) -> Array | None:
 
 def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:
     """Return the triangles of polygons and strips, and the cell that each is taken from."""
+    # Without vertices and lines, which VTK would pass on among the triangles.
     bare = pv.PolyData()
     bare.SetPoints(mesh.GetPoints())
     bare.SetPolys(mesh.GetPolys())
     bare.SetStrips(mesh.GetStrips())
+    # Cells are numbered by VTK's kinds: vertices and lines first.
     before = mesh.n_verts + mesh.n_lines
     bare.cell_data[CELLS] = np.arange(before, before + bare.n_cells)
     if not bare.is_all_triangles:

@@ -49,6 +49,8 @@ def principal_directions(rows: Array) -> Array:
     """Return first eigenvectors of tensors of 6 or 9 components; zero where none is first."""
     if rows.shape[1] == 9:
         tensors = rows.reshape(-1, 3, 3)
+        # Only of a symmetric tensor the eigenvectors are sure to be real and at right angles: of a
+        # gradient of velocity it is the rate of strain.
         tensors = (tensors + np.swapaxes(tensors, 1, 2)) / 2
     else:
         tensors = rows[:, SYMMETRIC]
@@ -66,21 +68,28 @@ def in_space(
     tracer.SetInputDataObject(mesh)
     tracer.SetSourceData(pv.PolyData(seeds))
     points = vtkDataObject.FIELD_ASSOCIATION_POINTS
+    # By name: the active vectors of the mesh may be others.
     tracer.SetInputArrayToProcess(0, 0, 0, points, TRACED)
     tracer.SetIntegratorTypeToRungeKutta45()
     tracer.SetIntegrationDirectionToBoth()
+    # In VTK a cell is as long as the diagonal of its bounding box.
     tracer.SetIntegrationStepUnit(vtkStreamTracer.CELL_LENGTH_UNIT)
     tracer.SetInitialIntegrationStep(how.step)
+    # The method chooses its steps by an estimate of the error, within these bounds.
     tracer.SetMaximumIntegrationStep(how.step)
     tracer.SetMinimumIntegrationStep(min(0.01, how.step))
     tracer.SetMaximumNumberOfSteps(how.max_steps)
+    # Always in the unit of the points, whatever unit the steps have.
     tracer.SetMaximumPropagation(how.max_length)
+    # The vectors have a median length of 1 and the mesh has size 1: speed and error are relative.
     tracer.SetTerminalSpeed(1e-6)
     tracer.SetMaximumError(1e-6)
+    # Vorticity serves ribbons; it would cost a derivative at each point and be one more array.
     tracer.SetComputeVorticity(False)
     tracer.AddObserver(vtkCommand.ProgressEvent, lambda *_: report(int(100 * tracer.GetProgress())))
     tracer.Update()
     lines: Foreign = pv.wrap(tracer.GetOutput())
+    # Cut before they are joined: each half still begins at its seed, on whose side it is kept.
     return polylines.joined_at_seeds(polylines.before_turning_back(lines))
 
 
@@ -110,6 +119,7 @@ class CellTracer:
         rows: Array = np.asarray(mesh.point_data[TRACED])
         self.sheets = rows.shape[1] // 3
         if self.sheets == 2:
+            # On the two sheets over the mesh a cross field is a line field (QuadCover).
             self.cells, rows = tracing.double_cover(points, cells, rows.reshape(-1, 2, 3))
         else:
             self.cells = Simplices(points, cells)
@@ -135,6 +145,7 @@ class CellTracer:
             cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]
         inside = np.repeat(np.flatnonzero(cell >= 0), self.sheets)
         sheet = np.arange(len(inside)) % self.sheets
+        # Cell i + M of the double cover lies on cell i, on the other sheet.
         on = cell[inside] + sheet * (len(self.cells.cells) // self.sheets)
         return self.cells.locate(on, points[inside])
 
@@ -142,6 +153,7 @@ class CellTracer:
         """Return random places, uniform in area or volume."""
         if self.cells.k == 3:
             return self.cells.random(count, np.random.default_rng(seed))
+        # On a surface one place in each of equal areas along a Hilbert curve, as for roots of fur.
         face, weights = fur.seeds(self.cells.points, self.cells.cells, count, seed=seed)
         return Places(face, weights.astype(np.float64))
 
@@ -154,6 +166,7 @@ class CellTracer:
         """
         curves, tried = None, 0
         while True:
+            # Curves grow at both ends, and each end is counted when it stops.
             total = max(2 * len(seeds.cell), 1)
             new = trace(
                 self.flow,
@@ -166,8 +179,11 @@ class CellTracer:
             curves = new if curves is None else curves.joined(new)
             missing = 0 if wanted is None else wanted - (len(curves.offsets) - 1)
             tried += 1
+            # In a field that is at rest nearly everywhere the number would never be reached.
             if missing <= 0 or tried == 10:
                 return curves if wanted is None else curves.first(wanted)
+            # Twice as many as are missing, since some will fail, and by another seed, as the last
+            # failed.
             seeds = self.random(2 * missing, how.seed + tried)
 
     def even(
@@ -211,6 +227,7 @@ class CellTracer:
         for name, array in self.mesh.point_data.items():
             if isinstance(unsigned, tuple) and name in unsigned:
                 continue
+            # Tensors have no sign to be chosen: they are interpolated like any other array.
             if name == unsigned and np.shape(array)[1:] == (3,):
                 rows = self._along(np.asarray(array), curves)
             else:
@@ -225,6 +242,7 @@ class CellTracer:
         """Return vectors at the places of curves; in each cell they are turned along the curve."""
         corners = np.asarray(vectors, dtype=np.float64)[self.cells.cells[curves.places.cell]]
         against = np.einsum("nij,nj->ni", corners, curves.along) < 0
+        # A vector against the curve is turned over by the sign of its weight.
         weights = np.where(against, -curves.places.weights, curves.places.weights)
         return np.asarray(np.einsum("ni,nij->nj", weights, corners))
 
@@ -232,8 +250,11 @@ class CellTracer:
 def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
     """Refuse a spacing that gives more curves than memory holds, or is beyond the mesh."""
     k = tracer.cells.k
+    # All curves are extent / spacing^(k - 1) long, with a number of samples on each spacing of
+    # that.
     least = (tracer.cells.extent * even.SAMPLES / MOST_SAMPLES) ** (1 / k)
     if not least <= spacing <= MOST_SPACING:
+        # The mesh has size 1 here; messages are in the unit of the user.
         ends = f"from {size * least:.3g} to {size * MOST_SPACING:.3g}"
         expected = f"a number {ends} for a mesh of this size"
         raise ValueError(_check.message("spacing", expected, f"{size * spacing:.3g}"))
@@ -249,7 +270,10 @@ def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:
     array[~np.all(np.isfinite(array), axis=1)] = 0
     speed = kernels.length(np.ascontiguousarray(array.T))
     moving = speed[(speed > 0) & np.isfinite(speed)]
+    # The median, since a few huge vectors, as beside a singularity, must not bring all others to
+    # rest.
     scale = float(np.median(moving)) if len(moving) else 1.0
+    # Within these bounds squares of outliers do not overflow.
     array = np.clip(array / scale, -1e30, 1e30)
     if vectors.shape[1] == 6:
         array[speed <= AT_REST * scale] = 0
