@@ -133,6 +133,7 @@ def lacking():
 
 BAD = {
     "falling times": (lambda: steps(gust, TIMES), {"times": [0, 2, 1]}, "times: .*rise.*2 before"),
+    "endless times": (lambda: steps(gust, TIMES), {"times": [-np.inf, 0, 1]}, "times: .*finite"),
     "too few times": (lambda: steps(gust, TIMES), {"times": [0, 1]}, "times: expected 3 times"),
     "no times": (lambda: steps(gust, TIMES), {"times": None}, "times: .*TimeValue"),
     "one step": (lambda: steps(gust, [0]), {"times": [0]}, "series: expected two steps"),

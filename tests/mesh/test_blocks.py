@@ -94,3 +94,13 @@ def test_the_remedy_for_a_partitioned_dataset_helps():
     with pytest.raises(TypeError, match=r"pyvista\.MultiBlock\(list\(mesh\)\)"):
         vizlight.illuminate(parts)
     assert vizlight.illuminate(pv.MultiBlock(list(parts))).n_blocks == 2
+
+
+@pytest.mark.parametrize("scale", [2.0, (3.0, 1.0, 0.5)])
+def test_images_that_are_turned_move_like_their_points(scale):
+    turned = pv.ImageData(dimensions=(3, 4, 2), origin=(1, 2, 3))
+    turned.direction_matrix = pv.Transform().rotate_z(30).matrix[:3, :3]
+    moved = blocks.moved(turned, np.array([5.0, 6, 7]), np.array(scale))
+    np.testing.assert_allclose(
+        moved.points, np.array(scale) * (turned.points + np.array([5, 6, 7]))
+    )

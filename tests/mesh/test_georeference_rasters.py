@@ -76,6 +76,9 @@ def test_bands_and_colours_have_their_names(tmp_path):
     mesh = vizlight.read(tmp_path / "a.tif")
     assert mesh.point_data.keys() == ["depth", "band_2"]
     assert mesh["depth"].max() == HEIGHTS.max() / 2 + 10
+    with rasterio.open(tmp_path / "a.tif", "r+") as file:
+        file.set_band_description(2, "depth")
+    assert vizlight.read(tmp_path / "a.tif").point_data.keys() == ["depth", "depth_2"]
     colors = np.stack([HEIGHTS % 250, HEIGHTS % 200, HEIGHTS % 100]).astype(np.uint8)
     picture = vizlight.read(written(tmp_path / "b.tif", colors, photometric="rgb"))
     assert picture.point_data.keys() == ["rgb"]

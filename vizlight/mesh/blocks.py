@@ -173,8 +173,13 @@ def near_origin(mesh: pv.DataSet) -> Vector:
 
 def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT:
     """Return a mesh with each point p at ``scale (p + offset)``, in float64."""
-    out = mesh.copy(deep=False)
+    out: Foreign = mesh.copy(deep=False)
     scale = np.broadcast_to(scale, 3)
+    turned = isinstance(out, pv.ImageData) and not np.array_equal(out.direction_matrix, np.eye(3))
+    if turned and np.ptp(scale):
+        # The axes of a turned image that is stretched along one of space are at right angles no
+        # more.
+        out = out.cast_to_structured_grid()
     # Images and rectilinear grids stay such, since they have axes in place of points.
     if isinstance(out, pv.ImageData):
         out.origin = tuple(scale * (np.array(out.origin) + offset))
@@ -189,7 +194,7 @@ def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT
         points[~np.isfinite(points)] = np.nan
         # Assigning to out.points would move the points that the shallow copy shares with the mesh.
         out.SetPoints(pv.vtk_points(points))
-    return out
+    return cast("DataSetT", out)
 
 
 def polydata(points: Array, cells: Indices) -> pv.PolyData:

@@ -204,7 +204,8 @@ def _bands(file: Foreign) -> dict[str, Raw]:
             # Complex numbers, as of radar, are no heights.
             continue
         name = file.descriptions[i] or ("elevation" if count == 1 else f"band_{i + 1}")
-        found[name] = _band(file, i)
+        # Two bands may have one description.
+        found[f"{name}_{i + 1}" if name in found else name] = _band(file, i)
     if not found:
         raise ValueError("no band of numbers")
     kinds = [kind.name for kind in file.colorinterp[:3]]

@@ -309,7 +309,7 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     pyvista.DataSet
         The mesh itself, or a copy that shares its arrays and has the means too.
     """
-    wanted = {name for name in names if isinstance(name, str) and is_of_cells(mesh, name)}
+    wanted = [name for name in names if isinstance(name, str) and is_of_cells(mesh, name)]
     if not wanted:
         return mesh
     out = mesh.copy(deep=False)

@@ -88,7 +88,8 @@ class Series:
         if len(self.times) < 2:
             raise ValueError(_check.message("series", "two steps or more", str(len(self.times))))
         # A difference with NaN is not above 0, so NaN counts as a fall, too.
-        falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~np.isfinite(self.times[1:]))
+        known = np.isfinite(self.times)
+        falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~known[1:] | ~known[:-1])
         if len(falls):
             got = f"{self.times[falls[0]]:g} before {self.times[falls[0] + 1]:g}"
             raise ValueError(_check.message("times", "finite times that rise", got))

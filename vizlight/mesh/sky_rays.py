@@ -3,7 +3,7 @@
 A point of a surface sees ``1/pi * integral of max(n . w, 0)`` over the directions w in which no
 triangle stands. A point of a line sees the mean of that over the circumference of its tube.
 Directions are nets that add a constant step to each point (Roberts' R2), which 64 shifts tell apart
-from point to point, turned to the normal. Their number doubles only for points like which others
+from point to point, turned to the normal. Their number grows only for points like which others
 are not right enough yet.
 """
 
