@@ -198,9 +198,8 @@ def light_mesh(
     named = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
     lighting.refuse_overwriting(
-        named, options.name, components=options.components, colored=scene.colored,
-        bundle=bool(options.bundle),
-    )  # fmt: skip
+        named, options.name, scene, components=options.components, bundle=bool(options.bundle)
+    )
     # Points are split first: normals, sky and light then belong to the points of the result.
     taken, known = [], []
     for block, path in named:
@@ -243,10 +242,9 @@ def light_mesh(
     inputs = [part.inputs for part in parts]
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
-        dimmings = lighting.dimmings(
+        inputs, dimmings = lighting.dimmed(
             taken, inputs, scene, options.bundle, options.name, show=progress_bar
         )
-        inputs = lighting.dimmed(inputs, dimmings)
     shadings, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
@@ -260,28 +258,13 @@ def light_mesh(
     inputs.clear()
     parts.clear()
     groups.clear()
-    out, lit = mesh, taken
-    if not (inplace or error):
-        # Split meshes are new.
-        lit = [
-            own.copy() if own is block else own
-            for own, (block, _) in zip(taken, named, strict=True)
-        ]
-    elif not error:
-        lit = [block for block, _ in named]
-        for block, own in zip(lit, taken, strict=True):
-            if own is not block:
-                block.ShallowCopy(own)
-    if error or not inplace:
-        out = blocks.like(mesh, iter(lit))
+    out, lit = blocks.placed(mesh, taken, inplace=inplace)
     for block, kept in zip(lit, sides, strict=True):
         if kept is not None:
             normals.keep(block, kept)
         refining.forget(block, options.name)
     inside = sum(int(sided.inside) for sided in sides if sided is not None)
-    lighting.finish(
-        lit, results, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
-    )
+    lighting.finish(lit, results, "illuminate", fitted, options, inside=inside, dimmings=dimmings)
     _warn_of_normals(lit, sides, options)
     for block, left in zip(lit, rest, strict=False):
         block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
@@ -328,22 +311,12 @@ def _warn_of_normals(
     meshes: Sequence[pv.DataSet], sides: Sequence[Sided | None], options: LightOptions
 ) -> None:
     """Warn if normals were averaged across many sharp edges, or come from rounded places."""
-    shares = [0.0 if sided is None else float(sided.sharp) for sided in sides]
+    known = [(mesh, own) for mesh, own in zip(meshes, sides, strict=True) if own is not None]
     if options.feature_angle is None:
         splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
-        normals.warn_of_edges(max(shares, default=0.0), splits)
-    computed = [
-        mesh for mesh, own in zip(meshes, sides, strict=True) if own is not None and own.computed
-    ]
-    normals.warn_of_rounding(computed)
-    given = [
-        mesh
-        for mesh, own in zip(meshes, sides, strict=True)
-        if own is not None and not own.computed and options.positions is None
-    ]
-    normals.warn_of_contradiction(given, options.normals)
-
-
-def separate_copy(mesh: MeshT) -> MeshT:
-    """Return a copy of a mesh that shares no memory with it."""
-    return blocks.like(mesh, (block.copy() for block in blocks.all_blocks(mesh)))
+        sharp = max((float(own.sharp) for _, own in known), default=0.0)
+        normals.warn_of_edges(sharp, splits)
+    normals.warn_of_rounding([mesh for mesh, own in known if own.computed])
+    if options.positions is None:
+        given = [mesh for mesh, own in known if not own.computed]
+        normals.warn_of_contradiction(given, options.normals)

@@ -13,7 +13,6 @@ from vizlight.shading.options import LightOptions
 from vizlight.shading.results import plain
 
 if TYPE_CHECKING:
-    import pyvista as pv
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
@@ -35,12 +34,9 @@ class RefineOptions(LightOptions):
     max_points: int | None = None
 
     def __post_init__(self) -> None:
-        error = _check.number("error", self.error, low=FINEST)
-        _check.set_fields(self, error=error)
+        _check.fields(self, _check.number, "error", low=FINEST)
         super().__post_init__()
-        if self.max_points is not None:
-            most = _check.integer("max_points", self.max_points, low=1)
-            _check.set_fields(self, max_points=most)
+        _check.fields(self, _check.integer, "max_points", optional=True, low=1)
 
 
 @named
@@ -149,8 +145,12 @@ def refine(
     (True, True)
     """
     asked = RefineOptions.of(locals())
+    faces = [
+        blocks.surface(block, "mesh") if block.GetMaxSpatialDimension() == 3 else block
+        for block, _ in blocks.check(mesh)
+    ]
     lit = light_mesh(
-        blocks.like(mesh, (_faces(block) for block, _ in blocks.check(mesh))),
+        blocks.like(mesh, iter(faces)),
         scene,
         asked,
         progress_bar=progress_bar,
@@ -160,8 +160,3 @@ def refine(
     for block in blocks.all_blocks(lit):
         records.amend(block, asked.name, "refine", plain(asked))
     return lit
-
-
-def _faces(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a mesh of faces or lines, for a volume its outer surface."""
-    return blocks.surface(mesh, "mesh") if mesh.GetMaxSpatialDimension() == 3 else mesh
