@@ -236,7 +236,7 @@ def test_a_first_call_takes_at_most_twice_the_time_of_numpy(own, monkeypatch, tm
     """Without a cache, a kernel is compiled only if the call wins half of that back."""
     pytest.importorskip("numba")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
+    monkeypatch.setattr(_compiled.Kernel, "_dispatcher", lambda self: None)
     monkeypatch.setattr(_compiled._Account, "prepared", False)
     chosen = []
     with _compiled.setting(""):

@@ -17,6 +17,7 @@ TIERS = [
         "_check",
         "_cache",
         "_compiled",
+        "_context",
         "_pool",
         "_progress",
         "_supervise",

@@ -22,12 +22,8 @@ from vizlight import _words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import ParamSpec, TypeVar
 
-    from vizlight._types import Array, Color, Foreign, Indices, Raw, Vector
-
-    P = ParamSpec("P")
-    R = TypeVar("R")
+    from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vector
 
 # pytest leaves the frames of this module out of tracebacks.
 __tracebackhide__ = True
@@ -89,10 +85,20 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
 
 def flags(frozen: Foreign) -> None:
     """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
-    for field in dataclasses.fields(frozen):
-        if field.type == "bool":
-            value = boolean(field.name, getattr(frozen, field.name))
-            set_fields(frozen, **{field.name: value})
+    fields(frozen, boolean, *[one.name for one in dataclasses.fields(frozen) if one.type == "bool"])
+
+
+def fields(
+    frozen: object, check: Function, *names: str, optional: bool = False, **limits: float
+) -> None:
+    """Set fields of a frozen dataclass to what a validator makes of them.
+
+    With ``optional=True`` None stays. ``limits`` are keywords of the validator.
+    """
+    for name in names:
+        value = getattr(frozen, name)
+        if not (optional and value is None):
+            set_fields(frozen, **{name: check(name, value, **limits)})
 
 
 def array_name(name: str, value: object) -> str:
@@ -279,9 +285,7 @@ def text(name: str, value: object, *, expected: str = "text") -> str:
 def path(name: str, value: object) -> Path:
     """Return a path of valid characters that is not empty."""
     expected = "the path of a file"
-    if not isinstance(value, str | os.PathLike):
-        raise TypeError(message(name, expected, describe(value)))
-    given = os.fspath(value)
+    given = os.fspath(value) if isinstance(value, str | os.PathLike) else value
     if not isinstance(given, str):
         raise TypeError(message(name, expected, describe(value)))
     try:
@@ -310,8 +314,8 @@ def function(name: str, value: object, *, optional: bool = False) -> None:
         raise TypeError(message(name, expected, describe(value)))
 
 
-def vector(name: str, value: object, *, direction: bool = False) -> Vector:
-    """Return one finite vector as a tuple of floats.
+def vector(name: str, value: object, *, direction: bool = False, n: int | None = None) -> Vector:
+    """Return one finite vector, of n components if that is given, as a tuple of floats.
 
     With ``direction=True`` the vector must not be zero; it is not normalised.
     """
@@ -324,14 +328,14 @@ def vector(name: str, value: object, *, direction: bool = False) -> Vector:
         raise ValueError(message(name, "finite components", result, remedy))
     if direction and not any(result):
         raise ValueError(message(name, "a direction of non-zero length", result))
+    if n is not None and len(result) != n:
+        raise ValueError(message(name, f"{n} components", len(result)))
     return result
 
 
 def unit(name: str, value: object) -> Array:
     """Return a direction of 3 components, of any length but 0, with length 1."""
-    found = np.array(vector(name, value, direction=True))
-    if found.size != 3:
-        raise ValueError(message(name, "3 components", found.size))
+    found = np.array(vector(name, value, direction=True, n=3))
     # By a power of 2, which rounds nothing: squares of the components might overflow.
     found = np.ldexp(found, -np.frexp(np.abs(found).max())[1])
     return np.asarray(found / np.linalg.norm(found))
@@ -355,7 +359,14 @@ def color(name: str, value: object) -> Color | None:
         except ValueError as error:
             expected = "a colour's name, '#rrggbb' or (r, g, b)"
             raise ValueError(message(name, expected, describe(value))) from error
-    return rgb(name, getattr(value, "float_rgb", value))
+    given = getattr(value, "float_rgb", value)
+    array = floats(name, given)
+    if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
+        remedy = "divide bytes by 255; brighten a light with intensity="
+        expected = "three channels (r, g, b) from 0 to 1"
+        raise ValueError(message(name, expected, describe(given), remedy))
+    r, g, b = (float(x) for x in array)
+    return r, g, b
 
 
 def instance(
@@ -384,17 +395,6 @@ def set_fields(frozen: object, **values: object) -> None:
     """Set validated fields of a frozen dataclass while it is being constructed."""
     for name, value in values.items():
         object.__setattr__(frozen, name, value)
-
-
-def rgb(name: str, value: object) -> Color:
-    """Return a colour as three linear channels from 0 to 1."""
-    array = floats(name, value)
-    if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
-        remedy = "divide bytes by 255; brighten a light with intensity="
-        expected = "three channels (r, g, b) from 0 to 1"
-        raise ValueError(message(name, expected, describe(value), remedy))
-    r, g, b = (float(x) for x in array)
-    return r, g, b
 
 
 def _range(low: float, high: float) -> str:

@@ -28,9 +28,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
 
 from vizlight import _cache, _check
+from vizlight._context import assigned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -82,14 +83,9 @@ def wanted() -> str:
     return value
 
 
-@contextlib.contextmanager
-def setting(value: str) -> Iterator[None]:
+def setting(value: str) -> contextlib.AbstractContextManager[None]:
     """Take a value in place of VIZLIGHT_FAST's while this context is entered."""
-    token = _SETTING.set(value)
-    try:
-        yield
-    finally:
-        _SETTING.reset(token)
+    return assigned(_SETTING, value)
 
 
 def why_not() -> str:
@@ -167,16 +163,21 @@ def _unusable() -> str:
 def _missing() -> str:
     """Return what is wrong with the installation of numba; an empty text if nothing is."""
     remedy = "pip install 'vizlight[fast]'"
-    try:
-        found = version("numba")
-    except PackageNotFoundError:
-        found = ""
+    found = release_of("numba")
     if not found:
         return f"numba is not installed (try: {remedy})"
     release = tuple(int(part) for part in found.split(".")[:2] if part.isdigit())
     if release < OLDEST:
         return f"numba {found} is older than {OLDEST[0]}.{OLDEST[1]} (try: {remedy})"
     return ""
+
+
+def release_of(package: str) -> str:
+    """Return the version of an installed package; an empty text where it is missing."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""
 
 
 class Kernel(Generic[P, R]):
@@ -192,9 +193,6 @@ class Kernel(Generic[P, R]):
         Whether the function becomes part of each function that calls it.
     rounding : set of str
         Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
-    uses : iterable of str
-        Text of sources, beside the function's own file, that the code is made of: the disk cache
-        forgets it when one of them changes.
     apart : bool
         Whether no array that the function writes overlaps another argument. Else a loop that looks
         up a table is not compiled to vector instructions, which takes six times as long.
@@ -208,14 +206,12 @@ class Kernel(Generic[P, R]):
         *,
         inline: bool = False,
         rounding: frozenset[str] = frozenset(),
-        uses: Iterable[str] = (),
         apart: bool = False,
         seconds: float = COMPILE,
     ) -> None:
         self.seconds = seconds
         self.function, self.inline, self.rounding = function, inline, rounding
         self.apart = apart
-        self.uses = tuple(uses)
         self.missed = 0.0
         self._compiled: Callable[P, R] | None = None
         self._proven = False
@@ -249,7 +245,12 @@ class Kernel(Generic[P, R]):
             own = self.start_up()
             if self.missed < own or _Account.missed < preparation() + own:
                 return False
-        return self.ready()
+        try:
+            self._dispatcher()
+        except _UNUSABLE as error:
+            # As numba refuses a release of NumPy that it does not know.
+            _give_up("numba cannot be used", error)
+        return active()
 
     def start_up(self) -> float:
         """Return the seconds to read or to compile the function, as far as this process pays."""
@@ -260,20 +261,6 @@ class Kernel(Generic[P, R]):
             return self.seconds
         name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
         return READ if any(folder.rglob(f"*{name}")) else self.seconds * SHARED
-
-    def ready(self) -> bool:
-        """Import numba and prepare the function; return whether that worked.
-
-        Where it did not, as numba refuses a release of NumPy that it does not know, a warning and
-        :func:`why_not` say so, and nothing is compiled from then on.
-        """
-        if not active():
-            return False
-        try:
-            self._dispatcher()
-        except _UNUSABLE as error:
-            _give_up("numba cannot be used", error)
-        return active()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function.
@@ -366,7 +353,6 @@ class Kernel(Generic[P, R]):
         """Return the texts that make the code: its own file and its helpers' texts."""
         texts = [
             _text(self.function.__code__.co_filename),
-            *self.uses,
             str(sorted(self.rounding)),
             f"{self.apart}",
         ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import contextvars
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -12,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight._context import assigned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
 
     from vizlight._types import Slice
 
@@ -60,14 +61,9 @@ def workers() -> int:
         return os.cpu_count() or 1
 
 
-@contextlib.contextmanager
-def threads(count: int) -> Iterator[None]:
+def threads(count: int) -> AbstractContextManager[None]:
     """Take a number of threads in place of VIZLIGHT_THREADS's while this context is entered."""
-    token = _SETTING.set(str(count))
-    try:
-        yield
-    finally:
-        _SETTING.reset(token)
+    return assigned(_SETTING, str(count))
 
 
 def run(work: Callable[[Slice], int], parts: list[Slice]) -> Iterator[int]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from importlib.metadata import PackageNotFoundError, version
 from typing import get_args
 
 from vizlight import _compiled, data
@@ -48,23 +47,15 @@ def findings() -> list[tuple[str, str]]:
     """
     rows = [("python", f"{platform.python_version()}, {platform.platform()}")]
     rows += [
-        (package, _version(package) or f"missing (try: pip install {package})")
+        (package, _compiled.release_of(package) or f"missing (try: pip install {package})")
         for package in PACKAGES
     ]
     for feature, package, extra in OPTIONAL:
         remedy = f"missing; needed for {feature} (try: pip install 'vizlight[{extra}]')"
-        rows.append((f"{package} [{extra}]", _version(package) or remedy))
+        rows.append((f"{package} [{extra}]", _compiled.release_of(package) or remedy))
     _compiled.try_out()
     rows.append(("compiled code", _compiled.status()))
     rows.append(("data", str(data.example_path())))
     for backend in get_args(render.Backend):
         rows.append((f"draws by {backend}", render.probe(backend).detail))
     return rows
-
-
-def _version(package: str) -> str:
-    """Return the version of an installed package; an empty text where it is missing."""
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return ""

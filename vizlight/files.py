@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import functools
 import os
 import re
 import shutil
@@ -262,8 +261,7 @@ _MESHERS = (".mesh", ".meshb", ".msh")
 def _found(path: Path, time: object) -> pv.DataObject:
     """Return what the first reader that knows a file makes of it."""
     found: pv.DataObject | None = foreign_files.read(path, time)
-    if found is None:
-        found = series.read(path, time)
+    found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
     if path.suffix.lower() in _MESHERS:
         found = pv.MultiBlock({"cells of lower dimension": found})
@@ -305,17 +303,16 @@ def _first_line(error: Exception | str) -> str:
 def _by_vtk(path: Path) -> pv.DataObject:
     """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
     reader = series.reader_of(path)
+    if reader is not None:
+        return reader.read()  # type: ignore[no-any-return]
     try:
-        found: pv.DataObject = pv.read(path) if reader is None else reader.read()
+        return pv.read(path)
     except OSError as error:
-        if reader is not None:
-            raise
         way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
         if path.suffix.lower() in _PACKED:
             way = "unpack it first"
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
-    return found
 
 
 def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
@@ -342,34 +339,37 @@ class _Messages:
         self._heard: dict[int, list[list[str]]] = {}
         self._replaced: tuple[vtkOutputWindow, vtkLogger.Verbosity] | None = None
 
-    def enter(self, errors: list[str]) -> None:
-        """Append to a list what VTK says in this thread."""
+    @contextlib.contextmanager
+    def collected(self) -> Iterator[list[str]]:
+        """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
+        thread = threading.get_ident()
+        errors: list[str] = []
         with self._lock:
             if self._replaced is None:
                 self._replaced = (
                     vtkOutputWindow.GetInstance(),
                     vtkLogger.GetCurrentVerbosityCutoff(),
                 )
-                window = vtkStringOutputWindow()
+                listening = vtkStringOutputWindow()
                 heard: Foreign = self._note
                 for event in ("ErrorEvent", "WarningEvent"):
-                    window.AddObserver(event, heard)  # type: ignore[arg-type]
-                vtkOutputWindow.SetInstance(window)
+                    listening.AddObserver(event, heard)  # type: ignore[arg-type]
+                vtkOutputWindow.SetInstance(listening)
                 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-            self._heard.setdefault(threading.get_ident(), []).append(errors)
-
-    def leave(self) -> None:
-        """Append to the list of before, if there is one."""
-        with self._lock:
-            own = self._heard[threading.get_ident()]
-            own.pop()
-            if not own:
-                del self._heard[threading.get_ident()]
-            if not self._heard and self._replaced is not None:
-                window, verbosity = self._replaced
-                self._replaced = None
-                vtkOutputWindow.SetInstance(window)
-                vtkLogger.SetStderrVerbosity(verbosity)
+            self._heard.setdefault(thread, []).append(errors)
+        try:
+            yield errors
+        finally:
+            with self._lock:
+                own = self._heard[thread]
+                own.pop()
+                if not own:
+                    del self._heard[thread]
+                if not self._heard and self._replaced is not None:
+                    window, verbosity = self._replaced
+                    self._replaced = None
+                    vtkOutputWindow.SetInstance(window)
+                    vtkLogger.SetStderrVerbosity(verbosity)
 
     @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
     def _note(self, _window: object, event: str, text: str | None) -> None:
@@ -382,18 +382,7 @@ class _Messages:
             replaced[0].InvokeEvent(event, text)
 
 
-_MESSAGES = _Messages()
-
-
-@contextlib.contextmanager
-def captured_errors() -> Iterator[list[str]]:
-    """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
-    errors: list[str] = []
-    _MESSAGES.enter(errors)
-    try:
-        yield errors
-    finally:
-        _MESSAGES.leave()
+captured_errors = _Messages().collected
 
 
 def surface_of(
@@ -435,9 +424,8 @@ def surface_of(
     level = (low + high) / 2 if level is None else _check.number("level", level)
     found: pv.PolyData = mesh.contour([level], scalars=contour)
     if not found.n_points:
-        raise ValueError(
-            _check.message("level", f"a value between {low:g} and {high:g}", f"{level:g}")
-        )
+        expected = f"a value between {low:g} and {high:g}"
+        raise ValueError(_check.message("level", expected, f"{level:g}"))
     return found
 
 
@@ -586,9 +574,8 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         got = f"'{path}' in a working folder that is gone"
         raise FileError(_check.message(name, "a folder that exists", got)) from error
     if path.suffix.lower() not in formats:
-        raise FileError(
-            _check.message(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")
-        )
+        expected = f"a name that ends in {', '.join(formats)}"
+        raise FileError(_check.message(name, expected, f"'{path}'"))
     if not path.parent.is_dir():
         raise FileError(_check.message(name, "a folder that exists", f"'{path.parent}'"))
     _refuse_others(name, path)
@@ -647,28 +634,32 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     path = check_format(mesh, path)
     for block in blocks.all_blocks(mesh):
         _check_names(block, legacy=path.suffix.lower() == ".vtk")
-    if isinstance(mesh, pv.MultiBlock):
-        folder = path.with_suffix("")
-        make_folder("output", folder)
-        write = functools.partial(_save_blocks, mesh, folder)
-        try:
-            return replace_file(path, lambda draft: write(Path(draft)))
-        finally:
-            with contextlib.suppress(OSError):  # it is removed if nothing is in it
-                folder.rmdir()
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
     if path.suffix.lower() == ".stl":
         mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
+    # Files of blocks are moved there when all of them are whole.
+    folder = path.with_suffix("")
+
     def save(draft: str) -> None:
-        _reserve(Path(draft), [mesh])
-        own = _to_save(mesh)
+        _reserve(Path(draft), blocks.all_blocks(mesh))
+        own = blocks.like(mesh, map(_to_save, blocks.all_blocks(mesh)))
         with captured_errors() as errors:
             own.save(draft)
-        _check_drafts([Path(draft)], errors)
+        files = sorted(Path(draft).with_suffix("").glob("*"))
+        _check_drafts([Path(draft), *files], errors)
+        for file in files:
+            file.replace(folder / file.name)
 
-    return replace_file(path, save)
+    if not isinstance(mesh, pv.MultiBlock):
+        return replace_file(path, save)
+    make_folder("output", folder)
+    try:
+        return replace_file(path, save)
+    finally:
+        with contextlib.suppress(OSError):  # it is removed if nothing is in it
+            folder.rmdir()
 
 
 def _solid(field: pv.ImageData) -> pv.PolyData:
@@ -698,18 +689,6 @@ def _to_save(mesh: pv.DataSet) -> pv.DataSet:
     return own
 
 
-def _save_blocks(mesh: pv.MultiBlock, folder: Path, draft: Path) -> None:
-    """Write an index of blocks, and move their files to a folder when all of them are whole."""
-    _reserve(draft, blocks.all_blocks(mesh))
-    own = blocks.like(mesh, (_to_save(block) for block in blocks.all_blocks(mesh)))
-    with captured_errors() as errors:
-        own.save(draft)
-    files = sorted(draft.with_suffix("").glob("*"))
-    _check_drafts([draft, *files], errors)
-    for file in files:
-        file.replace(folder / file.name)
-
-
 def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
     """Check that a file can hold the names of the arrays.
 
@@ -722,10 +701,8 @@ def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
     for data in (mesh.point_data, mesh.cell_data, mesh.field_data):
         for name in data:
             if re.search(wrong, name):
-                expected, remedy = (
-                    f"array names without {signs}",
-                    f"rename the array, or write {other}",
-                )
+                expected = f"array names without {signs}"
+                remedy = f"rename the array, or write {other}"
                 raise FileError(_check.message("output", expected, repr(name), remedy))
 
 
@@ -849,7 +826,6 @@ def replace_file(
             finally:
                 shutil.rmtree(folder)
     except OSError as error:
-        raise FileError(
-            _check.message("output", "a file that can be written", f"'{path}' ({error.strerror})")
-        ) from error
+        got = f"'{path}' ({error.strerror})"
+        raise FileError(_check.message("output", "a file that can be written", got)) from error
     return path

@@ -38,3 +38,7 @@ def test_filters_say_how_a_value_without_a_name_is_named():
         vizlight.project(pv.Sphere(), scene)
     with pytest.raises(TypeError, match=r"got 'V'; name it, as in illuminate\(tangents="):
         vizlight.illuminate(pv.Sphere(), scene, "V")
+    with pytest.raises(TypeError, match=r"add_mesh: .* got Scene\(.*; name it, as in add_mesh\(s"):
+        pv.Plotter().vizlight.add_mesh(pv.Sphere(), scene)
+    with pytest.raises(TypeError, match=r"plot: .* got Scene\(.*; name it, as in plot\(scene="):
+        pv.Sphere().vizlight.plot(scene)

@@ -318,7 +318,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     monkeypatch.setattr(_compiled._Account, "missed", 0.0)
     monkeypatch.setattr(_compiled, "preparation", lambda: 0.3)
     monkeypatch.setattr(_compiled.Kernel, "start_up", lambda self: 0.7)
-    monkeypatch.setattr(_compiled.Kernel, "ready", lambda self: True)
+    monkeypatch.setattr(_compiled.Kernel, "_dispatcher", lambda self: None)
     monkeypatch.setenv("VIZLIGHT_THREADS", "1")
     monkeypatch.setattr(loops, "SAVED", 0.1)
     monkeypatch.setattr(loops, "SAVED_PER_LIGHT", 0.2)

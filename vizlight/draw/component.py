@@ -21,6 +21,7 @@ from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene
+from vizlight.scene.keywords import named
 from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
 from vizlight.vtk.polylines import has_lines_only
@@ -62,6 +63,7 @@ class Component:
         #: What was said to be lost.
         self._lost: set[str] = set()
 
+    @named
     def add_mesh(
         self,
         mesh: pv.DataSet | pv.MultiBlock,

@@ -12,6 +12,7 @@ from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
+from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -34,6 +35,7 @@ EFFECTS = {
 _MORE = {"edl", "show_grid", "auto_close", "camera"}
 
 
+@named
 def plot(
     mesh: pv.DataSet | pv.MultiBlock,
     /,

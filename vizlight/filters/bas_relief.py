@@ -76,31 +76,25 @@ def bas_relief(
         height = _check.number("height", height, low=0.0)
     _check.array_name("name", name)
 
-    used = vertices[np.unique(triangles)]
+    used = np.unique(triangles)
     if not len(used):
         raise ValueError(_check.message("mesh", "faces of some area", "none"))
-    centre = (used.min(axis=0) + used.max(axis=0)) / 2
+    centre = (vertices[used].min(axis=0) + vertices[used].max(axis=0)) / 2
     places = (vertices - centre) @ frame.T
-    seen = places[np.unique(triangles)]
-    low, high = seen.min(axis=0), seen.max(axis=0)
+    low, high = places[used].min(axis=0), places[used].max(axis=0)
     side = float((high - low)[:2].max())
     if not side > 0:
-        raise ValueError(
-            _check.message("mesh", "an extent across the view", "none", "turn direction")
-        )
+        expected, remedy = "an extent across the view", "turn direction"
+        raise ValueError(_check.message("mesh", expected, "none", remedy))
     step = side * (1 + 2 * margin) / (resolution - 1)
     # The tolerance prevents an additional node by rounding.
     count = np.ceil(((high - low)[:2] + 2 * margin * side) / step - 1e-6).astype(int) + 1
     count = np.maximum(count, 2)
     first = ((low + high)[:2] - (count - 1) * step) / 2
-    axes = [first[k] + step * np.arange(count[k]) for k in (0, 1)]
+    x, y = (first[k] + step * np.arange(count[k]) for k in (0, 1))
     with _progress.progress("depth", 100, show=progress_bar) as report:
         depth = depth_map(
-            axes[0],
-            axes[1],
-            places,
-            triangles,
-            progress=lambda done, total: report(100 * done // total),
+            x, y, places, triangles, progress=lambda done, total: report(100 * done // total)
         )
     there = np.isfinite(depth)
     if not there.any():

@@ -68,7 +68,13 @@ class FurOptions(Options):
         _check.flags(self)
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
         if isinstance(self.bundle, Bundle):
-            self._check_bundle(self.bundle)
+            if self.absorption is not None or self.density is not None:
+                expected = "no absorption or density"
+                remedy = "set the diameter of a vizlight.Bundle"
+                raise ValueError(_check.message("bundle", expected, "both", remedy))
+            if self.bundle.lines is not None:
+                expected, remedy = "the fibres", "leave it out"
+                raise ValueError(_check.message("Bundle(lines=)", expected, "other lines", remedy))
         check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
@@ -77,31 +83,15 @@ class FurOptions(Options):
         if isinstance(self.toward, str):
             records.refuse_unnamed("toward", self.toward)
         if self.bend and self.toward is None:
-            raise ValueError(
-                _check.message("toward", "the direction of the bend, with bend=", None)
-            )
-        for option in ("absorption", "density"):
-            share = getattr(self, option)
-            if share is not None:
-                _check.set_fields(self, **{option: _check.number(option, share, low=0.0, high=1.0)})
+            expected = "the direction of the bend, with bend="
+            raise ValueError(_check.message("toward", expected, None))
+        shares = ("absorption", "density")
+        _check.fields(self, _check.number, *shares, optional=True, low=0.0, high=1.0)
         if self.absorption is not None and self.density is not None:
             expected = "one of them: a share over the fur's length, or over a unit of length"
             raise ValueError(_check.message("absorption, density", expected, "both"))
-        _check.set_fields(
-            self,
-            fibres=_check.integer("fibres", self.fibres, low=0),
-            segments=_check.integer("segments", self.segments, low=1),
-            seed=_check.integer("seed", self.seed, low=0),
-        )
-
-    def _check_bundle(self, bundle: Bundle) -> None:
-        """Refuse options that do not go with a bundle."""
-        if self.absorption is not None or self.density is not None:
-            expected, remedy = "no absorption or density", "set the diameter of a vizlight.Bundle"
-            raise ValueError(_check.message("bundle", expected, "both", remedy))
-        if bundle.lines is not None:
-            expected, remedy = "the fibres", "leave it out"
-            raise ValueError(_check.message("Bundle(lines=)", expected, "other lines", remedy))
+        _check.fields(self, _check.integer, "fibres", "seed", low=0)
+        _check.fields(self, _check.integer, "segments", low=1)
 
     @property
     def straight(self) -> bool:
@@ -227,17 +217,7 @@ def fur(
     across the surface at the root, from the point to the highest point of its fibre. Sources: Banks
     4.2, 5, (7), (8).
     """
-    return _grow(surface, scene, FurOptions.of(locals()), progress_bar=progress_bar)
-
-
-def _grow(
-    surface: pv.PolyData,
-    scene: Scene | None,
-    options: FurOptions,
-    *,
-    progress_bar: bool,
-) -> pv.MultiBlock:
-    """Return fibres and skin, lit."""
+    options = FurOptions.of(locals())
     scene = Scene(material=MATERIAL) if scene is None else as_scene(scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
@@ -248,41 +228,37 @@ def _grow(
     surface = records.averaged(blocks.surface(surface, "surface"), options.length, options.toward)
     surface = split_where_computed(surface, options.feature_angle)
     skin = with_normals(surface, onlooker(scene), options.feature_angle)
-    name = options.name
-    lighting.refuse_overwriting(
-        [(surface, "")], name, components=False, colored=scene.colored, bundle=bool(options.bundle)
-    )
+    lighting.refuse_overwriting([(surface, "")], name, scene, bundle=bool(options.bundle))
     _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
     coat = _Coat(surface, skin, options)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
-    fibres, inside = coat.fibres()
+    hairs, inside = coat.fibres()
     below = ShadingInputs(
         points=np.asarray(skin.points),
         normals=np.asarray(skin.point_data[NORMALS]),
         fur_height=coat.skin_heights() if options.lost else None,
         fur=options.lost,
     )
-    points = np.asarray(fibres.points)
+    points = np.asarray(hairs.points)
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
-        lines = _mesh(points + np.array(coat.origin) if any(coat.origin) else points, fibres.repeat)
-        dimmings = lighting.dimmings(
-            [lines, surface], [fibres, below], scene, options.bundle, name,
-            show=progress_bar,
-        )  # fmt: skip
+        lines = _mesh(points + np.array(coat.origin) if any(coat.origin) else points, hairs.repeat)
+        (hairs, below), dimmings = lighting.dimmed(
+            [lines, surface], [hairs, below], scene, options.bundle, name, show=progress_bar
+        )
         medium = bundles.medium_of(bundles.joined([lines]), options.bundle)
         sides = np.asarray(skin.point_data[NORMALS])
         shares = in_medium(lines, medium, None), in_medium(skin, medium, sides)
-        fibres, below = (
-            dataclasses.replace(given, occlusion=share)
-            for given, share in zip(lighting.dimmed([fibres, below], dimmings), shares, strict=True)
+        hairs, below = (
+            dataclasses.replace(own, occlusion=share)
+            for own, share in zip((hairs, below), shares, strict=True)
         )
     # A depth cue spans the skin.
     scene = lighting.fit_depth_cue(scene, [below])
-    m = fibres.repeat
-    parts = [(fibres, options.shading), (below, options.shading.for_surface())]
-    del fibres, below
+    m = hairs.repeat
+    parts = [(hairs, options.shading), (below, options.shading.for_surface())]
+    del hairs, below
     results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
     # What the light was computed from is freed before the cells of the lines are made.
     parts.clear()
@@ -291,7 +267,7 @@ def _grow(
     if inside:
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
     meshes = [_mesh(points, m), surface.copy(deep=True)]
-    lighting.finish(meshes, results, "fur", scene, options, name, dimmings=dimmings)
+    lighting.finish(meshes, results, "fur", scene, options, dimmings=dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
 
@@ -481,35 +457,18 @@ def _toward(surface: pv.PolyData, toward: str | VectorLike | None) -> Array | No
     if isinstance(toward, str):
         rows = vectors_of(surface, "toward", toward, 3)
     else:
-        direction = _check.vector("toward", toward, direction=True)
-        if len(direction) != 3:
-            raise ValueError(_check.message("toward", "3 components", len(direction)))
-        rows = np.array([direction])
+        rows = np.array([_check.vector("toward", toward, direction=True, n=3)])
     return kernels.unit_rows(rows).astype(np.float32)
 
 
 def _lengths(mesh: pv.PolyData, length: object) -> Array | float:
     if isinstance(length, str):
         _check.text("length", length, expected="a length or the name of a point array")
-        if length not in mesh.point_data or mesh.point_data[length].ndim != 1:
-            there = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
-            raise ValueError(
-                _check.message(
-                    "length",
-                    f"a point array of one component, {_check.one_of(there)}",
-                    repr(length),
-                )
-            )
-        length = mesh.point_data[length]
-    if not isinstance(length, np.ndarray):
-        length = _check.floats("length", length)
-    if length.ndim == 0:
-        return _check.number("length", length, low=0.0, high=LONGEST)
+        length = records.scalars_of(mesh, "length", length)
     array = _check.floats("length", length)
+    if array.ndim == 0:
+        return _check.number("length", array, low=0.0, high=LONGEST)
     if array.shape != (mesh.n_points,) or not np.all((array >= 0) & (array <= LONGEST)):
-        raise ValueError(
-            _check.message(
-                "length", f"{mesh.n_points} lengths of 0 or more", _check.describe(array)
-            )
-        )
+        expected = f"{mesh.n_points} lengths of 0 or more"
+        raise ValueError(_check.message("length", expected, array))
     return array.astype(np.float32, copy=False)

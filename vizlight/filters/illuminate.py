@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import TYPE_CHECKING
 
 import pyvista as pv
@@ -15,7 +14,7 @@ from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.parts import share_of, uses_normals
+from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
     from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.parts import Part
 
 
 @named
@@ -186,65 +186,65 @@ def light_mesh(
     *,
     inplace: bool = False,
     progress_bar: bool = False,
-    error: float | None = None,
-    max_points: int | None = None,
     told: Told | None = None,
 ) -> MeshT:
-    """Light a mesh by options that are checked; see :func:`illuminate` and :func:`refine`.
+    """Light a mesh by options that are checked; see :func:`illuminate`.
 
     ``told`` is what the whole decides of its sides, where the mesh is a part of one.
     """
     scene = as_scene(scene)
-    named = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
+    taken, parts = parts_of(mesh, scene, options, told)
+    return light_parts(
+        mesh, taken, parts, scene, options, inplace=inplace, progress_bar=progress_bar
+    )
+
+
+def parts_of(
+    mesh: MeshT, scene: Scene, options: LightOptions, told: Told | None = None
+) -> tuple[list[pv.DataSet], list[Part]]:
+    """Return the datasets of a mesh, with the points that are lit, and what each is lit by."""
+    named = blocks.check(mesh)
     lighting.refuse_overwriting(
-        named, options.name, components=options.components, colored=scene.colored,
-        bundle=bool(options.bundle),
-    )  # fmt: skip
+        named, options.name, scene, components=options.components, bundle=bool(options.bundle)
+    )
     # Points are split first: normals, sky and light then belong to the points of the result.
-    taken, known = [], []
-    for block, path in named:
-        own, sided = _split(block, path, options)
-        taken.append(own)
-        known.append(sided)
-    # New points see the sky of the refined mesh.
-    early = dataclasses.replace(options, occlusion=None) if error else options
-    finer = options.feature_angle is not None
-    skied = with_sky(taken, early.occlusion, finer=finer)
+    split = [_split(block, path, options) for block, path in named]
+    own = [block for block, _ in split]
+    taken = with_sky(own, options.occlusion, finer=options.feature_angle is not None)
+    # Where the sky asked for smaller triangles, their points have normals of their own.
     known = [
         sided if one.n_points == other.n_points else None
-        for sided, one, other in zip(known, skied, taken, strict=True)
+        for (one, sided), other in zip(split, taken, strict=True)
     ]
-    taken = skied
     parts = [
-        lighting.part_of(own, path, scene, early, sided, told)
-        for own, (_, path), sided in zip(taken, named, known, strict=True)
+        lighting.part_of(one, path, scene, options, sided, told)
+        for one, (_, path), sided in zip(taken, named, known, strict=True)
     ]
     _tell_of_averages(named, options)
-    rest: list[refining.Left] = []
-    if error:
-        fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
-        refined = [
-            refining.refined(own, path, part, fitted, error, max_points)
-            for own, (_, path), part in zip(taken, named, parts, strict=True)
-        ]
-        refining.warn_of_rest(refined, error)
-        taken = [one.mesh for one in refined]
-        parts, rest = [one.part for one in refined], [one.left for one in refined]
-        taken = with_sky(taken, options.occlusion)
-        shares = [share_of(own, options.occlusion) for own in taken]
-        parts = [
-            part._replace(inputs=dataclasses.replace(part.inputs, occlusion=share))
-            for part, share in zip(parts, shares, strict=True)
-        ]
-    # Refinement has made new meshes with parts of their own.
+    return taken, parts
+
+
+def light_parts(
+    mesh: MeshT,
+    taken: Sequence[pv.DataSet],
+    parts: list[Part],
+    scene: Scene,
+    options: LightOptions,
+    *,
+    inplace: bool = False,
+    progress_bar: bool = False,
+) -> MeshT:
+    """Light what :func:`parts_of` returned, and return it in the place of a mesh.
+
+    ``parts`` is emptied, since a copy of the mesh may need the memory.
+    """
     inputs = [part.inputs for part in parts]
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
-        dimmings = lighting.dimmings(
+        inputs, dimmings = lighting.dimmed(
             taken, inputs, scene, options.bundle, options.name, show=progress_bar
         )
-        inputs = lighting.dimmed(inputs, dimmings)
     shadings, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
@@ -254,31 +254,14 @@ def light_mesh(
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
     parts.clear()
-    out, lit = mesh, taken
-    if not (inplace or error):
-        # Split meshes are new.
-        lit = [
-            own.copy() if own is block else own
-            for own, (block, _) in zip(taken, named, strict=True)
-        ]
-    elif not error:
-        lit = [block for block, _ in named]
-        for block, own in zip(lit, taken, strict=True):
-            if own is not block:
-                block.ShallowCopy(own)
-    if error or not inplace:
-        out = blocks.like(mesh, iter(lit))
+    out, lit = blocks.placed(mesh, taken, inplace=inplace)
     for block, kept in zip(lit, sides, strict=True):
         if kept is not None:
             normals.keep(block, kept)
         refining.forget(block, options.name)
-    inside = sum(int(sided.inside) for sided in sides if sided is not None)
-    lighting.finish(
-        lit, shadings, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
-    )
+    inside = sum(sided.inside for sided in sides if sided is not None)
+    lighting.finish(lit, shadings, "illuminate", fitted, options, inside=inside, dimmings=dimmings)
     _warn_of_normals(lit, sides, options)
-    for block, left in zip(lit, rest, strict=False):
-        block.field_data[f"{options.name}{refining.LEFT}"] = [left.error, left.share]
     return out
 
 
@@ -322,22 +305,12 @@ def _warn_of_normals(
     meshes: Sequence[pv.DataSet], sides: Sequence[Sided | None], options: LightOptions
 ) -> None:
     """Warn if normals were averaged across many sharp edges, or come from rounded places."""
-    shares = [0.0 if sided is None else float(sided.sharp) for sided in sides]
+    known = [(mesh, own) for mesh, own in zip(meshes, sides, strict=True) if own is not None]
     if options.feature_angle is None:
         splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
-        normals.warn_of_edges(max(shares, default=0.0), splits)
-    computed = [
-        mesh for mesh, own in zip(meshes, sides, strict=True) if own is not None and own.computed
-    ]
-    normals.warn_of_rounding(computed)
-    given = [
-        mesh
-        for mesh, own in zip(meshes, sides, strict=True)
-        if own is not None and not own.computed and options.positions is None
-    ]
-    normals.warn_of_contradiction(given, options.normals)
-
-
-def separate_copy(mesh: MeshT) -> MeshT:
-    """Return a copy of a mesh that shares no memory with it."""
-    return blocks.like(mesh, (block.copy() for block in blocks.all_blocks(mesh)))
+        sharp = max((float(own.sharp) for _, own in known), default=0.0)
+        normals.warn_of_edges(sharp, splits)
+    normals.warn_of_rounding([mesh for mesh, own in known if own.computed])
+    if options.positions is None:
+        given = [mesh for mesh, own in known if not own.computed]
+        normals.warn_of_contradiction(given, options.normals)

@@ -15,11 +15,11 @@ from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_nam
 from vizlight.vtk import parts as vtk_parts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     import pyvista as pv
 
-    from vizlight._types import Array
+    from vizlight.filters.fur import FurOptions
     from vizlight.mesh.bundles import Dimming
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
@@ -77,14 +77,13 @@ def light(
     total, done = sum(inputs.count for inputs, _ in parts), 0
     with _progress.progress("light", total, show=progress_bar) as report:
         for inputs, options in parts:
-            progress = _after(done, report)
+
+            def progress(now: int, _: int, before: int = done) -> None:
+                report(before + now)
+
             results.append(engine.run(inputs, fitted, options, progress=progress))
             done += inputs.count
     return results, fitted
-
-
-def _after(done: int, report: Callable[[int], None]) -> Callable[[int, int], None]:
-    return lambda now, _: report(done + now)
 
 
 def fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
@@ -113,20 +112,20 @@ def with_depth_ends(scene: Scene, ranges: Sequence[tuple[float, float]]) -> Scen
 def refuse_overwriting(
     named: list[tuple[pv.DataSet, str]],
     name: str,
+    scene: Scene,
     *,
-    components: bool,
-    colored: bool,
+    components: bool = False,
     bundle: bool = False,
 ) -> None:
     """Refuse a name under which the light would replace an array of the user."""
     _check.array_name("name", name)
-    parts = [part for part in PARTS if (colored if part == "rgb" else components)]
+    parts = [part for part in PARTS if (scene.colored if part == "rgb" else components)]
     parts += [bundles.TRANSMITTANCE] if bundle else []
     made = [part_name(name, part) for part in parts]
     records.refuse_overwriting(named, name, [name, name + VALID, *made])
 
 
-def dimmings(
+def dimmed(
     meshes: Sequence[pv.DataSet],
     inputs: Sequence[ShadingInputs],
     scene: Scene,
@@ -134,22 +133,18 @@ def dimmings(
     name: str,
     *,
     show: bool,
-) -> list[Dimming]:
-    """Return the shares of light that reach meshes inside a bundle of lines."""
+) -> tuple[list[ShadingInputs], list[Dimming]]:
+    """Return inputs with the shares of light that reach them inside a bundle, and these."""
     names = (name, part_name(name, bundles.TRANSMITTANCE))
     with _progress.progress("bundle", 100, show=show) as report:
-        return bundles.dim(
+        shares = bundles.dim(
             meshes, inputs, scene, bundle, names,
             progress=lambda done, total: report(100 * done // total),
         )  # fmt: skip
-
-
-def dimmed(inputs: Sequence[ShadingInputs], shares: Sequence[Dimming]) -> list[ShadingInputs]:
-    """Return inputs with the shares of light that reach them."""
     return [
         dataclasses.replace(given, transmittance=own.transmittance)
         for given, own in zip(inputs, shares, strict=True)
-    ]
+    ], shares
 
 
 def finish(
@@ -157,8 +152,7 @@ def finish(
     results: Sequence[engine.Shading],
     filter_name: str,
     scene: Scene,
-    options: object,
-    name: str,
+    options: LightOptions | FurOptions,
     *,
     inside: int = 0,
     dimmings: Sequence[Dimming] = (),
@@ -167,6 +161,7 @@ def finish(
 
     Points inside volumes, ``inside`` in number, have no normal and are not counted.
     """
+    name = options.name
     shared: dict[tuple[object, ...], str] = {}
     invalid = -inside
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
@@ -178,28 +173,13 @@ def finish(
             shared[plan] = json.dumps({k: v for k, v in all_of.items() if k not in record})
         share: str | None = getattr(options, "occlusion", None)
         known = None if share is None else np.asarray(mesh.point_data[share])
-        dimming = dimmings[i] if dimmings else None
-        attach(mesh, shading, name, record, dimming, shared[plan], occlusion=known)
+        arrays = arrays_of(shading, name, occlusion=known)
+        if dimmings:
+            record["bundle"] = dimmings[i].record
+            if dimmings[i].transmittance.size:
+                arrays[part_name(name, bundles.TRANSMITTANCE)] = dimmings[i].transmittance
+        records.attach(mesh, name, arrays, record, shared[plan])
         invalid += shading.invalid
     if invalid > 0:
         total = sum(shading.luminance.size for shading in results) - inside
         _check.warn(f"{unlit(invalid, total)}; the point array {name + VALID!r} marks them")
-
-
-def attach(
-    mesh: pv.DataSet,
-    shading: engine.Shading,
-    name: str,
-    record: Record,
-    dimming: Dimming | None = None,
-    common: str = "",
-    *,
-    occlusion: Array | None = None,
-) -> None:
-    """Attach the light to a mesh, in place of what it has under the name; see `records.write`."""
-    arrays = arrays_of(shading, name, occlusion=occlusion)
-    if dimming is not None:
-        if dimming.transmittance.size:
-            arrays[part_name(name, bundles.TRANSMITTANCE)] = dimming.transmittance
-        record = record | {"bundle": dimming.record}
-    records.attach(mesh, name, arrays, record, common)

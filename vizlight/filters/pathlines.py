@@ -56,17 +56,13 @@ class PathlineOptions(LightOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.choice("kind", self.kind, get_args(Kind))
-        _check.set_fields(
-            self,
-            step=_check.number("step", self.step, low=1e-3),
-            seed=_check.integer("seed", self.seed, low=0),
-        )
+        _check.fields(self, _check.number, "step", low=1e-3)
+        _check.fields(self, _check.integer, "seed", low=0)
         records.refuse_unnamed("vectors", self.vectors)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
             raise ValueError(_check.message("conditioned", expected, "none"))
-        if self.tail is not None:
-            _check.set_fields(self, tail=_check.positive("tail", self.tail))
+        _check.fields(self, _check.positive, "tail", optional=True)
 
 
 @named

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight import _check
-from vizlight.filters.illuminate import light_mesh
-from vizlight.mesh import blocks, records
+from vizlight.filters import lighting
+from vizlight.filters.illuminate import light_parts, parts_of
+from vizlight.filters.sky import with_sky
+from vizlight.mesh import blocks, records, refining
 from vizlight.scene.keywords import named
+from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import plain
+from vizlight.vtk.parts import share_of
 
 if TYPE_CHECKING:
-    import pyvista as pv
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
@@ -35,12 +39,9 @@ class RefineOptions(LightOptions):
     max_points: int | None = None
 
     def __post_init__(self) -> None:
-        error = _check.number("error", self.error, low=FINEST)
-        _check.set_fields(self, error=error)
+        _check.fields(self, _check.number, "error", low=FINEST)
         super().__post_init__()
-        if self.max_points is not None:
-            most = _check.integer("max_points", self.max_points, low=1)
-            _check.set_fields(self, max_points=most)
+        _check.fields(self, _check.integer, "max_points", optional=True, low=1)
 
 
 @named
@@ -149,19 +150,32 @@ def refine(
     (True, True)
     """
     asked = RefineOptions.of(locals())
-    lit = light_mesh(
-        blocks.like(mesh, (_faces(block) for block, _ in blocks.check(mesh))),
-        scene,
-        asked,
-        progress_bar=progress_bar,
-        error=asked.error,
-        max_points=asked.max_points,
-    )
-    for block in blocks.all_blocks(lit):
+    scene = as_scene(scene)
+    faces = [
+        blocks.surface(block, "mesh") if block.GetMaxSpatialDimension() == 3 else block
+        for block, _ in blocks.check(mesh)
+    ]
+    whole = blocks.like(mesh, iter(faces))
+    # The sky that new points see is that of the refined mesh.
+    early = dataclasses.replace(asked, occlusion=None)
+    taken, parts = parts_of(whole, scene, early)
+    fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
+    # Each mesh is refined alone.
+    made = [
+        refining.refined(own, path, part, fitted, asked.error, asked.max_points)
+        for own, part, (_, path) in zip(taken, parts, blocks.check(whole), strict=True)
+    ]
+    refining.warn_of_rest(made, asked.error)
+    fine = with_sky([one.mesh for one in made], asked.occlusion)
+    parts = [
+        one.part._replace(
+            inputs=dataclasses.replace(one.part.inputs, occlusion=share_of(own, asked.occlusion))
+        )
+        for own, one in zip(fine, made, strict=True)
+    ]
+    lit = light_parts(whole, fine, parts, scene, asked, progress_bar=progress_bar)
+    for block, one in zip(blocks.all_blocks(lit), made, strict=True):
+        left = [one.left.error, one.left.share]
+        block.field_data[f"{asked.name}{refining.LEFT}"] = left
         records.amend(block, asked.name, "refine", plain(asked))
     return lit
-
-
-def _faces(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a mesh of faces or lines, for a volume its outer surface."""
-    return blocks.surface(mesh, "mesh") if mesh.GetMaxSpatialDimension() == 3 else mesh

@@ -11,8 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
-from vizlight.filters.illuminate import separate_copy
-from vizlight.filters.lighting import attach, refuse_overwriting
+from vizlight.filters.lighting import refuse_overwriting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
@@ -24,7 +23,14 @@ from vizlight.scene import Light, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
-from vizlight.shading.results import DEFAULT_NAME, PARTS, VALID, of_filter, of_light
+from vizlight.shading.results import (
+    DEFAULT_NAME,
+    PARTS,
+    VALID,
+    arrays_of,
+    of_filter,
+    of_light,
+)
 from vizlight.verify.report import note_ratio
 from vizlight.vtk.cells import check_whole, triangles
 from vizlight.vtk.parts import share_of
@@ -65,13 +71,8 @@ class ReliefOptions(CasterOptions):
             if not self.lit:
                 got = repr(self.occlusion)
                 raise ValueError(_check.message("occlusion", "lit=True beside it", got))
-        _check.set_fields(
-            self,
-            angular_diameter=_check.number(
-                "angular_diameter", self.angular_diameter, low=0.0, high=1.0
-            ),
-            samples=_check.integer("samples", self.samples, low=1),
-        )
+        _check.fields(self, _check.number, "angular_diameter", low=0.0, high=1.0)
+        _check.fields(self, _check.integer, "samples", low=1)
 
 
 @named
@@ -197,10 +198,14 @@ def relief_shadow(
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
         mesh = blocks.surface(mesh, "mesh")
     check_whole(mesh, "mesh")
+    scene = as_scene(scene)
     if sun is not None:
-        lit_by = Light(direction=sun_direction(sun))
-        scene = as_scene(scene).replace(lights=[lit_by])
-    scene, lights = _lights(scene)
+        scene = scene.replace(lights=[Light(direction=sun_direction(sun))])
+    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+    if not lights:
+        raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
+    if scene.n not in (None, 3):
+        raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
     (sunlit,) = with_sky(
         [own], asked.occlusion, elevation=asked.elevation, factor=asked.exaggeration,
@@ -219,33 +224,30 @@ def relief_shadow(
         if taken:
             expected = "a name that the light does not use, with lit=True"
             raise ValueError(_check.message("name", expected, repr(taken[0])))
-        refuse_overwriting(
-            [(mesh, "")], DEFAULT_NAME, components=asked.components, colored=scene.colored
-        )
+        refuse_overwriting([(mesh, "")], DEFAULT_NAME, scene, components=asked.components)
     t = _ratios(shadow, lights, asked, progress_bar=progress_bar)
     weight = np.array([light.intensity for light in lights])
+    missing = int(np.count_nonzero(~shadow.valid))
     record = of_filter(
-        "relief_shadow", scene, asked, precision="float64", points=len(t),
-        invalid=int(np.count_nonzero(~shadow.valid)), depth=shadow.depth,
+        "relief_shadow", scene, asked, precision="float64", points=len(t), invalid=missing,
+        depth=shadow.depth,
     )  # fmt: skip
-    shading = None
+    shading, share = None, share_of(sunlit, asked.occlusion)
     if asked.lit:
         fixed = scene.replace(lights=lights)
         shading = engine.shade(
             shadow.points, None, fixed, normals=shadow.normals, shadow=t,
-            components=asked.components, occlusion=share_of(sunlit, asked.occlusion),
+            components=asked.components, occlusion=share,
         )  # fmt: skip
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    out = mesh if inplace else separate_copy(own)
-    if inplace and own is not mesh:
-        mesh.ShallowCopy(own)
+    out, _ = blocks.placed(mesh, [own], inplace=inplace)
     if shading is not None:
         light = of_light(shading, "relief_shadow", scene, asked)
-        attach(out, shading, DEFAULT_NAME, light, occlusion=share_of(sunlit, asked.occlusion))
+        lit_arrays = arrays_of(shading, DEFAULT_NAME, occlusion=share)
+        records.attach(out, DEFAULT_NAME, lit_arrays, light)
     arrays: dict[str, Raw] = {one: t[:, i].copy() for i, one in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
-    missing = int(np.count_nonzero(~shadow.valid))
     if missing:
         arrays[name + VALID] = shadow.valid
         _check.warn(
@@ -321,17 +323,6 @@ def sun_direction(sun: object, name: str = "sun") -> Array:
         expected = "two angles in degrees, (azimuth, altitude)"
         raise ValueError(_check.message(name, expected, _check.describe(sun)))
     return sky.toward(angles[0], angles[1])
-
-
-def _lights(scene: Scene | None) -> tuple[Scene, list[Light]]:
-    """Return the scene and its lights that give light, fixed where they are."""
-    scene = as_scene(scene)
-    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
-    if not lights:
-        raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
-    if scene.n not in (None, 3):
-        raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
-    return scene, lights
 
 
 def _disc(light: Light, options: ReliefOptions) -> list[Light]:

@@ -211,7 +211,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: S
         return _of_relief(mesh, options, scene)
     readers: dict[str, Callable[[pv.DataSet, Keywords], LightOptions]] = {
         "illuminate": lambda _, options: LightOptions(**options),
-        "refine": lambda _, options: LightOptions(**_own(LightOptions, options)),
+        "refine": lambda _, options: LightOptions.of(options),
         "streamlines": _of_lines,
         "project": _of_projection,
     }
@@ -235,17 +235,12 @@ def _refuse_described(made: str, options: Mapping[str, object]) -> None:
             raise ValueError(_check.message("mesh", expected, value, remedy))
 
 
-def _own(kind: type, options: Mapping[str, Given]) -> Keywords:
-    names = {field.name for field in dataclasses.fields(kind)}
-    return {name: value for name, value in options.items() if name in names}
-
-
 def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
     """Return the options of streamlines: beside a surface their normals condition the light."""
     from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 
     beside = "Normals" in mesh.point_data
-    light = _own(LightOptions, options)
+    light = dict(options)
     if light.get("conditioned") is None:
         light["conditioned"] = beside
     if light["conditioned"] is True and light.get("normals") is None:
@@ -254,7 +249,7 @@ def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
         # Both are there if the traced mesh had an array of the first name.
         made = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
         light["tangents"] = next(made, None)
-    return LightOptions(**light)
+    return LightOptions.of(light)
 
 
 def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa: ARG001
@@ -262,7 +257,7 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
     from vizlight.filters.project import ProjectOptions
 
     kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
-    asked = ProjectOptions(**_own(ProjectOptions, kept))
+    asked = ProjectOptions.of(kept)
     before = asked.light == "before"
     frame = None if asked.frame is None else f"{'' if before else PROJECTED}{asked.frame}"
     return asked.by(frame, asked.positions if before else None)
@@ -272,15 +267,14 @@ def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
     from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 
-    kept = {name: value for name, value in options.items() if name != "occluders" or value}
-    arguments = _own(ReliefOptions, kept) | {"lit": True, "components": False}
+    asked = ReliefOptions.of(options | {"lit": True, "components": False})
     field = mesh.copy(deep=False)
     # Colours of data, which tint() has put in the place of the light's.
     field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
     with warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
-        inputs, light = _runs(lambda: relief_shadow(field, scene, **arguments))[-1]
+        inputs, light = _runs(lambda: relief_shadow(field, scene, **asked.changed()))[-1]
     return Source(mesh, inputs, light, None)
 
 
@@ -299,7 +293,8 @@ def _of_fur(
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
-    runs = _runs(lambda: fur(skin, scene, **_own(FurOptions, options)))
+    asked = FurOptions.of(options)
+    runs = _runs(lambda: fur(skin, scene, **asked.changed()))
     return [
         Source(block, inputs, light, None)
         for block, (inputs, light) in zip((fibres, skin), runs, strict=True)

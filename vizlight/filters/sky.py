@@ -60,16 +60,11 @@ class SkyOptions(Options):
 
     def __post_init__(self) -> None:
         _check.flags(self)
-        error = self.error
-        if error is not None:
-            error = _check.number("error", error, low=LEAST, high=LARGEST)
-        up = None if self.up is None else _check.vector("up", self.up, direction=True)
-        if up is not None and len(up) != 3:
-            raise ValueError(_check.message("up", "3 components", len(up)))
-        diameter = None if self.diameter is None else _check.positive("diameter", self.diameter)
-        name = _check.array_name("name", self.name)
+        _check.fields(self, _check.number, "error", optional=True, low=LEAST, high=LARGEST)
+        _check.fields(self, _check.vector, "up", optional=True, direction=True, n=3)
+        _check.fields(self, _check.positive, "diameter", optional=True)
+        _check.fields(self, _check.array_name, "name")
         check_sides("auto", self.feature_angle)
-        _check.set_fields(self, error=error, up=up, diameter=diameter, name=name)
 
 
 @named
@@ -168,22 +163,13 @@ def sky(
     inplace = _check.boolean("inplace", inplace)
     own = [asked.name + OPENNESS] if asked.openness else []
     records.refuse_overwriting(chosen, asked.name, [asked.name, asked.name + VALID, *own])
-    meshes = [block for block, _ in chosen]
-    taken = [_split(block, asked) for block in meshes]
+    taken = [_split(block, asked) for block, _ in chosen]
     finer = asked.feature_angle is not None
     taken, found = _found_finer(taken, asked, finer=finer, show=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    lit = [
-        own if own is not block or inplace else own.copy()
-        for own, block in zip(taken, meshes, strict=True)
-    ]
+    out, lit = blocks.placed(mesh, taken, inplace=inplace)
     _attach(lit, found, asked, finer=finer)
-    if not inplace:
-        return blocks.like(mesh, iter(lit))
-    for split, block in zip(lit, meshes, strict=True):
-        if split is not block:
-            block.ShallowCopy(split)
-    return mesh
+    return out
 
 
 def with_sky(

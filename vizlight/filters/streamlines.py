@@ -64,12 +64,8 @@ class StreamlineOptions(LightOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check.set_fields(
-            self,
-            step=_check.number("step", self.step, low=1e-6, high=1e3),
-        )
-        if self.confined is not None:
-            _check.boolean("confined", self.confined)
+        _check.fields(self, _check.number, "step", low=1e-6, high=1e3)
+        _check.fields(self, _check.boolean, "confined", optional=True)
         surface: object = self.surface
         if surface is not None and not isinstance(surface, pv.DataSet):
             expected, got = "a PyVista surface", _check.describe(surface)
@@ -79,9 +75,8 @@ class StreamlineOptions(LightOptions):
             _check.set_fields(self, vectors=_pair(given, line_field=self.line_field))
         else:
             records.refuse_unnamed("vectors", given)
-        _check.integer("seed", self.seed, low=0)
-        if self.spacing is not None:
-            _check.set_fields(self, spacing=_check.positive("spacing", self.spacing))
+        _check.fields(self, _check.integer, "seed", low=0)
+        _check.fields(self, _check.positive, "spacing", optional=True)
 
 
 def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
@@ -96,10 +91,8 @@ def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
         remedy = "for a single line field pass its name alone"
         raise ValueError(_check.message("vectors", "two different arrays", repr(one), remedy))
     if not line_field:
-        remedy = "pass line_field=True"
-        raise ValueError(
-            _check.message("line_field", "True for two arrays, a cross field", line_field, remedy)
-        )
+        expected, remedy = "True for two arrays, a cross field", "pass line_field=True"
+        raise ValueError(_check.message("line_field", expected, line_field, remedy))
     return one, other
 
 
@@ -253,8 +246,7 @@ def light_lines(
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
-    names = options.vectors if isinstance(options.vectors, tuple) else (options.vectors,)
-    mesh = records.averaged(mesh, *names)
+    mesh = records.averaged(mesh, *_names(options.vectors or ""))
     scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -380,13 +372,12 @@ def _lines(
     argument: str,
 ) -> pv.PolyData:
     """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
-    seed = _check.integer("seed", options.seed, low=0)
-    how = tracers.Tracing(
-        options.step,
-        _max_length(mesh, options.max_length, size),
-        math.ceil(REACH / options.step),
-        seed,
-    )
+    length = options.max_length
+    if length is None:
+        length = 4 * float(mesh.length)
+    else:
+        length = _check.number("max_length", length, low=np.finfo(float).tiny) / size
+    how = tracers.Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
     count, places = _seeds(options.seeds, origin, size)
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
@@ -401,7 +392,7 @@ def _lines(
     unsigned = options.vectors if options.line_field else None
     given = None if places is None else tracer.located(places)
     if options.spacing is None:
-        start = tracer.random(count, seed) if given is None else given
+        start = tracer.random(count, options.seed) if given is None else given
         wanted = count if given is None else None
         lines = tracer.lines(tracer.traced(start, how, wanted, report), unsigned)
         _warn_of_fewer(lines, wanted)
@@ -498,9 +489,8 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
         return ValueError(_check.message("vectors", expected, "a mesh without one"))
     remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
     expected = f"the name of an array of 3 components ({', '.join(point)})"
-    return ValueError(
-        _check.message("vectors", expected, None if got is None else repr(got), remedy)
-    )
+    given = None if got is None else repr(got)
+    return ValueError(_check.message("vectors", expected, given, remedy))
 
 
 def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOptions) -> Array:
@@ -521,10 +511,9 @@ def _on_surface(
     """Return the tangential part of vectors on a surface; see :func:`_field`."""
     pair = isinstance(options.vectors, tuple)
     if pair and name not in surface.point_data:
+        expected = "two point arrays of the surface"
         remedy = "attach both directions of the cross field to the surface"
-        raise ValueError(
-            _check.message("vectors", "two point arrays of the surface", repr(name), remedy)
-        )
+        raise ValueError(_check.message("vectors", expected, repr(name), remedy))
     if name in surface.point_data:
         rows = array_of(surface, "vectors", name)
         if rows.shape[1] not in ((3,) if pair else (3, 6, 9)):
@@ -597,9 +586,3 @@ def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None
         what = "finite points of shape (M, 3), one or more"
         raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
     return len(places), places
-
-
-def _max_length(mesh: pv.DataSet, max_length: float | None, size: float) -> float:
-    if max_length is None:
-        return 4 * float(mesh.length)
-    return _check.number("max_length", max_length, low=np.finfo(float).tiny) / size

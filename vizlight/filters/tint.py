@@ -35,6 +35,12 @@ if TYPE_CHECKING:
 RGB = "rgb"
 #: Largest number of colours of a table.
 MOST_COLORS = 1 << 16
+#: Attributes of a lookup table that hold the colours of values outside of its range.
+SPECIAL_COLORS = {
+    "nan_color": "nan_color",
+    "above_color": "above_range_color",
+    "below_color": "below_range_color",
+}
 
 
 def tint(
@@ -129,9 +135,8 @@ def tint(
     >>> vizlight.tint(lit, "height", cmap="viridis")["rgb"].dtype
     dtype('uint8')
     """
-    blocks.check(lit)
+    every = blocks.check(lit)
     inplace = _check.boolean("inplace", inplace)
-    every = list(blocks.named_blocks(lit))
     own = [block for block, _ in every]
     _check.array_name("name", name)
     if not _holds_light(own, name):
@@ -157,14 +162,11 @@ def tint(
         )
         for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True)
     ]
-    if inplace:
-        for block, mesh in zip(own, meshes, strict=True):
-            block.ShallowCopy(mesh)
-        meshes = own
+    out, meshes = blocks.placed(lit, meshes, inplace=inplace)
     for mesh, array in zip(meshes, made, strict=True):
         kept = records.read(mesh, light) or {}
         records.attach(mesh, name, {name: array}, record | {"scene": kept.get("scene")})
-    return lit if inplace else blocks.like(lit, iter(meshes))
+    return out
 
 
 def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
@@ -217,9 +219,8 @@ def values_of(
             return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
         column = _check.integer("component", component, low=0)
         if column >= array.shape[1]:
-            raise ValueError(
-                _check.message("component", f"one of {array.shape[1]} components", component)
-            )
+            expected = f"one of {array.shape[1]} components"
+            raise ValueError(_check.message("component", expected, component))
         return array[:, column]
     if array.dtype.kind not in "iubf":
         way = (
@@ -441,11 +442,8 @@ def _record(table: pv.LookupTable, scalars: object, light: str, component: int |
         "clim": [float(x) for x in table.scalar_range],
         "log_scale": bool(table.log_scale),
     }
-    for option, color in (
-        ("nan_color", table.nan_color),
-        ("above_color", table.above_range_color),
-        ("below_color", table.below_range_color),
-    ):
+    for option, own in SPECIAL_COLORS.items():
+        color = getattr(table, own)
         options[option] = None if color is None else pv.Color(color).hex_rgba
     return {"vizlight": __version__, "filter": "tint", "options": options}
 
@@ -478,11 +476,7 @@ def unlit_colors(mesh: pv.DataSet | pv.MultiBlock, /, name: str = RGB) -> pv.Loo
     table.values = np.array([list(bytes.fromhex(c[1:])) for c in options["colors"]], np.uint8)
     table.log_scale = options["log_scale"]
     table.scalar_range = tuple(options["clim"])
-    for own, option in (
-        ("nan_color", "nan_color"),
-        ("above_range_color", "above_color"),
-        ("below_range_color", "below_color"),
-    ):
+    for option, own in SPECIAL_COLORS.items():
         if options[option] is not None:
             setattr(table, own, options[option])
     return table

@@ -13,7 +13,7 @@ from vizlight.vtk import hull
 from vizlight.vtk.cells import check_whole, has_faces
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from vizlight._types import Array, Foreign, Indices, Vector
 
@@ -140,6 +140,23 @@ def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
     for key, value in mesh.field_data.items():
         out.field_data[key] = np.array(value)
     return out
+
+
+def placed(
+    mesh: MeshT, made: Sequence[pv.DataSet], *, inplace: bool
+) -> tuple[MeshT, list[pv.DataSet]]:
+    """Return a mesh of what was made of its datasets, and these.
+
+    With ``inplace`` the mesh itself takes them; else those that are the mesh's own are copied.
+    """
+    own = list(all_blocks(mesh))
+    if not inplace:
+        lit = [new.copy() if new is old else new for new, old in zip(made, own, strict=True)]
+        return like(mesh, iter(lit)), lit
+    for new, old in zip(made, own, strict=True):
+        if new is not old:
+            old.ShallowCopy(new)
+    return mesh, own
 
 
 def box(mesh: pv.DataSet) -> tuple[Array, float]:

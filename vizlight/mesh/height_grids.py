@@ -264,8 +264,5 @@ def _elevation(grid: Grid | pv.PolyData, name: str | None, z: Array) -> Array:
         if name is None and isinstance(grid, pv.StructuredGrid | pv.PolyData):
             return z
     grid = records.averaged(grid, name)
-    there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
-    if name not in there:
-        expected = f"a point array of one component, {_check.one_of(there)}"
-        raise ValueError(_check.message("elevation", expected, repr(name)))
-    return _check.floats("elevation", np.asarray(grid.point_data[name])).reshape(z.shape)
+    rows = records.scalars_of(grid, "elevation", name)
+    return _check.floats("elevation", rows).reshape(z.shape)

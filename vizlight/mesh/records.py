@@ -318,6 +318,16 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     return out
 
 
+def scalars_of(mesh: pv.DataSet, argument: str, name: object) -> AnyArray:
+    """Return a point array of one component, or raise an error that names the argument."""
+    data = mesh.point_data
+    known = [key for key in data if data[key].ndim == 1]
+    if name not in known:
+        expected = f"a point array of one component, {_check.one_of(known)}"
+        raise ValueError(_check.message(argument, expected, repr(name)))
+    return np.asarray(data[str(name)])
+
+
 def attach_rows(mesh: pv.DataSet, name: str, array: Raw) -> None:
     """Attach a point array; a part of a larger array is copied."""
     if array.dtype in (np.float32, np.float64) or not len(array):

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
-from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.cells import GHOSTS, cell_arrays, connectivity
 from vizlight.vtk.topology import place_numbers
 
 if TYPE_CHECKING:
@@ -24,14 +24,13 @@ def own_cells(mesh: pv.DataSet) -> pv.DataSet:
     """Return a mesh without the cells that are marked as ghosts, and without their points."""
     if GHOST not in mesh.cell_data:
         return mesh
-    ghosts = np.asarray(mesh.cell_data.pop(GHOST)) > 0
-    if not ghosts.any():
-        return mesh
-    return some_cells(mesh, ~ghosts)
+    return some_cells(mesh, np.asarray(mesh.cell_data.pop(GHOST)) == 0)
 
 
 def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
-    """Return some cells of a mesh with their points, of the same kind of mesh."""
+    """Return some cells of a mesh with their points, of the same kind of mesh; itself for all."""
+    if which.all():
+        return mesh
     if isinstance(mesh, pv.PolyData):
         if not which.any():
             return pv.PolyData()
@@ -55,10 +54,8 @@ def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
         del mesh.point_data[GHOSTS]
     if GHOSTS not in mesh.cell_data:
         return mesh
-    duplicate = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) > 0
-    if not duplicate.any() or not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid):
-        return mesh
-    return some_cells(mesh, ~duplicate)
+    own = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
+    return some_cells(mesh, own) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
 
 
 def with_layer(
@@ -84,7 +81,7 @@ def with_layer(
             layer.cell_data[GHOST] = np.ones(layer.n_cells, dtype=np.uint8)
             layers.append(layer)
         if keep:
-            rest.append(some_cells(other, ~touched) if touched.any() else other)
+            rest.append(some_cells(other, ~touched))
     return (_joined(mesh, layers) if layers else mesh), rest
 
 
@@ -109,20 +106,11 @@ class _Places:
         return found
 
 
-def _cell_arrays(mesh: Foreign) -> list[Foreign]:
-    """Return the arrays of cells of a mesh, whose entries are indices of points."""
-    if isinstance(mesh, pv.PolyData):
-        return [mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()]
-    faces = mesh.GetPolyhedronFaces() if hasattr(mesh, "GetPolyhedronFaces") else None
-    return [mesh.GetCells(), *([faces] if faces is not None else [])]
-
-
 def _touched(mesh: pv.DataSet, touching: Foreign) -> Foreign:
     """Return a mask of the cells that have one of some points."""
-    masks = []
-    for cells in _cell_arrays(mesh)[: 4 if isinstance(mesh, pv.PolyData) else 1]:
-        ids = pv.convert_array(cells.GetConnectivityArray())
-        starts = pv.convert_array(cells.GetOffsetsArray())
+    masks = [np.empty(0, dtype=np.bool_)]
+    for cells in cell_arrays(mesh):
+        ids, starts = connectivity(cells)
         sums = np.concatenate([[0], np.cumsum(touching[ids])])
         masks.append(sums[starts[1:]] > sums[starts[:-1]])
     return np.concatenate(masks)
@@ -140,9 +128,11 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     index = np.arange(found.n_points)
     known = _Places(places).of(places[mesh.n_points :])
     index[mesh.n_points :] = np.where(known < 0, index[mesh.n_points :], known)
-    for cells in _cell_arrays(found):
+    own_cells = cell_arrays(found)
+    if isinstance(found, pv.UnstructuredGrid) and (faces := found.GetPolyhedronFaces()) is not None:
+        own_cells.append(faces)
+    for cells in own_cells:
         ids = pv.convert_array(cells.GetConnectivityArray())
-        if len(ids):
-            ids[:] = index[ids]
+        ids[:] = index[ids]
     found.Modified()
     return found  # type: ignore[no-any-return]

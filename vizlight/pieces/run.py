@@ -185,12 +185,13 @@ def light(
     _check.instance("scene", scene, Scene)
     path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
+    _check_options(filter, options, contour, ghost)
     job = task.Job(
         contour=contour,
         level=level,
         scene=scene,
         filter=filter,
-        options=_common_options(filter, options, contour, ghost),
+        options=options,
         ghost=ghost if filter == "illuminate" else 0,
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
         compiled="1" if _compiled.wanted() == "1" else "0",
@@ -225,7 +226,11 @@ def light(
         for name in earlier - {one.file for _, one in full}:
             (folder / name).unlink()
     finally:
-        _clear(folder)
+        # Drafts of runs that were killed, too.
+        for draft in folder.glob(".vizlight-*"):
+            shutil.rmtree(draft, ignore_errors=True)
+        with contextlib.suppress(OSError):  # it holds pieces
+            folder.rmdir()
     return _result(path, folder, done, job)
 
 
@@ -280,10 +285,8 @@ def camera_on(
     return cameras.camera_on(pv.PolyData(points), direction, **options)
 
 
-def _common_options(
-    filter_name: str, options: Keywords, contour: str | None, ghost: int
-) -> Keywords:
-    """Return the options of a filter that give a piece no opinion of its own."""
+def _check_options(filter_name: str, options: Keywords, contour: str | None, ghost: int) -> None:
+    """Check that the options of a filter give a piece no opinion of its own."""
     _check.choice("filter", filter_name, tuple(task.FILTERS))
     if options.get("bundle"):  # it depends on a mesh as a whole
         remedy = "lines of all pieces dim one another; light them together"
@@ -294,20 +297,18 @@ def _common_options(
         if name not in known or name in ("inplace", "progress_bar"):
             raise TypeError(unknown_option(filter_name, name, known))
     if filter_name != "illuminate":
-        return dict(options)
+        return
     for name in ("tangents", "normals", "conditioned"):
         if options.get(name) is not None and not isinstance(options[name], str | bool):
             expected = "the name of a point array that every piece has"
             raise TypeError(_check.message(name, expected, _check.describe(options[name])))
-    fields = {one.name for one in dataclasses.fields(LightOptions)}
-    asked = LightOptions(**{name: value for name, value in options.items() if name in fields})
+    asked = LightOptions.of(options)
     if asked.facing == "outward":
         remedy = "what is closed faces outward by facing='auto'"
         expected = "'auto', 'eye' or 'as given'"
         raise ValueError(_check.message("facing", expected, "'outward'", remedy))
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
-    return dict(options)
 
 
 def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | None]]:
@@ -320,13 +321,12 @@ def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | No
     if asked.tangents is not None and asked.conditioned is not True:
         return job, told
     found = work.each(task.look, [(piece, job) for piece in parts], "sides")
-    at = [i for i, one in enumerate(found) if one is not None]
-    looks = [one for one in found if one is not None]
+    looks = {i: one for i, one in enumerate(found) if one is not None}
     if sharp:
-        angle = SHARP if looks and sides.creases(looks) else None
+        angle = SHARP if looks and sides.creases([*looks.values()]) else None
         job = dataclasses.replace(job, options={**job.options, "feature_angle": angle})
     if asked.facing == "auto" and looks:
-        for i, one in zip(at, sides.decided(looks), strict=True):
+        for i, one in zip(looks, sides.decided([*looks.values()]), strict=True):
             told[i] = one
     return job, told
 
@@ -358,14 +358,6 @@ def _named_by(path: Path, folder: Path) -> set[str]:
     except PieceError:  # there is none, or its pieces are gone
         return set()
     return {file.name for file in found if file.parent == folder and own.fullmatch(file.name)}
-
-
-def _clear(folder: Path) -> None:
-    """Remove drafts, also from runs that were killed, and the folder if nothing is in it."""
-    for draft in folder.glob(".vizlight-*"):
-        shutil.rmtree(draft, ignore_errors=True)
-    with contextlib.suppress(OSError):  # it holds pieces
-        folder.rmdir()
 
 
 def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:

@@ -317,9 +317,8 @@ def _paths(source: str | Path) -> list[Path]:
             return found
         raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
     remedy = f"name its files, as '{text}/*.vtu'" if what == "a folder" else ""
-    raise PieceError(
-        _check.message("sources", "a file", f"{_check.describe(text)} ({what})", remedy)
-    )
+    got = f"{_check.describe(text)} ({what})"
+    raise PieceError(_check.message("sources", "a file", got, remedy))
 
 
 def _of_file(path: Path, slab: float) -> list[Piece]:

@@ -61,8 +61,7 @@ class Job:
             _check.text("contour", self.contour, expected="the name of a point array")
         elif self.level is not None:
             raise ValueError(_check.message("level", "contour= beside it", self.level))
-        if self.level is not None:
-            _check.set_fields(self, level=_check.number("level", self.level))
+        _check.fields(self, _check.number, "level", optional=True)
 
     @property
     def name(self) -> str:
@@ -286,12 +285,8 @@ def _lit(
 def _isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
     """Return the isosurface of a piece, with the gradient of its array if normals are that."""
     name = str(job.contour)
-    if name not in mesh.point_data or mesh.point_data[name].ndim != 1:
-        known = [key for key in mesh.point_data if mesh.point_data[key].ndim == 1]
-        expected = f"a point array of one component, {_check.one_of(known)}"
-        raise ValueError(_check.message("contour", expected, repr(name)))
+    values = records.scalars_of(mesh, "contour", name)
     assert job.level is not None
-    values = mesh.point_data[name]
     if not np.nanmin(values) <= job.level <= np.nanmax(values):  # the gradient takes far longer
         return pv.PolyData()
     if job.options.get("normals") == GRADIENT and GRADIENT not in mesh.point_data:

@@ -29,7 +29,9 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
         for parameter in parameters
         if parameter.kind is inspect.Parameter.KEYWORD_ONLY
     ]
-    places = len(known) - len(by_name)
+    # A function that hands further keywords on checks them itself.
+    hands_on = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters)
+    places = len(known) - len(by_name) - hands_on
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
     @functools.wraps(function)
@@ -43,7 +45,7 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
                 _check.message(owner, expected, got, f"name it, as in {owner}({own}=...)")
             )
         for name in keywords:
-            if name not in known:
+            if name not in known and not hands_on:
                 raise TypeError(unknown_option(owner, name, known))
         return function(*arguments, **keywords)
 

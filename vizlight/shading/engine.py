@@ -6,7 +6,6 @@ memory beyond the output does not grow with the mesh.
 
 from __future__ import annotations
 
-import contextlib
 import contextvars
 import dataclasses
 import time
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
+from vizlight._context import assigned
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
@@ -25,7 +25,8 @@ from vizlight.shading.options import Model, Precision, ShadingOptions
 from vizlight.shading.plan import Plan, decide
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike, DTypeLike
@@ -58,8 +59,7 @@ _OBSERVER: contextvars.ContextVar[Observer | None] = contextvars.ContextVar(
 )
 
 
-@contextlib.contextmanager
-def observed(observer: Observer | None, /) -> Iterator[None]:
+def observed(observer: Observer | None, /) -> AbstractContextManager[None]:
     """Call a function after each run of the engine while this context is entered.
 
     Parameters
@@ -69,11 +69,7 @@ def observed(observer: Observer | None, /) -> Iterator[None]:
         for none.
     """
     _check.function("observer", observer, optional=True)
-    token = _OBSERVER.set(observer)
-    try:
-        yield
-    finally:
-        _OBSERVER.reset(token)
+    return assigned(_OBSERVER, observer)
 
 
 @named

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
+from vizlight._context import assigned
 from vizlight.model import frames
 from vizlight.scene import View
 from vizlight.shading.engine import observed
@@ -20,7 +21,7 @@ from vizlight.verify import between, oracle
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Array, Bools, Foreign, Indices, Slice
+    from vizlight._types import Array, Bools, Foreign, Indices
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
@@ -309,13 +310,12 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     made = Report(
         sample=_check.integer("sample", sample, low=0), seed=_check.integer("seed", seed, low=0)
     )
-    token, start = _ACTIVE.set(made), time.perf_counter()
-    try:
-        with observed(note):
+    start = time.perf_counter()
+    with assigned(_ACTIVE, made), observed(note):
+        try:
             yield made
-    finally:
-        made.seconds += time.perf_counter() - start
-        _ACTIVE.reset(token)
+        finally:
+            made.seconds += time.perf_counter() - start
 
 
 @contextlib.contextmanager
@@ -499,14 +499,9 @@ def is_open() -> bool:
     return _ACTIVE.get() is not None
 
 
-@contextlib.contextmanager
-def tinted() -> Iterator[None]:
+def tinted() -> contextlib.AbstractContextManager[None]:
     """Record light in this context as the colours' light, of points that were lit before."""
-    token = _TINTED.set(True)
-    try:
-        yield
-    finally:
-        _TINTED.reset(token)
+    return assigned(_TINTED, True)
 
 
 def note_stored(values: Array, name: str) -> None:
@@ -530,53 +525,48 @@ def workers(points: Callable[[], int]) -> Iterator[None]:
         active.elsewhere += points()
 
 
-@contextlib.contextmanager
-def paused() -> Iterator[None]:
+def paused() -> contextlib.AbstractContextManager[None]:
     """Record nothing in this context, for a filter that lights many points on its way."""
-    token = _ACTIVE.set(None)
-    try:
-        yield
-    finally:
-        _ACTIVE.reset(token)
+    return assigned(_ACTIVE, None)
 
 
 def _reference(
     given: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
 ) -> oracle.Lit:
     """Return the light of one point by the oracle."""
-    n, row = given.points.shape[1], i // given.repeat
-    own, shared = slice(i, (row + 1) * given.repeat, given.repeat), slice(row, row + 1)
+    count, n = given.points.shape
 
-    def numbers(rows: ArraySource, at: Slice) -> list[float]:
-        values: list[float] = np.asarray(rows[at], dtype=np.float64).ravel().tolist()
+    def numbers(rows: ArraySource | None) -> list[float] | None:
+        if rows is None:
+            return None
+        # Points of a fibre share rows of which there are fewer.
+        at = i if rows.shape[0] == count else i // given.repeat
+        values: list[float] = np.asarray(rows[at : at + 1], dtype=np.float64).ravel().tolist()
         return values
 
     def vectors(rows: ArraySource | None) -> list[list[float]] | None:
-        if rows is None:
-            return None
-        flat = numbers(rows, own if rows.shape[0] == given.points.shape[0] else shared)
-        return [flat[j : j + n] for j in range(0, len(flat), n)]
+        flat = numbers(rows)
+        return None if flat is None else [flat[j : j + n] for j in range(0, len(flat), n)]
 
-    tangents = vectors(given.tangents)
-    normal: Sequence[float] | None = None
-    if given.normals is not None:
-        normal = numbers(given.normals, shared)
+    point, tangents = numbers(given.points), vectors(given.tangents)
+    assert point is not None
+    normal: Sequence[float] | None = numbers(given.normals)
     if given.dimensions is not None:
-        dimension = numbers(given.dimensions, own)[0]
-        if dimension == 0:
-            eye = scene.view or View.isometric(n)
-            normal = oracle.FLOATS.toward(eye, numbers(given.points, own))[0]
-        tangents, normal = (tangents, None) if dimension == 1 else (None, normal)
+        dimension = numbers(given.dimensions)
+        if dimension == [0]:
+            normal = oracle.FLOATS.toward(scene.view or View.isometric(n), point)[0]
+        tangents, normal = (tangents, None) if dimension == [1] else (None, normal)
+    (height,), (occlusion,) = numbers(given.fur_height) or [0.0], numbers(given.occlusion) or [1.0]
     return oracle.light(
-        numbers(given.points, own),
+        point,
         tangents,
         normal,
         scene,
         base_tangents=vectors(given.base_tangents),
-        fur_height=0.0 if given.fur_height is None else numbers(given.fur_height, own)[0],
-        shadow=None if given.shadow is None else numbers(given.shadow, own),
-        transmittance=(None if given.transmittance is None else numbers(given.transmittance, own)),
-        occlusion=1.0 if given.occlusion is None else numbers(given.occlusion, own)[0],
+        fur_height=height,
+        shadow=numbers(given.shadow),
+        transmittance=numbers(given.transmittance),
+        occlusion=occlusion,
         model=options.model,
         exponent=options.exponent,
         conditioned=bool(options.conditioned),
