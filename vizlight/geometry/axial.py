@@ -84,7 +84,7 @@ def source(
 
 def length(vector: VectorLike) -> float:
     """Return the length of a vector, without overflow or underflow."""
-    return math.hypot(*(float(x) for x in vector))
+    return math.hypot(*vector)
 
 
 def triple(name: str, value: object) -> Array:
@@ -101,18 +101,19 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     The first is along the part of ``toward`` that is normal to the axis. It is arbitrary without
     ``toward``, and where ``toward`` is parallel to the axis to rounding.
     """
-    first = None
+    across = np.zeros(3)
     if toward is not None:
         across = toward - (toward @ axis) * axis
         across = across - (across @ axis) * axis
-        if length(across) > 8 * np.finfo(np.float64).eps:
-            first = across / length(across)
-    if first is None:
-        least = np.zeros(3)
-        least[np.abs(axis).argmin()] = 1
-        across = np.cross(axis, least)
-        first = across / length(across)
+    if length(across) <= 8 * np.finfo(np.float64).eps:
+        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first = across / length(across)
     return first, np.cross(axis, first)
+
+
+def circle(angle: Array, first: Array, second: Array) -> Array:
+    """Return unit vectors at angles from the first of two unit vectors toward the second."""
+    return np.asarray(np.cos(angle)[:, np.newaxis] * first + np.sin(angle)[:, np.newaxis] * second)
 
 
 def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:

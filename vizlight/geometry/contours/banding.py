@@ -237,6 +237,12 @@ def cut(
     return cut_bands, triangle
 
 
+def none(steps: Steps, error: float = 0.0) -> Bands:
+    """Return the bands of a surface without polygons."""
+    empty, _ = cut(np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty((0, 3)), steps)
+    return dataclasses.replace(empty, error=error)
+
+
 def at_corners(values: Array, triangles: Indices, rows: Slice | Indices) -> Array:
     """Return the values at the corners of some triangles, from values at corners or at points."""
     return np.asarray(values[rows] if values.ndim == 2 else values[triangles[rows]])

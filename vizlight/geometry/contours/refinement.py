@@ -86,11 +86,8 @@ def draw(
     Contour points are found by bracketing and lie on the exact surface, at creases on both
     surfaces; contours are chords between them.
     """
-    spacing.check(levels)
     if not len(mesh.triangles):
-        none = spacing.steps(levels, low or 0.0, low or 0.0)
-        empty, _ = banding.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
-        return dataclasses.replace(empty, error=0.0)
+        return banding.none(spacing.steps(levels, low or 0.0, low or 0.0))
     made = refine(LitSolid(open_apexes(mesh), luminance), levels, low=low, progress=progress)
     made = _close_apexes(made, mesh)
     return dataclasses.replace(made, points=mesh.world(made.points))
@@ -132,7 +129,9 @@ def refine(
             break
         same = surface.split(chosen)
         error, pieces = error[same], pieces[same]
-        if _moved(steps, _steps(surface, levels, low)):
+        found = _steps(surface, levels, low).edges
+        share = STILL * steps.error
+        if len(found) != len(steps.edges) or np.abs(steps.edges - found).max() > share:
             # New points are brighter than all before: other steps, by which nothing is known.
             steps = _settled(surface, levels, low)
             error, pieces = error[:0], pieces[:0]
@@ -157,13 +156,6 @@ def _steps(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
     values = surface.values
     bottom = float(values.min()) if low is None else low
     return spacing.steps(levels, bottom, float(values.max()))
-
-
-def _moved(steps: Steps, found: Steps) -> bool:
-    """Return whether the steps have changed by more than a negligible share of a step."""
-    if len(steps.edges) != len(found.edges):
-        return True
-    return float(np.abs(steps.edges - found.edges).max()) > STILL * steps.error
 
 
 def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:

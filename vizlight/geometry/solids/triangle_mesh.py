@@ -184,9 +184,7 @@ def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
 
 
 def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
-    first, second = axial.frame(unit.axis)
-    angle = 2 * np.pi * np.arange(segments) / segments
-    ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
+    ring = axial.circle(2 * np.pi * np.arange(segments) / segments, *axial.frame(unit.axis))
     half = unit.height / 2 * unit.axis
     parts, indices, start = [], [], 0
     for sign, radius in ((1, unit.radii[0]), (-1, unit.radii[1])):
