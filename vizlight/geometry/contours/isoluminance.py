@@ -232,9 +232,9 @@ def _filled(places: Array, inside: Indices, segments: int) -> tuple[Array, Indic
     contour = np.concatenate([[-1], inside[np.argsort(places[inside], kind="stable")]])
     ends = np.concatenate([[0.0], places[contour[1:]], [np.pi]])
     pieces = np.maximum(np.ceil(np.diff(ends) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
-    step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    angle = np.repeat(ends[:-1], pieces) + step * np.repeat(np.diff(ends) / pieces, pieces)
-    return angle, np.where(step == 0, np.repeat(contour, pieces), -1)
+    piece, step = banding.ranges(np.zeros_like(pieces), pieces)
+    angle = ends[piece] + step * (np.diff(ends) / pieces)[piece]
+    return angle, np.where(step == 0, contour[piece], -1)
 
 
 def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error: float) -> Bands:

@@ -222,8 +222,7 @@ class LitTriangles:
 
     def place(self, a: Indices, b: Indices, share: Array) -> Array:
         """Return points at fractions of edges."""
-        t = share[:, np.newaxis]
-        return np.asarray(self.points[a] * (1 - t) + self.points[b] * t)
+        return banding.chord(self.points, a, b, share)
 
     def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
         """Return the luminance at fractions (N, m) of edges, with the normals of one side."""
@@ -248,7 +247,7 @@ class LitTriangles:
         Returns the earlier indices of the triangles that stay as they were; they become the first.
         """
         count = len(self.points)
-        codes = edge_codes(self.triangles, count)
+        codes = banding.edge_codes(self.triangles, count)
         marked = np.unique(codes[chosen])
         a, b = np.divmod(marked, count)
         rank = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
@@ -333,7 +332,7 @@ class LitSolid(LitTriangles):
 
     def _extend(self, new: Array) -> None:  # noqa: ARG002
         """Find the surfaces on both sides of each edge, and the luminance on both sides."""
-        code = edge_codes(self.triangles, len(self.points))
+        code = banding.edge_codes(self.triangles, len(self.points))
         self.codes, edge = np.unique(code, return_inverse=True)
         edge, owner = edge.ravel(), np.repeat(self.patch, 3)
         self.both = np.empty((len(self.codes), 2), np.intp)
@@ -376,21 +375,12 @@ class LitSolid(LitTriangles):
         return exact_surfaces.onto(self.mesh.surfaces, super().place(a, b, share), self.both[edge])
 
 
-def edge_codes(triangles: Indices, count: int) -> Indices:
-    """Return a number for the edge that begins at each corner, the same in both directions."""
-    after = np.roll(triangles, -1, axis=1)
-    return np.minimum(triangles, after) * count + np.maximum(triangles, after)
-
-
 def open_apexes(mesh: Mesh) -> Mesh:
     """Return the mesh with a small hole at the apex of each cone, with one point per ruling.
 
     Where a solid touches itself there, each of its points at the apex gets its own hole.
     """
-    for patch, surface in enumerate(mesh.surfaces):
-        apex = getattr(surface, "apex", None)
-        if apex is None:
-            continue
+    for patch, apex in mesh.surfaces.apexes:
         count = len(mesh.points)
         gap = mesh.points - apex
         at = np.einsum("ij,ij->i", gap, gap) < 1e-20
@@ -424,11 +414,9 @@ def open_apexes(mesh: Mesh) -> Mesh:
 def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
     """Return bands with each hole that was opened at an apex merged to one point."""
     clusters, points = np.arange(len(bands.points)), bands.points
-    for surface in mesh.surfaces:
-        apex = getattr(surface, "apex", None)
-        if apex is not None:
-            gap = points - apex
-            near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
-            clusters[near] = near[:1]
-            points[near[:1]] = apex
+    for _, apex in mesh.surfaces.apexes:
+        gap = points - apex
+        near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
+        clusters[near] = near[:1]
+        points[near[:1]] = apex
     return banding.weld(bands, clusters)

@@ -141,20 +141,15 @@ class Polyhedron(Primitive):
         unique, which = np.unique(places, axis=0, return_inverse=True)
         found = which.ravel()[corners].astype(np.intp)
         found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
-        codes = found * len(unique) + np.roll(found, -1, axis=1)
-        back = np.roll(found, -1, axis=1) * len(unique) + found
-        if len(np.unique(codes)) < codes.size or not np.array_equal(
-            np.unique(codes), np.unique(back)
-        ):
+        after = np.roll(found, -1, axis=1)
+        edges, back = found * len(unique) + after, after * len(unique) + found
+        if not np.array_equal(np.unique(edges), np.sort(back, axis=None)):
             remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
             expected = "a closed surface with consistently oriented triangles"
             raise ValueError(_check.message("triangles", expected, "another", remedy))
-        self._set(unique, found)
+        self.points, self.triangles = unique, found
         if self.volume < 0:
-            self._set(unique, np.ascontiguousarray(found[:, ::-1]))
-
-    def _set(self, points: Array, triangles: Indices) -> None:
-        self.points, self.triangles = points, triangles
+            self.triangles = np.ascontiguousarray(found[:, ::-1])
 
     def __repr__(self) -> str:
         return f"Polyhedron({len(self.points)} points, {len(self.triangles)} triangles)"
@@ -196,7 +191,7 @@ class Polyhedron(Primitive):
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         found = Polyhedron.__new__(Polyhedron)
-        found._set(place(self.points, shift, scale, turn), self.triangles)
+        found.points, found.triangles = place(self.points, shift, scale, turn), self.triangles
         return found
 
     def box(self) -> tuple[Array, float]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
+    from typing_extensions import Self
 
     from vizlight._types import Array, Bools, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
@@ -50,7 +51,7 @@ class Solid:
         """Return which points are inside the solid."""
         raise NotImplementedError
 
-    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Solid:
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Self:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         raise NotImplementedError
 
@@ -139,10 +140,6 @@ class Primitive(Solid):
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the surfaces that bound the solid."""
-        raise NotImplementedError
-
-    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Primitive:
-        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         raise NotImplementedError
 
     def box(self) -> tuple[Array, float]:
@@ -336,7 +333,11 @@ class Frustum(Primitive):
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the side, the first end and the second end."""
-        side = Cone(self.center, self.axis, self.height, self.radii)
+        side: Surface = Cone(self.center, self.axis, self.height, self.radii)
+        if self.height == 0:
+            # The side is a flat ring, or empty.
+            up = 1.0 if self.radii[1] > self.radii[0] else -1.0
+            side = Plane(self.center, up * self.axis)
         ends = (
             Plane(self.center + s / 2 * self.height * self.axis, s * self.axis) for s in (1, -1)
         )
