@@ -60,21 +60,17 @@ def source(
 ) -> Source:  # fmt: skip
     """Validate the light of a shape and return it relative to the shape's centre."""
     if (direction is None) == (position is None):
-        raise ValueError(
-            _check.message(
-                "direction", "either direction= (toward the light) or position=",
-                "neither" if direction is None else "both", "pass one of them",
-            )
-        )  # fmt: skip
+        expected = "either direction= (toward the light) or position="
+        got = "neither" if direction is None else "both"
+        raise ValueError(_check.message("direction", expected, got, "pass one of them"))
     low = _check.number("ambient", ambient, low=0.0, high=_check.LARGEST)
     scale = _check.number("diffuse", diffuse, low=0.0, high=_check.LARGEST)
     power = _check.number("power", power, low=0.0, high=_check.LARGEST)
     fading = falloff.attenuation("attenuation", attenuation)
     if direction is not None:
         if fading != (1.0, 0.0, 0.0):
-            raise ValueError(
-                _check.message("attenuation", "a light with position=", "a light at infinity")
-            )
+            expected = "a light with position="
+            raise ValueError(_check.message("attenuation", expected, "a light at infinity"))
         return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
     size = length(offset)
@@ -114,12 +110,6 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
 def circle(angle: Array, first: Array, second: Array) -> Array:
     """Return unit vectors at angles from the first of two unit vectors toward the second."""
     return np.asarray(np.cos(angle)[:, np.newaxis] * first + np.sin(angle)[:, np.newaxis] * second)
-
-
-def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
-    """Validate the number of segments of a circle and the form of the result."""
-    _check.choice("form", form, forms)
-    return None if segments is None else _check.integer("segments", segments, low=3)
 
 
 def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:

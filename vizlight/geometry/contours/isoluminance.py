@@ -105,7 +105,7 @@ def sphere(
         middle, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.options(segments, form, get_args(Form))
+    segments = _options(segments, form)
     latitudes = _Latitudes(light, middle, radius)
     # Between the unlit side and the point nearest to the light.
     steps = spacing.steps(levels, light.low, float(latitudes.luminance(0.0)))
@@ -154,15 +154,15 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
         else:
             total += _check.unit(name, getattr(given, "direction", given))
     if axial.length(total) < 1e-12:
-        raise ValueError(
-            _check.message(
-                "eye",
-                "an eye that is not opposite the light",
-                _check.describe(eye),
-                "move the eye or the light",
-            )
-        )
+        expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
+        raise ValueError(_check.message("eye", expected, _check.describe(eye), remedy))
     return np.asarray(total / axial.length(total))
+
+
+def _options(segments: int | None, form: Form) -> int | None:
+    """Validate the number of segments of a circle and the form of the result."""
+    _check.choice("form", form, get_args(Form))
+    return None if segments is None else _check.integer("segments", segments, low=3)
 
 
 class _Latitudes:
@@ -373,7 +373,7 @@ def truncus(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.options(segments, form, get_args(Form)) or axial.FEWEST
+    segments = _options(segments, form) or axial.FEWEST
     if method is None:
         method = "curves" if position is not None and form == "bands" else "rulings"
     _check.choice("method", method, get_args(Method))
@@ -387,11 +387,10 @@ def truncus(
         )
     # A near light fades with its distance from the centre.
     # The source's approximation: one direction and one fading for the whole solid.
-    near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))
     if math.isfinite(light.distance):
         fading = light.luminance(np.array(1.0), light.distance) - light.low
-        near = dataclasses.replace(near, scale=float(fading), distance=math.inf)
-    side = _Rulings(near, solid)
+        light = dataclasses.replace(light, scale=float(fading), distance=math.inf)
+    side = _Rulings(light, solid)
     ends = side.luminance(np.array([0.0, np.pi]))
     steps = spacing.steps(levels, float(ends.min()), float(ends.max()), exact=True)
     # The angle of each contour, in [0, pi]; the lowest level is the terminator.

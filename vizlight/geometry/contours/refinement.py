@@ -118,7 +118,7 @@ def refine(
         limit = _allowed(levels, steps)
         # Triangles that stay as they were come first, with the error that they have.
         count, known = len(surface.triangles), len(error)
-        bands, triangle = surface.cut(steps, np.arange(known, count) if known else None)
+        bands, triangle = surface.cut(steps, known)
         pieces = np.append(pieces, np.bincount(triangle, minlength=count)[known:])
         error = np.append(error, np.zeros(count - known))
         np.maximum.at(error, triangle, surface.measure(bands, triangle, limit))
@@ -136,7 +136,7 @@ def refine(
             steps = _settled(surface, levels, low)
             error, pieces = error[:0], pieces[:0]
     if known:
-        bands, _ = surface.cut(steps, None)
+        bands, _ = surface.cut(steps)
     worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
     if bound is not None and worst > bound:
         _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
@@ -230,16 +230,14 @@ class LitTriangles:
         places = self.place(np.repeat(a, count), np.repeat(b, count), share.ravel())
         return self.light(places, np.repeat(patch, count)).reshape(share.shape)
 
-    def cut(self, steps: Steps, rows: Indices | None) -> tuple[Bands, Indices]:
-        """Return the bands of some triangles, or of all, and the triangle of each polygon."""
-        triangles, values, patch = self.triangles, self.values, self.patch
-        if rows is not None:
-            triangles, patch = triangles[rows], patch[rows]
-            values = values[rows] if values.ndim == 2 else values
+    def cut(self, steps: Steps, first: int = 0) -> tuple[Bands, Indices]:
+        """Return the bands of all triangles from one on, and the triangle of each polygon."""
         made, triangle = banding.cut(
-            self.points, triangles, values, steps, patch=patch, place=self.place, luminance=self.at
-        )
-        return made, triangle if rows is None else rows[triangle]
+            self.points, self.triangles[first:],
+            self.values[first:] if self.values.ndim == 2 else self.values, steps,
+            patch=self.patch[first:], place=self.place, luminance=self.at,
+        )  # fmt: skip
+        return made, first + triangle
 
     def split(self, chosen: Indices) -> Indices:
         """Halve the edges of chosen triangles, and split their neighbours to match.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,26 +16,13 @@ from vizlight.geometry.solids.primitives import Block, Primitive, place
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 __all__ = ["HalfSpace", "Polyhedron", "Prism"]
 
 #: Share of the size below which two facets are on one plane.
 SAME_PLANE = 1e-10
-
-
-class _Triangles(Protocol):
-    """What is used of a PyVista mesh."""
-
-    points: Array
-
-    @property
-    def regular_faces(self) -> Array:
-        """Indices of the corners of triangles."""
-
-    def triangulate(self) -> _Triangles:
-        """Return the mesh with triangles only."""
 
 
 class HalfSpace(Primitive):
@@ -123,11 +110,10 @@ class Polyhedron(Primitive):
     Equal points are merged. Triangles must not cross each other, which is not checked.
     """
 
-    def __init__(
-        self, points: ArrayLike | _Triangles, triangles: ArrayLike | None = None, /
-    ) -> None:
-        if triangles is None and hasattr(points, "regular_faces"):
-            mesh = cast("_Triangles", points).triangulate()
+    def __init__(self, points: ArrayLike | Dataset, triangles: ArrayLike | None = None, /) -> None:
+        mesh: Foreign = points
+        if triangles is None and hasattr(mesh, "regular_faces"):
+            mesh = mesh.triangulate()
             points, triangles = mesh.points, mesh.regular_faces
         elif triangles is None:
             expected = "a pyvista.PolyData, or an array of points and one of triangles"

@@ -390,10 +390,8 @@ class Block(Primitive):
         if self.axes.shape != (3, 3) or not np.allclose(
             self.axes @ self.axes.T, np.eye(3), atol=1e-6
         ):
-            remedy = "orthonormalise them"
-            raise ValueError(
-                _check.message("axes", "3 orthonormal rows", _check.describe(axes), remedy)
-            )
+            expected, remedy = "3 orthonormal rows", "orthonormalise them"
+            raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
 
     def __repr__(self) -> str:
         middle, size = (tuple(map(float, v)) for v in (self.center, self.size))
