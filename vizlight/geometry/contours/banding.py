@@ -202,9 +202,9 @@ def cut(
     over as they are.
     """
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
+    patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     lowest, touched = _touched(triangles, values, levels, patch)
     rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
-    patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     new, pieces = _pieces(
         len(points), triangles[rows], at_corners(values, triangles, rows), levels, patch[rows],
         place or functools.partial(chord, points), luminance,
@@ -320,7 +320,7 @@ def _pieces(
 
 
 def _touched(
-    triangles: Indices, values: Array, levels: Array, patch: Indices | None
+    triangles: Indices, values: Array, levels: Array, patch: Indices
 ) -> tuple[Indices, Bools]:
     """Return the band of each triangle's first corner, and which triangles are not left whole.
 
@@ -336,7 +336,7 @@ def _touched(
         own[rows] = bands != np.roll(bands, -1, axis=1)
         a, b, c = triangles[rows].T
         touched[rows] = (a == b) | (b == c) | (c == a) | own[rows].any(axis=1)
-    if patch is not None and np.any(patch != patch[:1]) and np.any(own):
+    if np.any(patch != patch[:1]) and np.any(own):
         # At a crease the contour points of one side are corners on the other one, too.
         codes = edge_codes(triangles, int(triangles.max(initial=0)) + 1)
         touched |= np.isin(codes, codes[own]).any(axis=1)

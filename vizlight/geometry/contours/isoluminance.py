@@ -99,14 +99,13 @@ def sphere(
     ``((16 + 2 R / (d - R)) eps)^power``.
     Source: Isoluminance, Representing a Sphere; Specular Reflectors for ``power``.
     """
-    middle = axial.triple("center", center)
-    radius = _check.number("radius", radius, low=0.0)
+    solid = primitives.Sphere(center, radius)
     light = axial.source(
-        middle, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
+        solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
     segments = _options(segments, form)
-    latitudes = _Latitudes(light, middle, radius)
+    latitudes = _Latitudes(light, solid)
     # Between the unlit side and the point nearest to the light.
     steps = spacing.steps(levels, light.low, float(latitudes.luminance(0.0)))
     # The value of q of each contour, the terminator first.
@@ -168,9 +167,9 @@ def _options(segments: int | None, form: Form) -> int | None:
 class _Latitudes:
     """Luminance of a sphere as a function of q, sin^2 of half the angle to the light."""
 
-    def __init__(self, light: axial.Source, center: Array, radius: float) -> None:
-        self.light, self.center, self.radius = light, center, radius
-        near = light.distance
+    def __init__(self, light: axial.Source, solid: primitives.Sphere) -> None:
+        self.light, self.solid = light, solid
+        near, radius = light.distance, solid.radius
         self.ratio = 0.0 if math.isinf(near) else (radius / near if near > radius else 1.0)
         self.dark = (1 - self.ratio) / 2
 
@@ -180,11 +179,9 @@ class _Latitudes:
         r = self.ratio
         far = np.sqrt((1 - r) ** 2 + 4 * r * q)
         cosine = np.where(q < self.dark, (1 - r - 2 * q) / np.where(far > 0, far, 1), 0)
-        reach: Array | float = math.inf
-        if math.isfinite(self.light.distance):
-            reach = np.maximum(far * self.light.distance, 0)
+        lit = self.light.luminance(cosine, far * self.light.distance)
         # At a power of 0 the luminance is a step function at the terminator.
-        return np.where(q < self.dark, self.light.luminance(cosine, reach), self.light.low)
+        return np.where(q < self.dark, lit, self.light.low)
 
     def chord(self, places: Array, segments: int) -> float:
         """Return the largest change of the luminance by chords instead of circles."""
@@ -201,7 +198,7 @@ class _Latitudes:
         ring = axial.circle(angle, *axial.frame(axis))
         across, along = 2 * np.sqrt(q * (1 - q)), 1 - 2 * q
         points = across[:, np.newaxis, np.newaxis] * ring + along[:, np.newaxis, np.newaxis] * axis
-        return np.asarray(self.center + self.radius * points.reshape(-1, 3))
+        return np.asarray(self.solid.center + self.solid.radius * points.reshape(-1, 3))
 
 
 def _round(
@@ -210,10 +207,8 @@ def _round(
     """Return the number of points per circle and the resulting luminance error."""
     if segments is not None:
         return segments, steps.error + latitudes.chord(places, segments)
-    allowed = (1 + spacing.CHORDS) * steps.error
     wish = spacing.allowed(wanted)
-    if wish is not None:
-        allowed = max(wish, steps.error)
+    allowed = (1 + spacing.CHORDS) * steps.error if wish is None else max(wish, steps.error)
     count, error = axial.FEWEST, steps.error
     while count < axial.MOST:
         error = steps.error + latitudes.chord(places, count)
@@ -223,12 +218,13 @@ def _round(
     return count, error
 
 
-def _filled(places: Array, inside: Indices, segments: int) -> tuple[Array, Indices]:
+def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
     """Return angles from 0 up to, but without, pi: those of contours, and others between them.
 
     Contours that are far apart get further angles between them, which keep a surface round with so
     many segments per turn. The contour of each angle, or -1, follows.
     """
+    inside = np.flatnonzero((places > 0) & (places < np.pi))
     contour = np.concatenate([[-1], inside[np.argsort(places[inside], kind="stable")]])
     ends = np.concatenate([[0.0], places[contour[1:]], [np.pi]])
     pieces = np.maximum(np.ceil(np.diff(ends) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
@@ -239,14 +235,14 @@ def _filled(places: Array, inside: Indices, segments: int) -> tuple[Array, Indic
 
 def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error: float) -> Bands:
     """Return the closed surface: caps at both poles and strips between circles."""
-    if latitudes.radius == 0:
+    solid, toward = latitudes.solid, latitudes.light.toward
+    if solid.empty:
         return banding.none(steps, error)
-    inside = np.flatnonzero((places > 0) & (places < 1))
-    angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), inside, min(count, 400))
+    angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), min(count, 400))
     q = np.sin(angle / 2) ** 2
     q[contour >= 0] = places[contour[contour >= 0]]
     q, contour = q[1:], contour[1:]
-    poles = latitudes.center + latitudes.radius * np.outer([1, -1], latitudes.light.toward)
+    poles = solid.center + solid.radius * np.outer([1, -1], toward)
     ring = np.arange(len(q) * count).reshape(len(q), count)
     turned = np.roll(ring, -1, axis=1)
     strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
@@ -276,14 +272,14 @@ def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error
 
 def _laminae(latitudes: _Latitudes, steps: Steps, places: Array, count: int) -> Laminae:
     """Return filled circles of the lit side, and their mirror images for the unlit side."""
-    inside = (places > 0) & (places < 1)
+    inside = places > 0
     lit = places[inside]
     # The unlit side begins with a circle just behind the widest lit one, which it hides when seen
     # from behind; its other circles are as far apart as on the lit side.
     beyond = np.concatenate([[max(latitudes.dark, 0.5) + 1e-9], 1 - lit[lit < 0.5]])
     q = np.concatenate([lit, beyond])
     values = np.concatenate([steps.values[1:][inside], np.full(len(beyond), steps.edges[0])])
-    if latitudes.radius == 0:
+    if latitudes.solid.empty:
         q, values = q[:0], values[:0]
     return Laminae(
         points=latitudes.circles(q, count),
@@ -456,7 +452,7 @@ def _ruled_bands(side: _Rulings, steps: Steps, places: Array, segments: int) -> 
         return banding.none(steps, steps.error)
     # Each contour is a pair of rulings, at plus and minus its angle from the light. The angles run
     # from the light to the far side and, mirrored, back.
-    angle, contour = _filled(places, np.flatnonzero((places > 0) & (places < np.pi)), segments)
+    angle, contour = _filled(places, segments)
     angle = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
     contour = np.concatenate([contour, [-1], contour[:0:-1]])
     count = len(angle)

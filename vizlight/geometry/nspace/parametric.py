@@ -37,7 +37,6 @@ def central_step(eps: float) -> float:
     return float(eps ** (1 / 3)) / 8
 
 
-CENTRAL_STEP = central_step(EPS)
 #: Largest distance, as a share of the extent, between the two ends of a closed direction.
 CLOSED = 1e-9
 #: Largest difference of the tangent spaces at both ends of a closed direction.

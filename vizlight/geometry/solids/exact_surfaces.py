@@ -213,7 +213,7 @@ def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> A
         points[on[met]] = found[met]
         single[on] = ~met
     rows = np.flatnonzero(single)
-    for _ in range(rounds if len(rows) else 0):
+    for _ in range(rounds):
         distance = surfaces.distance(points[rows], both[rows, 0])
         if not np.abs(distance).max(initial=0) > 1e-15:
             break

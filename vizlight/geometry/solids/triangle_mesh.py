@@ -186,22 +186,18 @@ def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
         # Two discs back to back share one rim.
         bottom = top
     after, below = np.roll(top, -1), np.roll(bottom, -1)
-    cells, patch = [], []
+    first, second = (radius > 0 for radius in unit.radii)
     side = unit.height > 0 or unit.radii[0] != unit.radii[1]
-    if side and unit.radii[1] > 0:
-        cells.append(np.stack([top, bottom, below], axis=1))
-        patch.append(0)
-    if side and unit.radii[0] > 0:
-        cells.append(np.stack([top, below, after], axis=1))
-        patch.append(0)
-    if unit.radii[0] > 0:
-        cells.append(np.stack([np.full(segments, top_middle), top, after], axis=1))
-        patch.append(1)
-    if unit.radii[1] > 0:
-        cells.append(np.stack([np.full(segments, bottom_middle), below, bottom], axis=1))
-        patch.append(2)
+    faces = [
+        (side and second, 0, (top, bottom, below)),
+        (side and first, 0, (top, below, after)),
+        (first, 1, (np.full(segments, top_middle), top, after)),
+        (second, 2, (np.full(segments, bottom_middle), below, bottom)),
+    ]
+    cells = [np.stack(corners, axis=1) for there, _, corners in faces if there]
+    patch = np.array([number for there, number, _ in faces if there], np.intp)
     triangles = np.concatenate([*cells, np.empty((0, 3), int)]).astype(np.intp)
-    return np.concatenate(parts), triangles, np.repeat(np.array(patch, np.intp), segments)
+    return np.concatenate(parts), triangles, np.repeat(patch, segments)
 
 
 def _block(unit: Block) -> tuple[Array, Indices, Indices]:
