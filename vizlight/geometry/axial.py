@@ -73,14 +73,9 @@ def source(
             raise ValueError(_check.message("attenuation", expected, "a light at infinity"))
         return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
-    size = length(offset)
+    size = math.hypot(*offset)
     toward = offset / size if size > 0 else np.array([0.0, 0, 1])
     return Source(toward, size, low, scale, power, fading)
-
-
-def length(vector: VectorLike) -> float:
-    """Return the length of a vector, without overflow or underflow."""
-    return math.hypot(*vector)
 
 
 def triple(name: str, value: object) -> Array:
@@ -101,9 +96,9 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     if toward is not None:
         across = toward - (toward @ axis) * axis
         across = across - (across @ axis) * axis
-    if length(across) <= 8 * np.finfo(np.float64).eps:
+    if math.hypot(*across) <= 8 * np.finfo(np.float64).eps:
         across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    first = across / length(across)
+    first = across / math.hypot(*across)
     return first, np.cross(axis, first)
 
 

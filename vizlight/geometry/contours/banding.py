@@ -307,15 +307,8 @@ def _pieces(
         order = np.argsort((triangle * many + band) * places + position)
         size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
-        parts.append(
-            (
-                size,
-                corners,
-                band[which],
-                begin + triangle[which],
-                *_lines(triangle, crossed, corner),
-            )
-        )
+        pieces = size, corners, band[which], begin + triangle[which]
+        parts.append((*pieces, *_lines(triangle, crossed, corner)))
     return new, [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 

@@ -152,10 +152,10 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
             total += _check.unit(name, axial.triple(name, position) - middle)
         else:
             total += _check.unit(name, getattr(given, "direction", given))
-    if axial.length(total) < 1e-12:
+    if math.hypot(*total) < 1e-12:
         expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
         raise ValueError(_check.message("eye", expected, _check.describe(eye), remedy))
-    return np.asarray(total / axial.length(total))
+    return np.asarray(total / math.hypot(*total))
 
 
 def _options(segments: int | None, form: Form) -> int | None:

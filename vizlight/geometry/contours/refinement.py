@@ -385,25 +385,18 @@ def open_apexes(mesh: Mesh) -> Mesh:
         at &= np.isin(np.arange(count), mesh.triangles[mesh.patch == patch])
         start = at[mesh.triangles]
         rows, slot = np.nonzero(start)
-        if not len(rows):
-            continue
         tip, b, c = (mesh.triangles[rows, (slot + i) % 3] for i in range(3))
         key = np.concatenate([tip * count + b, tip * count + c])
         ends, place = np.unique(key, return_inverse=True)
         new = count + place.reshape(2, -1)
         way = mesh.points[ends % count] - apex
         rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
+        made = np.stack([new[0], b, c], axis=1), np.stack([new[0], c, new[1]], axis=1)
         kept = ~start.any(axis=1)
         owner = mesh.patch[rows]
         mesh = mesh.replace(
             points=np.concatenate([mesh.points, rim]),
-            triangles=np.concatenate(
-                [
-                    mesh.triangles[kept],
-                    np.stack([new[0], b, c], 1),
-                    np.stack([new[0], c, new[1]], 1),
-                ]
-            ),
+            triangles=np.concatenate([mesh.triangles[kept], *made]),
             patch=np.concatenate([mesh.patch[kept], owner, owner]),
         )
     return mesh

@@ -301,18 +301,13 @@ def klein_bottle(
         raise ValueError(_check.message("minor", f"less than major = {major:g}", minor))
     shape = lattice.resolution(resolution, 2, [True, True])
     u, v = (x.ravel() for x in np.meshgrid(*(circle(count) for count in shape), indexing="ij"))
-    out = major + minor * np.cos(v)
-    up, half = minor * np.sin(v), u / 2
-    points = np.stack(
-        [out * np.cos(u), out * np.sin(u), up * np.cos(half), up * np.sin(half)], axis=1
-    )
-    along = np.stack(
-        [-out * np.sin(u), out * np.cos(u), -up * np.sin(half) / 2, up * np.cos(half) / 2], axis=1
-    )
+    # Unit circles in the xy and in the zw plane.
+    x, y, z, w = np.cos(u), np.sin(u), np.cos(u / 2), np.sin(u / 2)
+    out, up = major + minor * np.cos(v), minor * np.sin(v)
     inward, lift = -minor * np.sin(v), minor * np.cos(v)
-    across = np.stack(
-        [inward * np.cos(u), inward * np.sin(u), lift * np.cos(half), lift * np.sin(half)], axis=1
-    )
+    points = np.stack([out * x, out * y, up * z, up * w], axis=1)
+    along = np.stack([-out * y, out * x, -up * w / 2, up * z / 2], axis=1)
+    across = np.stack([inward * x, inward * y, lift * z, lift * w], axis=1)
     cells = lattice.cells(shape, [True, True], twisted=True)
     return manifold(points, np.stack([along, across], axis=1), cells)
 

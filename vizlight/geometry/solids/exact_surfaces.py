@@ -1,4 +1,4 @@
-"""Surfaces of solids: signed distance, outward normal and sample points."""
+"""Surfaces of solids: signed distance and outward normal."""
 
 from __future__ import annotations
 
@@ -170,15 +170,6 @@ NEAR, MORE = 1e-10, 40
 STEP, WIDE = 50, 200
 
 
-def fibonacci(count: int) -> Array:
-    """Return ``count`` points spread evenly over the unit sphere."""
-    i = np.arange(count) + 0.5
-    z = 1 - 2 * i / count
-    angle = i * np.pi * (3 - math.sqrt(5))
-    r = np.sqrt(1 - z * z)
-    return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
-
-
 def _cylindrical(center: Array, axis: Array, points: Array) -> tuple[Array, Array, Array]:
     """Return the height of points along an axis, their distance from it, and the way outward."""
     rel = points - center
@@ -206,8 +197,7 @@ def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> A
         _, before = _onto_all(surfaces, points[on], both[on], 0)
         found, off = _onto_all(surfaces, points[on], both[on], rounds)
         far = np.flatnonzero(off > NEAR)
-        if len(far):
-            found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
+        found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
         moved = _sizes(found - points[on])
         met = (off <= NEAR) & (moved <= WIDE * before)
         points[on[met]] = found[met]

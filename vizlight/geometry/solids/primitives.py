@@ -164,10 +164,7 @@ class Primitive(Solid):
         """Return which points are inside all surfaces, as for a convex solid."""
         if self.empty:
             return np.zeros(len(points), np.bool_)
-        found = np.ones(len(points), np.bool_)
-        for surface in self.surfaces():
-            found &= surface.distance(points) < 0
-        return found
+        return np.asarray(np.all([s.distance(points) < 0 for s in self.surfaces()], axis=0))
 
 
 @dataclass(frozen=True)
@@ -307,7 +304,7 @@ class Frustum(Primitive):
             raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
         self.axis = _check.unit("axis", axis)
         self.height = (
-            axial.length(along) if height is None else _check.number("height", height, low=0.0)
+            math.hypot(*along) if height is None else _check.number("height", height, low=0.0)
         )
         given = _check.floats("radii", radii)
         if given.shape != (2,):
@@ -384,14 +381,11 @@ class Block(Primitive):
         self.size = axial.triple("size", size)
         if np.any(self.size < 0):
             raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
-        self.axes = (
-            np.eye(3) if axes is None else np.asarray(_check.vectors("axes", axes, n=3), float)
-        )
-        if self.axes.shape != (3, 3) or not np.allclose(
-            self.axes @ self.axes.T, np.eye(3), atol=1e-6
-        ):
+        rows = np.asarray(_check.vectors("axes", np.eye(3) if axes is None else axes, n=3), float)
+        if rows.shape != (3, 3) or not np.allclose(rows @ rows.T, np.eye(3), atol=1e-6):
             expected, remedy = "3 orthonormal rows", "orthonormalise them"
             raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
+        self.axes = rows
 
     def __repr__(self) -> str:
         middle, size = (tuple(map(float, v)) for v in (self.center, self.size))
@@ -423,7 +417,7 @@ class Block(Primitive):
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of the smallest ball around it."""
-        return self.center, axial.length(self.size) / 2
+        return self.center, math.hypot(*self.size) / 2
 
 
 class Torus(Primitive):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Surfaces, fibonacci
+from vizlight.geometry.solids.exact_surfaces import Surfaces
 from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
 from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
 
@@ -163,7 +163,13 @@ def _torus(unit: Torus, segments: int) -> tuple[Array, Indices, Indices]:
 def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
     from scipy.spatial import ConvexHull
 
-    points = fibonacci(max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12))
+    # The points are spread evenly along a spiral of the golden angle.
+    count = max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12)
+    i = np.arange(count) + 0.5
+    z = 1 - 2 * i / count
+    angle = i * np.pi * (3 - math.sqrt(5))
+    r = np.sqrt(1 - z * z)
+    points = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
     faces = ConvexHull(points).simplices.astype(np.intp)
     a, b, c = (points[faces[:, i]] for i in range(3))
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
