@@ -512,7 +512,7 @@ def _chords(side: _Rulings, steps: Steps, places: Array, segments: int) -> Lamin
         [side.place(-angle, first=True), side.place(angle, first=True),
          side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
     )  # fmt: skip
-    if not (side.solid.height > 0 and max(side.solid.radii) > 0):
+    if side.solid.empty:
         quads, values = quads[:0], values[:0]
     pieces, sizes = [quads.reshape(-1, 3)], [4] * len(quads)
     ring = 2 * np.pi * np.arange(segments) / segments

@@ -232,7 +232,9 @@ class Prism(Polyhedron):
         if _crosses(corners):
             remedy = "remove repeated corners and crossings"
             raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
-        if _area(corners) < 0:
+        # Twice the signed area of the polygon.
+        x, y = (corners - corners.mean(axis=0)).T
+        if x @ np.roll(y, -1) - y @ np.roll(x, -1) < 0:
             corners = corners[::-1]
         cap = _ears(corners)
         count = len(corners)
@@ -243,12 +245,6 @@ class Prism(Polyhedron):
         ]
         points = np.column_stack([np.tile(corners, (2, 1)), np.repeat([0.0, height], count)])
         super().__init__(points, np.concatenate([cap[:, ::-1], cap + count, *sides]))
-
-
-def _area(corners: Array) -> float:
-    """Return twice the signed area of a polygon."""
-    x, y = (corners - corners.mean(axis=0)).T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _crosses(corners: Array) -> bool:

@@ -115,10 +115,8 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         count = tree.points(chosen)
         if fine == tolerance and count <= most:
             # Thin walls between surfaces need facets finer than the wall.
-            thin = tree.finer(chosen)
-            if thin != chosen:
-                chosen, most = thin, max(PATIENCE, count)
-                count = tree.points(chosen)
+            chosen, most = tree.finer(chosen), max(PATIENCE, count)
+            count = tree.points(chosen)
         if count > most:
             break
         made = tree.mesh(chosen, fine)
