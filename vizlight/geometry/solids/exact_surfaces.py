@@ -197,13 +197,14 @@ def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> A
         _, before = _onto_all(surfaces, points[on], both[on], 0)
         found, off = _onto_all(surfaces, points[on], both[on], rounds)
         far = np.flatnonzero(off > NEAR)
-        found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
+        if len(far):
+            found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
         moved = _sizes(found - points[on])
         met = (off <= NEAR) & (moved <= WIDE * before)
         points[on[met]] = found[met]
         single[on] = ~met
     rows = np.flatnonzero(single)
-    for _ in range(rounds):
+    for _ in range(rounds if len(rows) else 0):
         distance = surfaces.distance(points[rows], both[rows, 0])
         if not np.abs(distance).max(initial=0) > 1e-15:
             break
