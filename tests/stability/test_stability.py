@@ -143,7 +143,6 @@ def test_hard_directions_are_where_they_say(random):
 UNTOLD = {
     "parametric.central_step": "a step, not an error",
     "parametric.parametric": "of any function: the study of frames measures both errors",
-    "parametric._precision": "finds the type of a function's numbers",
 }
 
 

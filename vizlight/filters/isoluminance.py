@@ -286,10 +286,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     }
     rgb: Array | None = None
     if not len(triangles):
-        steps = spacing.steps(levels, 0.0, 0.0)
         carried = {}
-        bands, _ = banding.cut(np.empty((0, 3)), triangles, np.empty((0, 3)), steps)
-        bands = dataclasses.replace(bands, error=0.0)
+        bands = banding.none(spacing.steps(levels, 0.0, 0.0))
     elif options.tangents is None:
         unit, shown = _normals(surface, asked, inputs, scene, warn=angle is None)
         del inputs

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
 from vizlight.geometry.solids import tessellation
-from vizlight.geometry.solids.primitives import EXPECTED, Solid
+
+if TYPE_CHECKING:
+    from vizlight.geometry.solids.primitives import Solid
 
 
 def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
@@ -43,8 +46,6 @@ def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
     writes ``trimesh.Trimesh(mesh.points, mesh.regular_faces).export("part.3mf")``; it needs the
     packages lxml and networkx.
     """
-    if not isinstance(solid, Solid):
-        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
     made = tessellation.tessellate(solid, tolerance=tolerance)
     if not len(made.triangles):
         mesh = pv.PolyData()

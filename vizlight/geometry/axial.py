@@ -60,31 +60,22 @@ def source(
 ) -> Source:  # fmt: skip
     """Validate the light of a shape and return it relative to the shape's centre."""
     if (direction is None) == (position is None):
-        raise ValueError(
-            _check.message(
-                "direction", "either direction= (toward the light) or position=",
-                "neither" if direction is None else "both", "pass one of them",
-            )
-        )  # fmt: skip
+        expected = "either direction= (toward the light) or position="
+        got = "neither" if direction is None else "both"
+        raise ValueError(_check.message("direction", expected, got, "pass one of them"))
     low = _check.number("ambient", ambient, low=0.0, high=_check.LARGEST)
     scale = _check.number("diffuse", diffuse, low=0.0, high=_check.LARGEST)
     power = _check.number("power", power, low=0.0, high=_check.LARGEST)
     fading = falloff.attenuation("attenuation", attenuation)
     if direction is not None:
         if fading != (1.0, 0.0, 0.0):
-            raise ValueError(
-                _check.message("attenuation", "a light with position=", "a light at infinity")
-            )
+            expected = "a light with position="
+            raise ValueError(_check.message("attenuation", expected, "a light at infinity"))
         return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
-    size = length(offset)
+    size = math.hypot(*offset)
     toward = offset / size if size > 0 else np.array([0.0, 0, 1])
     return Source(toward, size, low, scale, power, fading)
-
-
-def length(vector: VectorLike) -> float:
-    """Return the length of a vector, without overflow or underflow."""
-    return math.hypot(*(float(x) for x in vector))
 
 
 def triple(name: str, value: object) -> Array:
@@ -101,24 +92,19 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     The first is along the part of ``toward`` that is normal to the axis. It is arbitrary without
     ``toward``, and where ``toward`` is parallel to the axis to rounding.
     """
-    first = None
+    across = np.zeros(3)
     if toward is not None:
         across = toward - (toward @ axis) * axis
         across = across - (across @ axis) * axis
-        if length(across) > 8 * np.finfo(np.float64).eps:
-            first = across / length(across)
-    if first is None:
-        least = np.zeros(3)
-        least[np.abs(axis).argmin()] = 1
-        across = np.cross(axis, least)
-        first = across / length(across)
+    if math.hypot(*across) <= 8 * np.finfo(np.float64).eps:
+        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first = across / math.hypot(*across)
     return first, np.cross(axis, first)
 
 
-def options(segments: int | None, form: str, forms: tuple[str, ...]) -> int | None:
-    """Validate the number of segments of a circle and the form of the result."""
-    _check.choice("form", form, forms)
-    return None if segments is None else _check.integer("segments", segments, low=3)
+def circle(angle: Array, first: Array, second: Array) -> Array:
+    """Return unit vectors at angles from the first of two unit vectors toward the second."""
+    return np.asarray(np.cos(angle)[:, np.newaxis] * first + np.sin(angle)[:, np.newaxis] * second)
 
 
 def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:

@@ -6,7 +6,7 @@ from refusals import refusals
 from vectors import projector, unit
 
 from vizlight.geometry import manifolds
-from vizlight.geometry.nspace.parametric import CENTRAL_STEP, parametric
+from vizlight.geometry.nspace.parametric import EPS, central_step, parametric
 
 TURN = (0, 2 * np.pi)
 
@@ -56,7 +56,7 @@ def test_central_differences_are_of_order_2_and_within_the_bound():
         assert errors[-1] < 9 * h**2 / 3 + 4e-13 / h
     assert abs(np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) < 0.2
     assert error(parametric(wavy, [TURN], 3, resolution=50), true) < 1e-9
-    assert CENTRAL_STEP * 2 * np.pi == pytest.approx(np.finfo(float).eps ** (1 / 3), rel=0.3)
+    assert central_step(EPS) * 2 * np.pi == pytest.approx(np.finfo(float).eps ** (1 / 3), rel=0.3)
 
 
 def test_closed_directions_are_found():

@@ -253,6 +253,11 @@ def test_no_parts_without_volume():
     assert area.min() > 1e-3
 
 
+def test_flat_parts_add_nothing():
+    disc = Frustum(radii=(1, 0.5), height=0)
+    assert solids.tessellate(Block() | disc).volume == solids.tessellate(Block() - disc).volume > 0
+
+
 def test_moved_and_scaled_solids_are_the_same():
     """Far from the origin, and of sizes whose squares no float holds."""
     unit = mesh_of(DRILLED, 1.2e-2)

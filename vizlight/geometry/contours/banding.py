@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -101,9 +102,7 @@ class Bands:
     def triangles(self) -> tuple[Indices, Indices]:
         """Return the polygons as fans of triangles, and the polygon of each triangle."""
         size = np.diff(self.offsets)
-        owner = np.repeat(np.arange(len(size)), size - 2)
-        start = np.concatenate([[0], np.cumsum(size - 2)])[:-1]
-        turn = np.arange(len(owner)) - start[owner]
+        owner, turn = ranges(np.zeros_like(size), size - 2)
         first = self.offsets[owner]
         parts = [self.corners[first + step] for step in (0 * turn, turn + 1, turn + 2)]
         return np.stack(parts, axis=1), owner
@@ -203,12 +202,12 @@ def cut(
     over as they are.
     """
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
+    patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     lowest, touched = _touched(triangles, values, levels, patch)
     rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
-    patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     new, pieces = _pieces(
-        points, triangles[rows], at_corners(values, triangles, rows), levels, patch[rows], place,
-        luminance,
+        len(points), triangles[rows], at_corners(values, triangles, rows), levels, patch[rows],
+        place or functools.partial(chord, points), luminance,
     )  # fmt: skip
     size, cut_corners, cut_band, owner, lines, line_level = pieces
     # The triangles that stay whole follow the pieces of the others.
@@ -237,16 +236,34 @@ def cut(
     return cut_bands, triangle
 
 
+def none(steps: Steps, error: float = 0.0) -> Bands:
+    """Return the bands of a surface without polygons."""
+    empty, _ = cut(np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty((0, 3)), steps)
+    return dataclasses.replace(empty, error=error)
+
+
+def edge_codes(triangles: Indices, count: int) -> Indices:
+    """Return a number for the edge that begins at each corner, the same in both directions."""
+    after = np.roll(triangles, -1, axis=1)
+    return np.minimum(triangles, after) * count + np.maximum(triangles, after)
+
+
+def chord(points: Array, a: Indices, b: Indices, share: Array) -> Array:
+    """Return points at fractions of straight edges."""
+    t = share[:, np.newaxis]
+    return np.asarray(points[a] * (1 - t) + points[b] * t)
+
+
 def at_corners(values: Array, triangles: Indices, rows: Slice | Indices) -> Array:
     """Return the values at the corners of some triangles, from values at corners or at points."""
     return np.asarray(values[rows] if values.ndim == 2 else values[triangles[rows]])
 
 
 def _pieces(
-    points: Array, triangles: Indices, values: Array, levels: Array, patch: Indices,
-    place: Callable[[Indices, Indices, Array], Array] | None, luminance: Luminance | None,
+    count: int, triangles: Indices, values: Array, levels: Array, patch: Indices,
+    place: Callable[[Indices, Indices, Array], Array], luminance: Luminance | None,
 ) -> tuple[Array, list[Indices]]:  # fmt: skip
-    """Return the contour points, which follow the given points, and the pieces of triangles.
+    """Return the contour points, which follow as many given ones, and the pieces of triangles.
 
     Of the pieces: sizes, corners, bands and triangles, in the order of the triangles and of the
     bands; then the contours and their levels.
@@ -254,7 +271,7 @@ def _pieces(
     side, edge, ends, owner, side_values = _sides(triangles, values, patch)
     at = np.searchsorted(levels, side_values, side="left")
     first, last = at.min(axis=1), at.max(axis=1)
-    of_side, level = _ranges(first, last)
+    of_side, level = ranges(first, last)
     if luminance is None:
         share = _linear(side_values[of_side], levels[level])
     else:
@@ -273,13 +290,9 @@ def _pieces(
     of_side, level, share = of_side[order], level[order], share[order]
     a, b = ends[edge[of_side]].T
     between = (share > 0) & (share < 1)
-    number = len(points) + np.cumsum(between) - 1
+    number = count + np.cumsum(between) - 1
     vertex = np.where(between, number, np.where(share > 0.5, b, a))
-    if place is None:
-        t = share[between, np.newaxis]
-        new = points[a[between]] * (1 - t) + points[b[between]] * t
-    else:
-        new = place(a[between], b[between], share[between])
+    new = place(a[between], b[between], share[between])
     starts = np.searchsorted(edge[of_side], np.arange(len(ends) + 1))
 
     parts = []
@@ -294,20 +307,13 @@ def _pieces(
         order = np.argsort((triangle * many + band) * places + position)
         size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
-        parts.append(
-            (
-                size,
-                corners,
-                band[which],
-                begin + triangle[which],
-                *_lines(triangle, crossed, corner),
-            )
-        )
+        pieces = size, corners, band[which], begin + triangle[which]
+        parts.append((*pieces, *_lines(triangle, crossed, corner)))
     return new, [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 
 def _touched(
-    triangles: Indices, values: Array, levels: Array, patch: Indices | None
+    triangles: Indices, values: Array, levels: Array, patch: Indices
 ) -> tuple[Indices, Bools]:
     """Return the band of each triangle's first corner, and which triangles are not left whole.
 
@@ -323,11 +329,9 @@ def _touched(
         own[rows] = bands != np.roll(bands, -1, axis=1)
         a, b, c = triangles[rows].T
         touched[rows] = (a == b) | (b == c) | (c == a) | own[rows].any(axis=1)
-    if patch is not None and np.any(patch != patch[:1]) and np.any(own):
+    if np.any(patch != patch[:1]) and np.any(own):
         # At a crease the contour points of one side are corners on the other one, too.
-        stop = np.roll(triangles, -1, axis=1)
-        size = int(triangles.max(initial=0)) + 1
-        codes = np.minimum(triangles, stop) * size + np.maximum(triangles, stop)
+        codes = edge_codes(triangles, int(triangles.max(initial=0)) + 1)
         touched |= np.isin(codes, codes[own]).any(axis=1)
     return lowest, touched
 
@@ -386,25 +390,19 @@ def _sides(
     A side is an edge as part of one patch; edge i of a triangle begins at corner i. Ends are given
     for each edge, patches and values for each side.
     """
-    start, stop = triangles, np.roll(triangles, -1, axis=1)
-    low, high = np.minimum(start, stop), np.maximum(start, stop)
     size = int(triangles.max(initial=0)) + 1
-    key = (low * size + high).ravel()
-    codes, edge_of = np.unique(key, return_inverse=True)
+    codes, edge_of = np.unique(edge_codes(triangles, size), return_inverse=True)
     ends = np.stack(np.divmod(codes, size), axis=1)
     patches, patch_of = np.unique(patch, return_inverse=True)
-    both = edge_of.reshape(-1) * max(len(patches), 1) + np.repeat(patch_of.reshape(-1), 3)
+    both = edge_of.reshape(-1) * len(patches) + np.repeat(patch_of.reshape(-1), 3)
     _, first, side = np.unique(both, return_index=True, return_inverse=True)
-    there = np.where(
-        (start.ravel() < stop.ravel())[:, np.newaxis],
-        np.stack([values, np.roll(values, -1, axis=1)], axis=-1).reshape(-1, 2),
-        np.stack([np.roll(values, -1, axis=1), values], axis=-1).reshape(-1, 2),
-    )
-    owner = np.repeat(patch, 3)[first]
-    return side.reshape(-1, 3), edge_of.reshape(-1)[first], ends, owner, there[first]
+    forward = (triangles < np.roll(triangles, -1, axis=1)).reshape(-1, 1)[first]
+    there = np.stack([values, np.roll(values, -1, axis=1)], axis=-1).reshape(-1, 2)[first]
+    there = np.where(forward, there, there[:, ::-1])
+    return side.reshape(-1, 3), edge_of.reshape(-1)[first], ends, np.repeat(patch, 3)[first], there
 
 
-def _ranges(first: Indices, last: Indices) -> tuple[Indices, Indices]:
+def ranges(first: Indices, last: Indices) -> tuple[Indices, Indices]:
     """Return the integers of half-open ranges, and before them the range of each."""
     size = last - first
     owner = np.repeat(np.arange(len(size)), size)
@@ -522,7 +520,7 @@ def _walk(
         # Edge i of a triangle runs from corner i to the next.
         of_edge = edge[side[:, slot]]
         first, last = starts[of_edge], starts[of_edge + 1]
-        tri, index = _ranges(first, last)
+        tri, index = ranges(first, last)
         step = index - first[tri]
         forward = ends[of_edge[tri], 0] == corner[tri, slot]
         index = np.where(forward, index, last[tri] - 1 - step)
@@ -544,16 +542,12 @@ def _polygons(
     triangle: Indices, band: Indices, corner: Indices
 ) -> tuple[Indices, Indices, Indices]:
     """Return size, corners and the first row of polygons with at least three corners."""
-    if not len(triangle):
-        return triangle, corner, triangle
     new = np.ones(len(triangle), np.bool_)
     new[1:] = (triangle[1:] != triangle[:-1]) | (band[1:] != band[:-1])
     group = np.cumsum(new) - 1
     first = np.flatnonzero(new)
-    last = np.append(first[1:], len(new)) - 1
-    previous = np.empty_like(corner)
-    previous[1:] = corner[:-1]
-    previous[first] = corner[last]
+    previous = np.roll(corner, 1)
+    previous[first] = corner[np.roll(first, -1) - 1]
     # A point equal to its predecessor around the polygon is left out.
     kept = corner != previous
     size = np.bincount(group[kept], minlength=len(first))

@@ -13,7 +13,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.geometry import axial
-from vizlight.geometry.contours import refinement, spacing
+from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours.banding import Bands, Laminae
 from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels
@@ -99,20 +99,21 @@ def sphere(
     ``((16 + 2 R / (d - R)) eps)^power``.
     Source: Isoluminance, Representing a Sphere; Specular Reflectors for ``power``.
     """
-    middle = axial.triple("center", center)
-    radius = _check.number("radius", radius, low=0.0)
+    solid = primitives.Sphere(center, radius)
     light = axial.source(
-        middle, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
+        solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.options(segments, form, get_args(Form))
-    latitudes = _Latitudes(light, radius)
-    steps = latitudes.steps(levels)
-    places = latitudes.contours(steps)
+    segments = _options(segments, form)
+    latitudes = _Latitudes(light, solid)
+    # Between the unlit side and the point nearest to the light.
+    steps = spacing.steps(levels, light.low, float(latitudes.luminance(0.0)))
+    # The value of q of each contour, the terminator first.
+    places = axial.reached(latitudes.luminance, steps.edges[:-1], latitudes.dark)
     count, error = _round(latitudes, steps, places, levels, segments)
     if form == "laminae":
-        return _laminae(latitudes, steps, places, count, middle, radius)
-    return _bands(latitudes, steps, places, count, error, middle, radius)
+        return _laminae(latitudes, steps, places, count)
+    return _bands(latitudes, steps, places, count, error)
 
 
 def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array:
@@ -151,24 +152,24 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
             total += _check.unit(name, axial.triple(name, position) - middle)
         else:
             total += _check.unit(name, getattr(given, "direction", given))
-    if axial.length(total) < 1e-12:
-        raise ValueError(
-            _check.message(
-                "eye",
-                "an eye that is not opposite the light",
-                _check.describe(eye),
-                "move the eye or the light",
-            )
-        )
-    return np.asarray(total / axial.length(total))
+    if math.hypot(*total) < 1e-12:
+        expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
+        raise ValueError(_check.message("eye", expected, _check.describe(eye), remedy))
+    return np.asarray(total / math.hypot(*total))
+
+
+def _options(segments: int | None, form: Form) -> int | None:
+    """Validate the number of segments of a circle and the form of the result."""
+    _check.choice("form", form, get_args(Form))
+    return None if segments is None else _check.integer("segments", segments, low=3)
 
 
 class _Latitudes:
     """Luminance of a sphere as a function of q, sin^2 of half the angle to the light."""
 
-    def __init__(self, light: axial.Source, radius: float) -> None:
-        self.light, self.radius = light, radius
-        near = light.distance
+    def __init__(self, light: axial.Source, solid: primitives.Sphere) -> None:
+        self.light, self.solid = light, solid
+        near, radius = light.distance, solid.radius
         self.ratio = 0.0 if math.isinf(near) else (radius / near if near > radius else 1.0)
         self.dark = (1 - self.ratio) / 2
 
@@ -178,19 +179,9 @@ class _Latitudes:
         r = self.ratio
         far = np.sqrt((1 - r) ** 2 + 4 * r * q)
         cosine = np.where(q < self.dark, (1 - r - 2 * q) / np.where(far > 0, far, 1), 0)
-        reach: Array | float = math.inf
-        if math.isfinite(self.light.distance):
-            reach = np.maximum(far * self.light.distance, 0)
+        lit = self.light.luminance(cosine, far * self.light.distance)
         # At a power of 0 the luminance is a step function at the terminator.
-        return np.where(q < self.dark, self.light.luminance(cosine, reach), self.light.low)
-
-    def steps(self, wanted: Levels) -> Steps:
-        """Return the steps between the unlit side and the point nearest to the light."""
-        return spacing.steps(wanted, self.light.low, float(self.luminance(0.0)))
-
-    def contours(self, steps: Steps) -> Array:
-        """Return q of each contour, the terminator first; empty if no light reaches the sphere."""
-        return axial.reached(self.luminance, steps.edges[:-1], self.dark)
+        return np.where(q < self.dark, lit, self.light.low)
 
     def chord(self, places: Array, segments: int) -> float:
         """Return the largest change of the luminance by chords instead of circles."""
@@ -200,6 +191,15 @@ class _Latitudes:
         middle = np.sin(within / 2) ** 2
         return float(np.abs(self.luminance(middle) - self.luminance(places)).max(initial=0))
 
+    def circles(self, q: Array, count: int) -> Array:
+        """Return points on circles of latitude, circle after circle."""
+        axis = self.light.toward
+        angle = 2 * np.pi * np.arange(count) / count
+        ring = axial.circle(angle, *axial.frame(axis))
+        across, along = 2 * np.sqrt(q * (1 - q)), 1 - 2 * q
+        points = across[:, np.newaxis, np.newaxis] * ring + along[:, np.newaxis, np.newaxis] * axis
+        return np.asarray(self.solid.center + self.solid.radius * points.reshape(-1, 3))
+
 
 def _round(
     latitudes: _Latitudes, steps: Steps, places: Array, wanted: Levels, segments: int | None
@@ -207,10 +207,8 @@ def _round(
     """Return the number of points per circle and the resulting luminance error."""
     if segments is not None:
         return segments, steps.error + latitudes.chord(places, segments)
-    allowed = (1 + spacing.CHORDS) * steps.error
     wish = spacing.allowed(wanted)
-    if wish is not None:
-        allowed = max(wish, steps.error)
+    allowed = (1 + spacing.CHORDS) * steps.error if wish is None else max(wish, steps.error)
     count, error = axial.FEWEST, steps.error
     while count < axial.MOST:
         error = steps.error + latitudes.chord(places, count)
@@ -220,67 +218,46 @@ def _round(
     return count, error
 
 
-def _filled(places: Array, inside: Indices, segments: int) -> tuple[Array, Indices]:
+def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
     """Return angles from 0 up to, but without, pi: those of contours, and others between them.
 
     Contours that are far apart get further angles between them, which keep a surface round with so
     many segments per turn. The contour of each angle, or -1, follows.
     """
+    inside = np.flatnonzero((places > 0) & (places < np.pi))
     contour = np.concatenate([[-1], inside[np.argsort(places[inside], kind="stable")]])
     ends = np.concatenate([[0.0], places[contour[1:]], [np.pi]])
     pieces = np.maximum(np.ceil(np.diff(ends) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
-    step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    angle = np.repeat(ends[:-1], pieces) + step * np.repeat(np.diff(ends) / pieces, pieces)
-    return angle, np.where(step == 0, np.repeat(contour, pieces), -1)
+    piece, step = banding.ranges(np.zeros_like(pieces), pieces)
+    angle = ends[piece] + step * (np.diff(ends) / pieces)[piece]
+    return angle, np.where(step == 0, contour[piece], -1)
 
 
-def _circles(q: Array, count: int, axis: Array, radius: float, middle: Array) -> Array:
-    """Return points on circles of latitude, circle after circle."""
-    first, second = axial.frame(axis)
-    angle = 2 * np.pi * np.arange(count) / count
-    ring = np.cos(angle)[:, np.newaxis] * first + np.sin(angle)[:, np.newaxis] * second
-    across = 2 * np.sqrt(q * (1 - q))
-    points = (
-        across[:, np.newaxis, np.newaxis] * ring + (1 - 2 * q)[:, np.newaxis, np.newaxis] * axis
-    )
-    return np.asarray(middle + radius * points.reshape(-1, 3))
-
-
-def _bands(
-    latitudes: _Latitudes, steps: Steps, places: Array, count: int, error: float, middle: Array,
-    radius: float,
-) -> Bands:  # fmt: skip
+def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error: float) -> Bands:
     """Return the closed surface: caps at both poles and strips between circles."""
-    inside = np.flatnonzero((places > 0) & (places < 1))
-    angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), inside, min(count, 400))
+    solid, toward = latitudes.solid, latitudes.light.toward
+    if solid.empty:
+        return banding.none(steps, error)
+    angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), min(count, 400))
     q = np.sin(angle / 2) ** 2
     q[contour >= 0] = places[contour[contour >= 0]]
-    q, contour, rings = q[1:], contour[1:], len(q) - 1
-    if radius == 0:
-        rings, q, contour = 0, q[:0], contour[:0]
-
-    points = _circles(q, count, latitudes.light.toward, radius, middle)
-    poles = middle + radius * np.outer([1, -1], latitudes.light.toward)
-    points = np.concatenate([points, poles]) if rings else np.empty((0, 3))
-    ring = np.arange(rings * count).reshape(rings, count)
+    q, contour = q[1:], contour[1:]
+    poles = solid.center + solid.radius * np.outer([1, -1], toward)
+    ring = np.arange(len(q) * count).reshape(len(q), count)
     turned = np.roll(ring, -1, axis=1)
-    top, bottom = rings * count, rings * count + 1
-    if rings:
-        strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
-        cap = np.stack([np.full(count, top), ring[0], turned[0]], axis=-1)
-        floor = np.stack([np.full(count, bottom), turned[-1], ring[-1]], axis=-1)
-    else:
-        strips, cap, floor = np.empty((0, 4), int), np.empty((0, 3), int), np.empty((0, 3), int)
+    strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
+    cap = np.stack([np.full(count, ring.size), ring[0], turned[0]], axis=-1)
+    floor = np.stack([np.full(count, ring.size + 1), turned[-1], ring[-1]], axis=-1)
     corners = np.concatenate([cap.ravel(), strips.ravel(), floor.ravel()])
     sizes = np.repeat([3, 4, 3], [len(cap), len(strips), len(floor)])
     # Outward from the light, each contour decreases the band by one.
     passed = np.concatenate([[0], np.cumsum(contour >= 0)])
     number = len(places) if np.any(latitudes.luminance(0.0) > latitudes.light.low) else 0
-    band = np.repeat(number - passed, count)[: len(sizes)] if rings else np.empty(0, int)
+    band = np.repeat(number - passed, count)
     on = contour >= 0
     lines = np.stack([ring[on], turned[on]], axis=-1).reshape(-1, 2)
     return Bands(
-        points=points,
+        points=np.concatenate([latitudes.circles(q, count), poles]),
         offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp),
         corners=corners.astype(np.intp),
         band=band.astype(np.intp),
@@ -293,21 +270,19 @@ def _bands(
     )
 
 
-def _laminae(
-    latitudes: _Latitudes, steps: Steps, places: Array, count: int, middle: Array, radius: float
-) -> Laminae:
+def _laminae(latitudes: _Latitudes, steps: Steps, places: Array, count: int) -> Laminae:
     """Return filled circles of the lit side, and their mirror images for the unlit side."""
-    lit = places[(places > 0) & (places < 1)]
-    band = np.arange(1, len(steps.edges))[(places > 0) & (places < 1)]
+    inside = places > 0
+    lit = places[inside]
     # The unlit side begins with a circle just behind the widest lit one, which it hides when seen
     # from behind; its other circles are as far apart as on the lit side.
     beyond = np.concatenate([[max(latitudes.dark, 0.5) + 1e-9], 1 - lit[lit < 0.5]])
     q = np.concatenate([lit, beyond])
-    values = np.concatenate([steps.values[band], np.full(len(beyond), steps.edges[0])])
-    if radius == 0:
+    values = np.concatenate([steps.values[1:][inside], np.full(len(beyond), steps.edges[0])])
+    if latitudes.solid.empty:
         q, values = q[:0], values[:0]
     return Laminae(
-        points=_circles(q, count, latitudes.light.toward, radius, middle),
+        points=latitudes.circles(q, count),
         offsets=np.arange(len(q) + 1) * count,
         values=values,
     )
@@ -394,14 +369,13 @@ def truncus(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = axial.options(segments, form, get_args(Form)) or axial.FEWEST
+    segments = _options(segments, form) or axial.FEWEST
     if method is None:
         method = "curves" if position is not None and form == "bands" else "rulings"
     _check.choice("method", method, get_args(Method))
     if method == "curves" and form == "laminae":
         remedy = "use form='bands' or method='rulings'"
         raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
-    spacing.check(levels)
     # A near lamp has another direction at each point: no ruling has one luminance any more.
     if method == "curves":
         return refinement.draw(
@@ -409,15 +383,17 @@ def truncus(
         )
     # A near light fades with its distance from the centre.
     # The source's approximation: one direction and one fading for the whole solid.
-    near = dataclasses.replace(light, attenuation=(1.0, 0.0, 0.0))
     if math.isfinite(light.distance):
         fading = light.luminance(np.array(1.0), light.distance) - light.low
-        near = dataclasses.replace(near, scale=float(fading), distance=math.inf)
-    side = _Rulings(near, solid)
-    steps = side.steps(levels)
+        light = dataclasses.replace(light, scale=float(fading), distance=math.inf)
+    side = _Rulings(light, solid)
+    ends = side.luminance(np.array([0.0, np.pi]))
+    steps = spacing.steps(levels, float(ends.min()), float(ends.max()), exact=True)
+    # The angle of each contour, in [0, pi]; the lowest level is the terminator.
+    places = axial.reached(side.luminance, steps.edges[:-1], np.pi)
     if form == "laminae":
-        return _chords(side, steps, segments)
-    return _ruled_bands(side, steps, segments)
+        return _chords(side, steps, places, segments)
+    return _ruled_bands(side, steps, places, segments)
 
 
 def shade(light: axial.Source, center: Array) -> Luminance:
@@ -449,23 +425,11 @@ class _Rulings:
         self.a = across * max(float(self.first @ light.toward), 0.0)
         self.b = along * float(solid.axis @ light.toward)
 
-    def cosine(self, angle: ArrayLike) -> Array:
-        """Return N . L at angles from the light."""
-        # Half angles avoid cancellation at small angles.
-        return np.asarray((self.a + self.b) - 2 * self.a * np.sin(np.asarray(angle) / 2) ** 2)
-
     def luminance(self, angle: ArrayLike) -> Array:
         """Return the luminance at angles from the light."""
-        return self.light.luminance(self.cosine(angle))
-
-    def steps(self, wanted: Levels) -> Steps:
-        """Return the steps of the side."""
-        ends = self.luminance(np.array([0.0, np.pi]))
-        return spacing.steps(wanted, float(ends.min()), float(ends.max()), exact=True)
-
-    def contours(self, steps: Steps) -> Array:
-        """Return the angle of each contour, in [0, pi]; the lowest level is the terminator."""
-        return axial.reached(self.luminance, steps.edges[:-1], np.pi)
+        # Half angles avoid cancellation at small angles.
+        cosine = (self.a + self.b) - 2 * self.a * np.sin(np.asarray(angle) / 2) ** 2
+        return self.light.luminance(np.asarray(cosine))
 
     def end(self, first: bool) -> float:
         """Return the luminance of an end."""
@@ -477,27 +441,21 @@ class _Rulings:
         radius = self.solid.radii[0 if first else 1]
         half = (0.5 if first else -0.5) * self.solid.height * self.solid.axis
         # The circle in the frame whose first axis is the light's part across the axis.
-        ring = (
-            np.cos(angle)[:, np.newaxis] * self.first + np.sin(angle)[:, np.newaxis] * self.second
-        )
+        ring = axial.circle(angle, self.first, self.second)
         return np.asarray(self.solid.center + half + radius * ring)
 
 
-def _around(side: _Rulings, steps: Steps, segments: int) -> tuple[Array, Indices]:
-    """Return the angles of all rulings around the axis, and the contour of each, or -1."""
-    # Each contour is a pair of rulings, at plus and minus its angle from the light.
-    places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
-    inside = np.flatnonzero((places > 0) & (places < np.pi))
-    angle, contour = _filled(places, inside, segments)
-    # The angles run from the light to the far side and, mirrored, back.
-    full = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
-    return full, np.concatenate([contour, [-1], contour[:0:-1]])
-
-
-def _ruled_bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
+def _ruled_bands(side: _Rulings, steps: Steps, places: Array, segments: int) -> Bands:
     """Return the closed surface: strips between rulings, and one polygon per end."""
-    angle, contour = _around(side, steps, segments)
-    (first, second), height, count = side.solid.radii, side.solid.height, len(angle)
+    (first, second), height = side.solid.radii, side.solid.height
+    if max(first, second) == 0:
+        return banding.none(steps, steps.error)
+    # Each contour is a pair of rulings, at plus and minus its angle from the light. The angles run
+    # from the light to the far side and, mirrored, back.
+    angle, contour = _filled(places, segments)
+    angle = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
+    contour = np.concatenate([contour, [-1], contour[:0:-1]])
+    count = len(angle)
     # An apex is one point that all strips share.
     top = np.arange(count) if first > 0 else np.zeros(count, int)
     shared = top.max() + 1
@@ -510,7 +468,7 @@ def _ruled_bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
     cells: list[Indices] = []
     parts: list[tuple[int, int, float]] = []
     on = np.empty(0, int)
-    if max(first, second) > 0 and (height > 0 or first != second):
+    if height > 0 or first != second:
         quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
         # At an apex quadrilaterals become triangles.
         cells += list(quads[:, [0, 1, 2] if first == 0 else [0, 1, 3] if second == 0 else slice(4)])
@@ -524,9 +482,9 @@ def _ruled_bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
             cells.append(ring)
             parts.append((patch, int(steps.band(np.array(value))), value))
     return Bands(
-        points=points if cells else np.empty((0, 3)),
+        points=points,
         offsets=np.concatenate([[0], np.cumsum([len(cell) for cell in cells])]).astype(np.intp),
-        corners=np.concatenate([*cells, np.empty(0, int)]).astype(np.intp),
+        corners=np.concatenate(cells).astype(np.intp),
         band=np.array([k for _, k, _ in parts], dtype=np.intp),
         values=np.array([value for _, _, value in parts], dtype=np.float64),
         patch=np.array([patch for patch, _, _ in parts], dtype=np.intp),
@@ -537,12 +495,10 @@ def _ruled_bands(side: _Rulings, steps: Steps, segments: int) -> Bands:
     )
 
 
-def _chords(side: _Rulings, steps: Steps, segments: int) -> Laminae:
+def _chords(side: _Rulings, steps: Steps, places: Array, segments: int) -> Laminae:
     """Return the chords through both rulings of each contour, and the two ends."""
-    places = side.contours(steps) if len(steps.edges) > 1 else np.empty(0)
     inside = (places > 0) & (places < np.pi)
     lit = places[inside]
-    values = steps.values[1:][inside] if len(lit) else np.empty(0)
     # Beyond the last contour the side has one value, with as many segments as on a circle.
     start = lit.max(initial=0.0)
     count = max(math.ceil((np.pi - start) * segments / (2 * np.pi)), 2)
@@ -550,12 +506,13 @@ def _chords(side: _Rulings, steps: Steps, segments: int) -> Laminae:
     # Just beyond the last contour, in the band after it.
     beyond[0] += 1e-9
     angle = np.concatenate([lit, beyond])
-    values = np.concatenate([values, np.full(len(beyond), float(side.luminance(np.pi)))])
+    far = np.full(len(beyond), float(side.luminance(np.pi)))
+    values = np.concatenate([steps.values[1:][inside], far])
     quads = np.stack(
         [side.place(-angle, first=True), side.place(angle, first=True),
          side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
     )  # fmt: skip
-    if not (side.solid.height > 0 and max(side.solid.radii) > 0):
+    if side.solid.empty:
         quads, values = quads[:0], values[:0]
     pieces, sizes = [quads.reshape(-1, 3)], [4] * len(quads)
     ring = 2 * np.pi * np.arange(segments) / segments

@@ -86,11 +86,8 @@ def draw(
     Contour points are found by bracketing and lie on the exact surface, at creases on both
     surfaces; contours are chords between them.
     """
-    spacing.check(levels)
     if not len(mesh.triangles):
-        none = spacing.steps(levels, low or 0.0, low or 0.0)
-        empty, _ = banding.cut(mesh.points[:0], mesh.triangles, np.empty((0, 3)), none)
-        return dataclasses.replace(empty, error=0.0)
+        return banding.none(spacing.steps(levels, low or 0.0, low or 0.0))
     made = refine(LitSolid(open_apexes(mesh), luminance), levels, low=low, progress=progress)
     made = _close_apexes(made, mesh)
     return dataclasses.replace(made, points=mesh.world(made.points))
@@ -121,7 +118,7 @@ def refine(
         limit = _allowed(levels, steps)
         # Triangles that stay as they were come first, with the error that they have.
         count, known = len(surface.triangles), len(error)
-        bands, triangle = surface.cut(steps, np.arange(known, count) if known else None)
+        bands, triangle = surface.cut(steps, known)
         pieces = np.append(pieces, np.bincount(triangle, minlength=count)[known:])
         error = np.append(error, np.zeros(count - known))
         np.maximum.at(error, triangle, surface.measure(bands, triangle, limit))
@@ -132,12 +129,14 @@ def refine(
             break
         same = surface.split(chosen)
         error, pieces = error[same], pieces[same]
-        if _moved(steps, _steps(surface, levels, low)):
+        found = _steps(surface, levels, low).edges
+        share = STILL * steps.error
+        if len(found) != len(steps.edges) or np.abs(steps.edges - found).max() > share:
             # New points are brighter than all before: other steps, by which nothing is known.
             steps = _settled(surface, levels, low)
             error, pieces = error[:0], pieces[:0]
     if known:
-        bands, _ = surface.cut(steps, None)
+        bands, _ = surface.cut(steps)
     worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
     if bound is not None and worst > bound:
         _check.warn(f"levels={bound:g} is not kept everywhere: the largest error is {worst:.3g}")
@@ -157,13 +156,6 @@ def _steps(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
     values = surface.values
     bottom = float(values.min()) if low is None else low
     return spacing.steps(levels, bottom, float(values.max()))
-
-
-def _moved(steps: Steps, found: Steps) -> bool:
-    """Return whether the steps have changed by more than a negligible share of a step."""
-    if len(steps.edges) != len(found.edges):
-        return True
-    return float(np.abs(steps.edges - found.edges).max()) > STILL * steps.error
 
 
 def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
@@ -230,8 +222,7 @@ class LitTriangles:
 
     def place(self, a: Indices, b: Indices, share: Array) -> Array:
         """Return points at fractions of edges."""
-        t = share[:, np.newaxis]
-        return np.asarray(self.points[a] * (1 - t) + self.points[b] * t)
+        return banding.chord(self.points, a, b, share)
 
     def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
         """Return the luminance at fractions (N, m) of edges, with the normals of one side."""
@@ -239,16 +230,14 @@ class LitTriangles:
         places = self.place(np.repeat(a, count), np.repeat(b, count), share.ravel())
         return self.light(places, np.repeat(patch, count)).reshape(share.shape)
 
-    def cut(self, steps: Steps, rows: Indices | None) -> tuple[Bands, Indices]:
-        """Return the bands of some triangles, or of all, and the triangle of each polygon."""
-        triangles, values, patch = self.triangles, self.values, self.patch
-        if rows is not None:
-            triangles, patch = triangles[rows], patch[rows]
-            values = values[rows] if values.ndim == 2 else values
+    def cut(self, steps: Steps, first: int = 0) -> tuple[Bands, Indices]:
+        """Return the bands of all triangles from one on, and the triangle of each polygon."""
         made, triangle = banding.cut(
-            self.points, triangles, values, steps, patch=patch, place=self.place, luminance=self.at
-        )
-        return made, triangle if rows is None else rows[triangle]
+            self.points, self.triangles[first:],
+            self.values[first:] if self.values.ndim == 2 else self.values, steps,
+            patch=self.patch[first:], place=self.place, luminance=self.at,
+        )  # fmt: skip
+        return made, first + triangle
 
     def split(self, chosen: Indices) -> Indices:
         """Halve the edges of chosen triangles, and split their neighbours to match.
@@ -256,7 +245,7 @@ class LitTriangles:
         Returns the earlier indices of the triangles that stay as they were; they become the first.
         """
         count = len(self.points)
-        codes = edge_codes(self.triangles, count)
+        codes = banding.edge_codes(self.triangles, count)
         marked = np.unique(codes[chosen])
         a, b = np.divmod(marked, count)
         rank = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
@@ -341,7 +330,7 @@ class LitSolid(LitTriangles):
 
     def _extend(self, new: Array) -> None:  # noqa: ARG002
         """Find the surfaces on both sides of each edge, and the luminance on both sides."""
-        code = edge_codes(self.triangles, len(self.points))
+        code = banding.edge_codes(self.triangles, len(self.points))
         self.codes, edge = np.unique(code, return_inverse=True)
         edge, owner = edge.ravel(), np.repeat(self.patch, 3)
         self.both = np.empty((len(self.codes), 2), np.intp)
@@ -384,46 +373,30 @@ class LitSolid(LitTriangles):
         return exact_surfaces.onto(self.mesh.surfaces, super().place(a, b, share), self.both[edge])
 
 
-def edge_codes(triangles: Indices, count: int) -> Indices:
-    """Return a number for the edge that begins at each corner, the same in both directions."""
-    after = np.roll(triangles, -1, axis=1)
-    return np.minimum(triangles, after) * count + np.maximum(triangles, after)
-
-
 def open_apexes(mesh: Mesh) -> Mesh:
     """Return the mesh with a small hole at the apex of each cone, with one point per ruling.
 
     Where a solid touches itself there, each of its points at the apex gets its own hole.
     """
-    for patch, surface in enumerate(mesh.surfaces):
-        apex = getattr(surface, "apex", None)
-        if apex is None:
-            continue
+    for patch, apex in mesh.surfaces.apexes:
         count = len(mesh.points)
         gap = mesh.points - apex
         at = np.einsum("ij,ij->i", gap, gap) < 1e-20
         at &= np.isin(np.arange(count), mesh.triangles[mesh.patch == patch])
         start = at[mesh.triangles]
         rows, slot = np.nonzero(start)
-        if not len(rows):
-            continue
         tip, b, c = (mesh.triangles[rows, (slot + i) % 3] for i in range(3))
         key = np.concatenate([tip * count + b, tip * count + c])
         ends, place = np.unique(key, return_inverse=True)
         new = count + place.reshape(2, -1)
         way = mesh.points[ends % count] - apex
         rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
+        made = np.stack([new[0], b, c], axis=1), np.stack([new[0], c, new[1]], axis=1)
         kept = ~start.any(axis=1)
         owner = mesh.patch[rows]
         mesh = mesh.replace(
             points=np.concatenate([mesh.points, rim]),
-            triangles=np.concatenate(
-                [
-                    mesh.triangles[kept],
-                    np.stack([new[0], b, c], 1),
-                    np.stack([new[0], c, new[1]], 1),
-                ]
-            ),
+            triangles=np.concatenate([mesh.triangles[kept], *made]),
             patch=np.concatenate([mesh.patch[kept], owner, owner]),
         )
     return mesh
@@ -432,11 +405,9 @@ def open_apexes(mesh: Mesh) -> Mesh:
 def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
     """Return bands with each hole that was opened at an apex merged to one point."""
     clusters, points = np.arange(len(bands.points)), bands.points
-    for surface in mesh.surfaces:
-        apex = getattr(surface, "apex", None)
-        if apex is not None:
-            gap = points - apex
-            near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
-            clusters[near] = near[:1]
-            points[near[:1]] = apex
+    for _, apex in mesh.surfaces.apexes:
+        gap = points - apex
+        near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
+        clusters[near] = near[:1]
+        points[near[:1]] = apex
     return banding.weld(bands, clusters)

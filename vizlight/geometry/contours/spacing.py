@@ -75,15 +75,13 @@ def check(levels: object) -> None:
             remedy = f"write {int(error)} for a count"
             raise ValueError(_check.message("levels", expected, repr(levels), remedy))
         if not (error > 0 and math.isfinite(error)):
-            raise ValueError(
-                _check.message("levels", "an allowed error above 0", _check.describe(levels))
-            )
+            expected = "an allowed error above 0"
+            raise ValueError(_check.message("levels", expected, _check.describe(levels)))
     else:
         values = _check.floats("levels", levels)
         if values.ndim != 1 or not np.all(np.isfinite(values)):
-            raise ValueError(
-                _check.message("levels", "finite values in one row", _check.describe(levels))
-            )
+            expected = "finite values in one row"
+            raise ValueError(_check.message("levels", expected, _check.describe(levels)))
 
 
 def allowed(levels: object) -> float | None:
@@ -134,9 +132,8 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     elif error is not None:
         ratio = span / (2 * error)
         if ratio > MOST * (1 if exact else 1 - CHORDS):
-            raise ValueError(
-                _check.message("levels", f"an error that at most {MOST} steps keep", repr(levels))
-            )
+            expected = f"an error that at most {MOST} steps keep"
+            raise ValueError(_check.message("levels", expected, repr(levels)))
         edges = np.linspace(low, high, _count(ratio, exact) + 1)
     else:
         given = np.unique(np.asarray(levels, dtype=np.float64))

@@ -301,18 +301,13 @@ def klein_bottle(
         raise ValueError(_check.message("minor", f"less than major = {major:g}", minor))
     shape = lattice.resolution(resolution, 2, [True, True])
     u, v = (x.ravel() for x in np.meshgrid(*(circle(count) for count in shape), indexing="ij"))
-    out = major + minor * np.cos(v)
-    up, half = minor * np.sin(v), u / 2
-    points = np.stack(
-        [out * np.cos(u), out * np.sin(u), up * np.cos(half), up * np.sin(half)], axis=1
-    )
-    along = np.stack(
-        [-out * np.sin(u), out * np.cos(u), -up * np.sin(half) / 2, up * np.cos(half) / 2], axis=1
-    )
+    # Unit circles in the xy and in the zw plane.
+    x, y, z, w = np.cos(u), np.sin(u), np.cos(u / 2), np.sin(u / 2)
+    out, up = major + minor * np.cos(v), minor * np.sin(v)
     inward, lift = -minor * np.sin(v), minor * np.cos(v)
-    across = np.stack(
-        [inward * np.cos(u), inward * np.sin(u), lift * np.cos(half), lift * np.sin(half)], axis=1
-    )
+    points = np.stack([out * x, out * y, up * z, up * w], axis=1)
+    along = np.stack([-out * y, out * x, -up * w / 2, up * z / 2], axis=1)
+    across = np.stack([inward * x, inward * y, lift * z, lift * w], axis=1)
     cells = lattice.cells(shape, [True, True], twisted=True)
     return manifold(points, np.stack([along, across], axis=1), cells)
 
@@ -351,19 +346,14 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
     place = _round(corners, size)
     x, y, z = place.T
     zero = np.zeros_like(x)
-    # The derivative of the map at the point, and two directions tangent to the sphere.
-    rows = np.stack(
-        [
-            np.stack([y, x, zero], axis=1),
-            np.stack([z, zero, x], axis=1),
-            np.stack([zero, z, y], axis=1),
-            np.stack([x, -y, zero], axis=1),
-        ],
-        axis=1,
-    )
-    across = _across(place)
+    # The derivative of the map at the point.
+    derivative = np.array([[y, x, zero], [z, zero, x], [zero, z, y], [x, -y, zero]])
+    # Two directions tangent to the sphere, without a pole: the cross product with the coordinate
+    # axis farthest from the point, and the cross product with that.
+    first = np.cross(place, np.eye(3)[np.argmin(np.abs(place), axis=1)])
+    across = np.stack([first, np.cross(place, first)], axis=1)
     points = radius**2 * np.stack([x * y, x * z, y * z, (x - y) * (x + y) / 2], axis=1)
-    return manifold(points, np.einsum("bij,bkj->bki", rows, across), cells)
+    return manifold(points, np.einsum("ijb,bkj->bki", derivative, across), cells)
 
 
 def complex_curve(
@@ -422,21 +412,16 @@ def complex_curve(
     def value(z: Complex) -> Complex:
         return _complex("function", function, z)
 
-    def slope(z: Complex) -> Complex:
-        if derivative is not None:
-            found = _complex("derivative", derivative, z)
-            if not np.all(np.isfinite(found)):
-                expected = "one that is finite on its domain"
-                raise ValueError(_check.message("derivative", expected, "NaN or infinity"))
-            return found
-        return _slope(value, z, side)
-
     def place(x: Array, y: Array) -> tuple[Array, ...]:
         w = value(x + 1j * y)
         return x, y, w.real, w.imag
 
     def tangents(x: Array, y: Array) -> tuple[tuple[ArrayLike, ...], ...]:
-        d = slope(x + 1j * y)
+        z = x + 1j * y
+        d = _slope(value, z, side) if derivative is None else _complex("derivative", derivative, z)
+        if derivative is not None and not np.all(np.isfinite(d)):
+            expected = "one that is finite on its domain"
+            raise ValueError(_check.message("derivative", expected, "NaN or infinity"))
         return (1.0, 0.0, d.real, d.imag), (0.0, 1.0, -d.imag, d.real)
 
     shape = parametric(place, domain, 4, resolution=resolution, tangents=tangents, closed=False)
@@ -564,14 +549,3 @@ def _round(corners: Indices, size: int) -> Array:
     place = np.tan(np.pi / 4 * (corners / size))
     unit: Array = place / np.linalg.norm(place, axis=1, keepdims=True)
     return unit
-
-
-def _across(place: Array) -> Array:
-    """Return two directions (N, 2, 3) perpendicular to each unit vector, without a pole.
-
-    The first is the cross product with the coordinate axis farthest from the vector, the second the
-    cross product with the first.
-    """
-    axis = np.eye(3)[np.argmin(np.abs(place), axis=1)]
-    first = np.cross(place, axis)
-    return np.stack([first, np.cross(place, first)], axis=1)

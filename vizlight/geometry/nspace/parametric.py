@@ -37,7 +37,6 @@ def central_step(eps: float) -> float:
     return float(eps ** (1 / 3)) / 8
 
 
-CENTRAL_STEP = central_step(EPS)
 #: Largest distance, as a share of the extent, between the two ends of a closed direction.
 CLOSED = 1e-9
 #: Largest difference of the tangent spaces at both ends of a closed direction.
@@ -177,7 +176,9 @@ def parametric(
     ends, wraps = _domain(domain, closed)
     k = len(ends)
     n = _check.integer("n", n, low=k + 1)
-    eps = _precision(function, ends, n)
+    # The precision of the coarsest type that the function returns at the start of its domain.
+    first = _rows(function, list(ends[:, :1]), n)
+    eps = max([EPS, *(float(np.finfo(row.dtype).eps) for row in first if row.dtype.kind == "f")])
     slopes = _slopes(function, ends, n, tangents, step, eps)
     # Differences at both ends are one-sided, so their second-order errors need not agree.
     coarse = step if step is not None and tangents == "central" else 0.0
@@ -223,12 +224,6 @@ def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | N
     if wraps.shape not in ((), (len(ends),)):
         raise ValueError(_check.message("closed", expected, _check.describe(closed)))
     return ends, tuple(bool(wrap) for wrap in np.broadcast_to(wraps, len(ends)))
-
-
-def _precision(function: Function, ends: Array, n: int) -> float:
-    """Return eps of the coarsest type that the function returns at the start of its domain."""
-    rows = _rows(function, list(ends[:, :1]), n)
-    return max([EPS, *(float(np.finfo(row.dtype).eps) for row in rows if row.dtype.kind == "f")])
 
 
 def _slopes(

@@ -91,7 +91,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
             # Corners of an edge in rising order: neighbours find the same point by the same pair.
             pairs = rows[:, np.array([_EDGES[size][edge] for edge in part])]
             found.append(np.sort(pairs, axis=2))
-    pairs = np.concatenate(found) if found else np.empty((0, size - 1, 2), np.intp)
+    pairs = np.concatenate(found)
     # A corner at 0 is a single point of the cut for all edges that meet there.
     for end in (0, 1):
         at = height[pairs[..., end]] == 0

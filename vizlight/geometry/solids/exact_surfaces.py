@@ -1,4 +1,4 @@
-"""Surfaces of solids: signed distance, outward normal and sample points."""
+"""Surfaces of solids: signed distance and outward normal."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ import numpy as np
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from vizlight._types import Array, Bools, Indices
 
 
@@ -64,14 +66,6 @@ class Cone:
     axis: Array
     height: float
     radii: tuple[float, float]
-
-    @property
-    def apex(self) -> Array | None:
-        """The apex of a cone; None for a frustum or a cylinder."""
-        if min(self.radii) > 0:
-            return None
-        half = self.height / 2 * self.axis
-        return self.center + half if self.radii[0] == 0 else self.center - half
 
     @property
     def slope(self) -> float:
@@ -138,25 +132,34 @@ class Surfaces(tuple[Surface, ...]):
         center, outward = np.array(given, np.float64).reshape(-1, 2, 3).transpose(1, 0, 2)
         return flat, center, outward
 
+    def _curved(self, which: Indices) -> Iterator[tuple[Surface, Bools]]:
+        """Yield each surface that is not a plane, and the mask of its points."""
+        curved = ~self._planes[0][which]
+        for i in np.unique(which[curved]) if curved.any() else ():
+            yield self[i], which == i
+
     def distance(self, points: Array, which: Indices) -> Array:
         """Return the signed distance of each point from one surface, negative inside."""
-        flat, center, outward = self._planes
+        _, center, outward = self._planes
         found = np.einsum("ij,ij->i", points - center[which], outward[which])
-        curved = ~flat[which]
-        for i in np.unique(which[curved]) if curved.any() else ():
-            rows = which == i
-            found[rows] = self[i].distance(points[rows])
+        for surface, rows in self._curved(which):
+            found[rows] = surface.distance(points[rows])
         return np.asarray(found)
 
     def normal(self, points: Array, which: Indices) -> Array:
         """Return the outward unit normal of one surface at each point."""
-        flat, _, outward = self._planes
-        found = outward[which]
-        curved = ~flat[which]
-        for i in np.unique(which[curved]) if curved.any() else ():
-            rows = which == i
-            found[rows] = self[i].normal(points[rows])
+        found = self._planes[2][which]
+        for surface, rows in self._curved(which):
+            found[rows] = surface.normal(points[rows])
         return np.asarray(found)
+
+    @property
+    def apexes(self) -> Iterator[tuple[int, Array]]:
+        """The index of each cone that ends in a point, and the point."""
+        for i, surface in enumerate(self):
+            if isinstance(surface, Cone) and min(surface.radii) == 0:
+                side = 1 if surface.radii[0] == 0 else -1
+                yield i, surface.center + side * (surface.height / 2 * surface.axis)
 
 
 #: Sum of distances below which a point is on all its surfaces, and rounds of Newton's method where
@@ -165,15 +168,6 @@ NEAR, MORE = 1e-10, 40
 #: Largest step of a point that is moved onto several surfaces, and largest distance in all, in
 #: units of its distance from them.
 STEP, WIDE = 50, 200
-
-
-def fibonacci(count: int) -> Array:
-    """Return ``count`` points spread evenly over the unit sphere."""
-    i = np.arange(count) + 0.5
-    z = 1 - 2 * i / count
-    angle = i * np.pi * (3 - math.sqrt(5))
-    r = np.sqrt(1 - z * z)
-    return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
 
 
 def _cylindrical(center: Array, axis: Array, points: Array) -> tuple[Array, Array, Array]:

@@ -60,7 +60,10 @@ def hits(
     size = end - begin
     if size.sum() > most * (len(start) + len(triangles)):
         return None
-    edges = _Edges(place, triangles)
+    # Each edge from its lower to its higher index.
+    after = np.roll(triangles, -1, axis=1)
+    ends = place[:, np.minimum(triangles, after).T], place[:, np.maximum(triangles, after).T]
+    turned = (triangles > after).T.copy()
     rays, cells = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
     total = np.cumsum(size)
     first = 0
@@ -75,35 +78,26 @@ def hits(
             there = grid.points[axis, pair]
             near = np.flatnonzero((there >= low[axis, cell]) & (there <= high[axis, cell]))
             pair, cell = pair[near], cell[near]
-        inside = edges.around(grid.points[:, pair], cell)
+        inside = _inside(*ends, turned, grid.points[:, pair], cell)
         rays.append(grid.order[pair[inside]])
         cells.append(cell[inside])
         first = last
     return np.concatenate(rays), np.concatenate(cells)
 
 
-class _Edges:
-    """The edges of triangles in a plane, each from its lower to its higher index."""
-
-    def __init__(self, place: Array, triangles: Indices) -> None:
-        after = np.roll(triangles, -1, axis=1)
-        self._turned = (triangles > after).T.copy()
-        self._from = place[:, np.minimum(triangles, after).T]
-        self._to = place[:, np.maximum(triangles, after).T]
-
-    def around(self, point: Array, cell: Indices) -> Bools:
-        """Return which points are inside their triangles."""
-        left = []
-        for i in range(3):
-            begin, end = self._from[:, i, cell], self._to[:, i, cell]
-            x, y = end - begin
-            (u, v), (far_u, far_v) = point - begin, point - end
-            nearer = np.abs(far_u) + np.abs(far_v) < np.abs(u) + np.abs(v)
-            side = x * np.where(nearer, far_v, v) - y * np.where(nearer, far_u, u)
-            # On the line of the edge: the side of the point that is displaced by (e, e^2).
-            side = np.where(side == 0, np.where(y == 0, x, -y), side)
-            left.append((side > 0) != self._turned[i, cell])
-        return np.asarray((left[0] == left[1]) & (left[1] == left[2]))
+def _inside(start: Array, stop: Array, turned: Bools, point: Array, cell: Indices) -> Bools:
+    """Return which points of a plane are inside their triangles, given by the edges of all."""
+    left = []
+    for i in range(3):
+        begin, end = start[:, i, cell], stop[:, i, cell]
+        x, y = end - begin
+        (u, v), (far_u, far_v) = point - begin, point - end
+        nearer = np.abs(far_u) + np.abs(far_v) < np.abs(u) + np.abs(v)
+        side = x * np.where(nearer, far_v, v) - y * np.where(nearer, far_u, u)
+        # On the line of the edge: the side of the point that is displaced by (e, e^2).
+        side = np.where(side == 0, np.where(y == 0, x, -y), side)
+        left.append((side > 0) != turned[i, cell])
+    return np.asarray((left[0] == left[1]) & (left[1] == left[2]))
 
 
 class _Grid:

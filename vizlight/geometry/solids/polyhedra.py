@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,26 +16,13 @@ from vizlight.geometry.solids.primitives import Block, Primitive, place
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Indices, VectorLike
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
 
 __all__ = ["HalfSpace", "Polyhedron", "Prism"]
 
 #: Share of the size below which two facets are on one plane.
 SAME_PLANE = 1e-10
-
-
-class _Triangles(Protocol):
-    """What is used of a PyVista mesh."""
-
-    points: Array
-
-    @property
-    def regular_faces(self) -> Array:
-        """Indices of the corners of triangles."""
-
-    def triangulate(self) -> _Triangles:
-        """Return the mesh with triangles only."""
 
 
 class HalfSpace(Primitive):
@@ -123,11 +110,10 @@ class Polyhedron(Primitive):
     Equal points are merged. Triangles must not cross each other, which is not checked.
     """
 
-    def __init__(
-        self, points: ArrayLike | _Triangles, triangles: ArrayLike | None = None, /
-    ) -> None:
-        if triangles is None and hasattr(points, "regular_faces"):
-            mesh = cast("_Triangles", points).triangulate()
+    def __init__(self, points: ArrayLike | Dataset, triangles: ArrayLike | None = None, /) -> None:
+        mesh: Foreign = points
+        if triangles is None and hasattr(mesh, "regular_faces"):
+            mesh = mesh.triangulate()
             points, triangles = mesh.points, mesh.regular_faces
         elif triangles is None:
             expected = "a pyvista.PolyData, or an array of points and one of triangles"
@@ -141,20 +127,15 @@ class Polyhedron(Primitive):
         unique, which = np.unique(places, axis=0, return_inverse=True)
         found = which.ravel()[corners].astype(np.intp)
         found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
-        codes = found * len(unique) + np.roll(found, -1, axis=1)
-        back = np.roll(found, -1, axis=1) * len(unique) + found
-        if len(np.unique(codes)) < codes.size or not np.array_equal(
-            np.unique(codes), np.unique(back)
-        ):
+        after = np.roll(found, -1, axis=1)
+        edges, back = found * len(unique) + after, after * len(unique) + found
+        if not np.array_equal(np.unique(edges), np.sort(back, axis=None)):
             remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
             expected = "a closed surface with consistently oriented triangles"
             raise ValueError(_check.message("triangles", expected, "another", remedy))
-        self._set(unique, found)
+        self.points, self.triangles = unique, found
         if self.volume < 0:
-            self._set(unique, np.ascontiguousarray(found[:, ::-1]))
-
-    def _set(self, points: Array, triangles: Indices) -> None:
-        self.points, self.triangles = points, triangles
+            self.triangles = np.ascontiguousarray(found[:, ::-1])
 
     def __repr__(self) -> str:
         return f"Polyhedron({len(self.points)} points, {len(self.triangles)} triangles)"
@@ -196,7 +177,7 @@ class Polyhedron(Primitive):
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         found = Polyhedron.__new__(Polyhedron)
-        found._set(place(self.points, shift, scale, turn), self.triangles)
+        found.points, found.triangles = place(self.points, shift, scale, turn), self.triangles
         return found
 
     def box(self) -> tuple[Array, float]:
@@ -251,7 +232,9 @@ class Prism(Polyhedron):
         if _crosses(corners):
             remedy = "remove repeated corners and crossings"
             raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
-        if _area(corners) < 0:
+        # Twice the signed area of the polygon.
+        x, y = (corners - corners.mean(axis=0)).T
+        if x @ np.roll(y, -1) - y @ np.roll(x, -1) < 0:
             corners = corners[::-1]
         cap = _ears(corners)
         count = len(corners)
@@ -262,12 +245,6 @@ class Prism(Polyhedron):
         ]
         points = np.column_stack([np.tile(corners, (2, 1)), np.repeat([0.0, height], count)])
         super().__init__(points, np.concatenate([cap[:, ::-1], cap + count, *sides]))
-
-
-def _area(corners: Array) -> float:
-    """Return twice the signed area of a polygon."""
-    x, y = (corners - corners.mean(axis=0)).T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _crosses(corners: Array) -> bool:

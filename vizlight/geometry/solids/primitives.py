@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
+    from typing_extensions import Self
 
     from vizlight._types import Array, Bools, VectorLike
     from vizlight.geometry.solids.exact_surfaces import Surface
@@ -50,7 +51,7 @@ class Solid:
         """Return which points are inside the solid."""
         raise NotImplementedError
 
-    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Solid:
+    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Self:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         raise NotImplementedError
 
@@ -141,10 +142,6 @@ class Primitive(Solid):
         """Return the surfaces that bound the solid."""
         raise NotImplementedError
 
-    def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Primitive:
-        """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
-        raise NotImplementedError
-
     def box(self) -> tuple[Array, float]:
         """Return the centre of the solid and the radius of a ball around it that contains it."""
         raise NotImplementedError
@@ -167,10 +164,7 @@ class Primitive(Solid):
         """Return which points are inside all surfaces, as for a convex solid."""
         if self.empty:
             return np.zeros(len(points), np.bool_)
-        found = np.ones(len(points), np.bool_)
-        for surface in self.surfaces():
-            found &= surface.distance(points) < 0
-        return found
+        return np.asarray(np.all([s.distance(points) < 0 for s in self.surfaces()], axis=0))
 
 
 @dataclass(frozen=True)
@@ -310,7 +304,7 @@ class Frustum(Primitive):
             raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
         self.axis = _check.unit("axis", axis)
         self.height = (
-            axial.length(along) if height is None else _check.number("height", height, low=0.0)
+            math.hypot(*along) if height is None else _check.number("height", height, low=0.0)
         )
         given = _check.floats("radii", radii)
         if given.shape != (2,):
@@ -336,7 +330,11 @@ class Frustum(Primitive):
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the side, the first end and the second end."""
-        side = Cone(self.center, self.axis, self.height, self.radii)
+        side: Surface = Cone(self.center, self.axis, self.height, self.radii)
+        if self.height == 0:
+            # The side is a flat ring, or empty.
+            up = 1.0 if self.radii[1] > self.radii[0] else -1.0
+            side = Plane(self.center, up * self.axis)
         ends = (
             Plane(self.center + s / 2 * self.height * self.axis, s * self.axis) for s in (1, -1)
         )
@@ -383,16 +381,11 @@ class Block(Primitive):
         self.size = axial.triple("size", size)
         if np.any(self.size < 0):
             raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
-        self.axes = (
-            np.eye(3) if axes is None else np.asarray(_check.vectors("axes", axes, n=3), float)
-        )
-        if self.axes.shape != (3, 3) or not np.allclose(
-            self.axes @ self.axes.T, np.eye(3), atol=1e-6
-        ):
-            remedy = "orthonormalise them"
-            raise ValueError(
-                _check.message("axes", "3 orthonormal rows", _check.describe(axes), remedy)
-            )
+        rows = np.asarray(_check.vectors("axes", np.eye(3) if axes is None else axes, n=3), float)
+        if rows.shape != (3, 3) or not np.allclose(rows @ rows.T, np.eye(3), atol=1e-6):
+            expected, remedy = "3 orthonormal rows", "orthonormalise them"
+            raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
+        self.axes = rows
 
     def __repr__(self) -> str:
         middle, size = (tuple(map(float, v)) for v in (self.center, self.size))
@@ -424,7 +417,7 @@ class Block(Primitive):
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of the smallest ball around it."""
-        return self.center, axial.length(self.size) / 2
+        return self.center, math.hypot(*self.size) / 2
 
 
 class Torus(Primitive):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 
 from vizlight import _check
 from vizlight.geometry.solids import triangle_mesh
@@ -93,7 +94,9 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     its relative error was at most 3 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance,
     Further Work.
     """
-    tolerance = _checked(solid, tolerance)
+    if not isinstance(solid, Solid):
+        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
+    tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if isinstance(solid, HalfSpace):
         expected, remedy = "a bounded solid", "intersect it with a bounded one"
         raise ValueError(_check.message("solid", expected, solid, remedy))
@@ -101,6 +104,10 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         # A chord of the angle 2 pi / n is r (1 - cos(pi / n)) away from its circle.
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
         return triangle_mesh.mesh(solid, segments)
+    if importlib.util.find_spec("manifold3d") is None:
+        expected = "a single primitive, as the package manifold3d is not installed"
+        remedy = "run pip install 'vizlight[solids]'"
+        raise ImportError(_check.message("solid", expected, "a combined solid", remedy))
     tree = _Tree(solid, tolerance)
     fine, most = tolerance, float(MOST)
     while True:
@@ -108,10 +115,8 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
         count = tree.points(chosen)
         if fine == tolerance and count <= most:
             # Thin walls between surfaces need facets finer than the wall.
-            thin = tree.finer(chosen)
-            if thin != chosen:
-                chosen, most = thin, max(PATIENCE, count)
-                count = tree.points(chosen)
+            chosen, most = tree.finer(chosen), max(PATIENCE, count)
+            count = tree.points(chosen)
         if count > most:
             break
         made = tree.mesh(chosen, fine)
@@ -123,18 +128,6 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     given = f"{tolerance:g}, which needs {count:.0f}"
     remedy = "raise it, or separate or join surfaces that nearly touch"
     raise ValueError(_check.message("tolerance", expected, given, remedy))
-
-
-def _checked(solid: Solid, tolerance: float) -> float:
-    """Return the tolerance if both arguments are valid and the solid can be computed."""
-    if not isinstance(solid, Solid):
-        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
-    tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
-    if isinstance(solid, Boolean) and importlib.util.find_spec("manifold3d") is None:
-        expected = "a single primitive, as the package manifold3d is not installed"
-        remedy = "run pip install 'vizlight[solids]'"
-        raise ImportError(_check.message("solid", expected, "a combined solid", remedy))
-    return tolerance
 
 
 @dataclass
@@ -223,10 +216,6 @@ class _Tree:
     def mesh(self, segments: list[int], tolerance: float) -> Mesh:
         """Return the mesh, with the bound of its volume."""
         whole, bound = self.combined(segments)
-        if whole.is_empty():
-            none = np.empty((0, 3), np.intp)
-            own = self.surfaces, self.signs, self.shift, self.scale
-            return Mesh(np.empty((0, 3)), none, none[:, 0], *own, bound)
         found = whole.to_mesh64()
         triangles = np.asarray(found.tri_verts, np.intp)
         points = np.asarray(found.vert_properties, np.float64)[:, :3]
@@ -234,18 +223,12 @@ class _Tree:
         # manifold3d splits points whose properties differ; in a closed mesh they are one.
         same[np.asarray(found.merge_from_vert, np.intp)] = found.merge_to_vert
         used, triangles = np.unique(same[triangles], return_inverse=True)
+        triangles = triangles.reshape(-1, 3).astype(np.intp)
         # The number of the exact surface that each triangle came from survives the operation.
         patch = np.asarray(found.face_id, np.intp)
         self._check_bounded(patch)
-        mesh = Mesh(
-            points[used],
-            triangles.reshape(-1, 3).astype(np.intp),
-            patch,
-            self.surfaces,
-            self.signs,
-            self.shift,
-            self.scale,
-        )
+        own = self.surfaces, self.signs, self.shift, self.scale
+        mesh = Mesh(points[used], triangles, patch, *own)
         placed = place(mesh, tolerance)
         fits = mesh.volume_missing <= self.allowed(mesh)
         if fits and placed.volume_missing > self.allowed(placed):
@@ -347,28 +330,19 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
         rounding. Where two surfaces touch, a point is on one of them. Points that would flip a
         triangle stay where they are.
     """
-    points = _placed(mesh, tolerance)
-    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
-    return _kept(mesh, points) if flipped(found).any() else found
-
-
-def _placed(mesh: Mesh, tolerance: float) -> Array:
-    """Return the points on their surfaces."""
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)
     moved = points - mesh.points
     far = np.einsum("ij,ij->i", moved, moved) > (REACH * tolerance) ** 2
     points[far] = onto(mesh.surfaces, mesh.points[far], which[far][:, :1], ROUNDS)
-    for surface in mesh.surfaces:
-        apex = getattr(surface, "apex", None)
-        if apex is not None:
-            points[np.abs(points - apex).max(axis=1) < SAME] = apex
-    return points
+    for _, apex in mesh.surfaces.apexes:
+        points[np.abs(points - apex).max(axis=1) < SAME] = apex
+    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
+    return _kept(mesh, points) if flipped(found).any() else found
 
 
 def _kept(mesh: Mesh, points: Array) -> Mesh:
     """Return a mesh with moved points, except at corners of triangles that they would flip."""
-    points = points.copy()
     while True:
         found = mesh.replace(points, mesh.triangles, mesh.patch)
         corners = np.unique(mesh.triangles[flipped(found)])
@@ -419,18 +393,15 @@ def _merge(mesh: Mesh) -> Mesh:
     short = ends[gap < SAME]
     if not len(short):
         return mesh
-    number = np.arange(len(mesh.points))
-    for _ in range(len(short)):
-        low = np.minimum(*number[short].T)
-        before = number.copy()
-        np.minimum.at(number, number[short].ravel(), np.repeat(low, 2))
-        number = number[number]
-        if np.array_equal(number, before):
-            break
+    count = len(mesh.points)
+    graph = scipy.sparse.coo_array((np.ones(len(short)), tuple(short.T)), (count, count))
+    _, group = scipy.sparse.csgraph.connected_components(graph, directed=False)
+    # Of each group of points the first stays.
+    number = np.unique(group, return_index=True)[1][group]
     triangles = number[mesh.triangles]
     kept = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
     triangles = triangles[kept]
-    edges = triangles * len(number) + np.roll(triangles, -1, axis=1)
+    edges = triangles * count + np.roll(triangles, -1, axis=1)
     if len(np.unique(edges)) < edges.size:
         return mesh
     used, triangles = np.unique(triangles, return_inverse=True)

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Plane, Surfaces, fibonacci
+from vizlight.geometry.solids.exact_surfaces import Surfaces
 from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
 from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
-    from vizlight.geometry.solids.exact_surfaces import Surface
     from vizlight.geometry.solids.primitives import Primitive
 
 #: Corners of the faces of a block, x before y before z, the side of larger coordinates first.
@@ -99,27 +98,20 @@ def mesh(solid: Primitive, segments: int) -> Mesh:
     shift, scale = solid.box()
     scale = scale or 1.0
     unit = solid.moved(shift, scale)
-    if isinstance(unit, Sphere):
+    if isinstance(unit, Sphere) and not unit.empty:
         points, triangles, patch = _ball(unit, segments)
+    elif isinstance(unit, Torus) and not unit.empty:
+        points, triangles, patch = _torus(unit, segments)
     elif isinstance(unit, Frustum):
         points, triangles, patch = _frustum(unit, segments)
-    elif isinstance(unit, Torus):
-        points, triangles, patch = _torus(unit, segments)
+    elif isinstance(unit, Block):
+        points, triangles, patch = _block(unit)
     elif isinstance(unit, Polyhedron):
         points, triangles, patch = unit.points, unit.triangles, unit.patch
     else:
-        assert isinstance(unit, Block)
-        points, triangles, patch = _block(unit)
-    if isinstance(unit, Frustum) and unit.height == 0:
-        # The side is a flat ring: a plane, or empty.
-        up = 1.0 if unit.radii[1] > unit.radii[0] else -1.0
-        ends = unit.surfaces()[1:] if max(unit.radii) > 0 else ()
-        found: tuple[Surface, ...] = (Plane(unit.center, up * unit.axis), *ends)
-    else:
-        found = unit.surfaces()
-    made = Mesh(
-        points, triangles, patch, Surfaces(found), np.ones(len(found)), np.asarray(shift), scale
-    )
+        points, triangles, patch = np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
+    found = Surfaces(unit.surfaces())
+    made = Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
     return dataclasses.replace(made, volume_error=missed(unit, segments, made.volume))
 
 
@@ -151,8 +143,6 @@ def ring_error(unit: Torus, segments: int) -> float:
 
 def _torus(unit: Torus, segments: int) -> tuple[Array, Indices, Indices]:
     rows = _across_segments(unit, segments)
-    if unit.empty:
-        return np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
     first, second = axial.frame(unit.axis)
     u = 2 * np.pi * np.arange(segments)[:, np.newaxis] / segments
     v = 2 * np.pi * np.arange(rows) / rows
@@ -173,9 +163,13 @@ def _torus(unit: Torus, segments: int) -> tuple[Array, Indices, Indices]:
 def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
     from scipy.spatial import ConvexHull
 
-    if unit.radius == 0:
-        return np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
-    points = fibonacci(max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12))
+    # The points are spread evenly along a spiral of the golden angle.
+    count = max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12)
+    i = np.arange(count) + 0.5
+    z = 1 - 2 * i / count
+    angle = i * np.pi * (3 - math.sqrt(5))
+    r = np.sqrt(1 - z * z)
+    points = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
     faces = ConvexHull(points).simplices.astype(np.intp)
     a, b, c = (points[faces[:, i]] for i in range(3))
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
@@ -184,9 +178,7 @@ def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
 
 
 def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
-    first, second = axial.frame(unit.axis)
-    angle = 2 * np.pi * np.arange(segments) / segments
-    ring = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
+    ring = axial.circle(2 * np.pi * np.arange(segments) / segments, *axial.frame(unit.axis))
     half = unit.height / 2 * unit.axis
     parts, indices, start = [], [], 0
     for sign, radius in ((1, unit.radii[0]), (-1, unit.radii[1])):
@@ -200,22 +192,18 @@ def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
         # Two discs back to back share one rim.
         bottom = top
     after, below = np.roll(top, -1), np.roll(bottom, -1)
-    cells, patch = [], []
+    first, second = (radius > 0 for radius in unit.radii)
     side = unit.height > 0 or unit.radii[0] != unit.radii[1]
-    if side and unit.radii[1] > 0:
-        cells.append(np.stack([top, bottom, below], axis=1))
-        patch.append(0)
-    if side and unit.radii[0] > 0:
-        cells.append(np.stack([top, below, after], axis=1))
-        patch.append(0)
-    if unit.radii[0] > 0:
-        cells.append(np.stack([np.full(segments, top_middle), top, after], axis=1))
-        patch.append(1)
-    if unit.radii[1] > 0:
-        cells.append(np.stack([np.full(segments, bottom_middle), below, bottom], axis=1))
-        patch.append(2)
+    faces = [
+        (side and second, 0, (top, bottom, below)),
+        (side and first, 0, (top, below, after)),
+        (first, 1, (np.full(segments, top_middle), top, after)),
+        (second, 2, (np.full(segments, bottom_middle), below, bottom)),
+    ]
+    cells = [np.stack(corners, axis=1) for there, _, corners in faces if there]
+    patch = np.array([number for there, number, _ in faces if there], np.intp)
     triangles = np.concatenate([*cells, np.empty((0, 3), int)]).astype(np.intp)
-    return np.concatenate(parts), triangles, np.repeat(np.array(patch, np.intp), segments)
+    return np.concatenate(parts), triangles, np.repeat(patch, segments)
 
 
 def _block(unit: Block) -> tuple[Array, Indices, Indices]:
