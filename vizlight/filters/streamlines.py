@@ -12,6 +12,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
+from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, records, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
 from vizlight.mesh.records import all_made
@@ -381,7 +382,7 @@ def _lines(
 ) -> pv.PolyData:
     """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
     seed = _check.integer("seed", options.seed, low=0)
-    how = tracers.Tracing(
+    how = Tracing(
         options.step,
         _max_length(mesh, options.max_length, size),
         math.ceil(REACH / options.step),
@@ -417,7 +418,7 @@ def _lines(
 
 def _in_space(
     mesh: pv.DataSet,
-    how: tracers.Tracing,
+    how: Tracing,
     count: int,
     places: Array | None,
     report: Callable[[int], None],
