@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Raw, Slice, Value, Vector
+    from vizlight._types import Array, Keywords, Raw, Slice, Value, Vector
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
@@ -265,10 +265,8 @@ def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
     """Return the program that lights some inputs by a plan."""
     work = "f4" if plan.dtype == np.float32 else "f8"
     kinds = []
-    for name in (*PLACED, *SHARES):
-        source: ArraySource | None = getattr(inputs, name)
-        needed = name != "points" or plan.needs_points
-        if source is not None and needed:
+    for name, source in inputs.arrays().items():
+        if name != "points" or plan.needs_points:
             # In float32 where nothing is lost by it.
             narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
             kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
@@ -289,13 +287,12 @@ def _flat(source: ArraySource | Raw | None, kind: str) -> Array:
 
 def _parts(rows: Slice, inputs: ShadingInputs) -> Iterator[tuple[Slice, ShadingInputs]]:
     """Yield the places of one point of each row, and their inputs as arrays."""
-    repeat, count = inputs.repeat, inputs.count
-    sources = {name: x for name in (*PLACED, *SHARES) if (x := getattr(inputs, name)) is not None}
+    repeat, count, sources = inputs.repeat, inputs.count, inputs.arrays()
     # What all points of a fibre share is read once for all of them.
-    shared = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
+    shared: Keywords = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
-        own = {name: x[at] for name, x in sources.items() if name not in shared}
+        own: Keywords = {name: x[at] for name, x in sources.items() if name not in shared}
         yield at, dataclasses.replace(inputs, repeat=1, **shared, **own)
 
 
@@ -303,14 +300,8 @@ def _light_again(
     plan: Plan, at: Slice, odd: NDArray[np.intp], part: ShadingInputs, output: Shading
 ) -> None:
     """Light some points of a block by NumPy."""
-    few = dataclasses.replace(
-        part,
-        **{
-            name: source[:][odd]
-            for name in (*PLACED, *SHARES)
-            if (source := getattr(part, name)) is not None
-        },
-    )
+    rows: Keywords = {name: source[:][odd] for name, source in part.arrays().items()}
+    few = dataclasses.replace(part, **rows)
     own = Shading.of(plan, len(odd))
     shade_block(plan, slice(0, len(odd)), few, own)
     for name, values in own.arrays().items():
