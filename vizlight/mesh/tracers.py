@@ -145,9 +145,7 @@ class CellTracer:
             new = trace(
                 self.flow,
                 seeds,
-                step=how.step,
-                max_length=how.max_length,
-                max_steps=how.max_steps,
+                how,
                 report=lambda done, total=total: report(100 * done // total),  # type: ignore[misc]
             )
             curves = new if curves is None else curves.joined(new)

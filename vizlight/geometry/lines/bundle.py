@@ -289,28 +289,22 @@ class Medium:
         if not near:
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
-            left = _left(depth, targets.own(targets.facing(toward)), thick)
-        else:
-            # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a
-            # box.
-            lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
-            depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
-            way = lamp[:, np.newaxis] - targets.places
-            way /= np.maximum(size(way), NARROWEST)
-            width = np.maximum(width, NARROWEST)
-            own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(
-                thick / width
-            )
-            # More light than all comes of rounding alone.
-            left = np.exp(np.minimum(-thick * (depth - own), 0))
-        return left
+            return _left(depth, targets.own(targets.facing(toward)), _crowded(thick))
+        # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
+        lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
+        depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
+        way = lamp[:, np.newaxis] - targets.places
+        way /= np.maximum(size(way), NARROWEST)
+        width = np.maximum(width, NARROWEST)
+        own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(thick / width)
+        return _left(depth, own, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
         own = targets.own(facing)
-        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward))
+        forth, back = (_left(d, own, _crowded(thick)) for d in self.depths(targets.places, toward))
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
     def crowded(self, targets: Targets, count: int) -> float:
@@ -395,9 +389,15 @@ def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> A
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
     others = depth - own
-    others *= -thick * (1 + CROWDING * thick)
+    others *= -thick
+    # More light than all comes of rounding alone.
     left: Array = np.exp(np.minimum(others, 0, out=others), out=others)
     return left
+
+
+def _crowded(thick: float) -> float:
+    """Return a diameter in voxels times the factor of lines in one another's shadow, far away."""
+    return thick * (1 + CROWDING * thick)
 
 
 def _frame(toward: VectorLike) -> Array:

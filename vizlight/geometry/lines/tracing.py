@@ -279,14 +279,7 @@ def passed(
 
 
 def trace(
-    flow: Flow,
-    seeds: Places,
-    /,
-    *,
-    step: float,
-    max_length: float,
-    max_steps: int,
-    report: Callable[[int], None] = lambda _: None,
+    flow: Flow, seeds: Places, how: Tracing, /, *, report: Callable[[int], None] = lambda _: None
 ) -> Curves:
     """Return the integral curves through seeds, in both directions.
 
@@ -295,12 +288,7 @@ def trace(
     flow : Flow
     seeds : Places
         N seeds.
-    step : float
-        Length of a step, in extents of its cell.
-    max_length : float
-        Largest length on either side of the seed.
-    max_steps : int
-        Largest number of steps on either side of the seed.
+    how : Tracing
     report : callable, optional
         Function that takes the number of ends that have stopped, out of 2 N.
 
@@ -316,12 +304,13 @@ def trace(
     """
     walkers = Walkers.at(flow, seeds, np.arange(len(seeds.cell)))
     trail = [walkers]
-    for _ in range(max_steps):
+    for _ in range(how.max_steps):
         if not len(walkers.curve):
             break
-        size = np.minimum(step * flow.mesh.sizes(walkers.places), max_length - walkers.length)
+        room = how.max_length - walkers.length
+        size = np.minimum(how.step * flow.mesh.sizes(walkers.places), room)
         walkers, made, inside = walkers.advanced(flow, size)
         trail.append(walkers[made])
-        walkers = walkers[made & inside & (walkers.length < max_length * (1 - 1e-9))]
+        walkers = walkers[made & inside & (walkers.length < how.max_length * (1 - 1e-9))]
         report(2 * len(seeds.cell) - len(walkers.curve))
     return passed(trail, {}, closed=set(), dropped=set())
