@@ -166,9 +166,7 @@ class Algebra(Operations):
 
     def fur_rate(self) -> Value:
         """Return the rate log(1 - rho) at which fur lets light through, as a finite number."""
-        limits = np.finfo(self.plan.dtype)
-        rate = falloff.fur_rate(self.plan.fur, float(limits.tiny), float(limits.max))
-        return self.number(rate)
+        return self.number(falloff.fur_rate(self.plan.fur, self.plan.dtype))
 
     def direction(self, name: str) -> Value:
         """Return the unit vector of an input; a point without one has no light."""

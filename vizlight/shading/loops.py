@@ -217,10 +217,8 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
 def _beyond(plan: Plan) -> str:
     """Return a reason if a light or the eye stands where the type of the work has no numbers."""
     most = float(np.finfo(plan.dtype).max)
-    view = plan.scene.view
-    places = [light.position for light in plan.scene.lights]
-    if view is not None:
-        places.append(view.position)
+    ends = (*plan.scene.lights, plan.scene.view)
+    places = [end.position for end in ends if end is not None]
     if any(abs(x) > most for place in places for x in place or ()):
         return f"a light or the eye is out of the range of {plan.dtype.name}"
     if plan.dtype == np.float32:

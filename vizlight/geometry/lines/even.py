@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -179,10 +180,10 @@ class Growth:
         self.closed: set[int] = set()
         self.dropped: set[int] = set()
         #: Number of ends that were stopped by another curve or by their own, by curve.
-        self.cut: dict[int, int] = {}
+        self.cut: Counter[int] = Counter()
         #: Number of ends that grow, and length of those that have stopped, by curve.
-        self.growing: dict[int, int] = {}
-        self.lengths: dict[int, float] = {}
+        self.growing: Counter[int] = Counter()
+        self.lengths: defaultdict[int, float] = defaultdict(float)
         self.count, self.apart = 0, APART
         #: Whether only wide gaps are still filled.
         self.last_gaps = False
@@ -219,8 +220,7 @@ class Growth:
         numbers = self.count + np.arange(len(chosen))
         self.count += len(chosen)
         made = Walkers.at(self.flow, seeds[chosen], numbers)
-        for curve in made.curve.tolist():
-            self.growing[curve] = self.growing.get(curve, 0) + 1
+        self.growing.update(made.curve.tolist())
         self.trail.append(made)
         self.samples.add(made, embedded(self.flow, self.spacing, made.places))
         self.walkers = self.walkers.joined(made)
@@ -257,7 +257,7 @@ class Growth:
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.
             if blocked[row]:
-                self.cut[int(ahead.curve[row])] = self.cut.get(int(ahead.curve[row]), 0) + 1
+                self.cut[int(ahead.curve[row])] += 1
             if self.returning[row] >= 0:
                 key = int(ahead.curve[row]), int(ahead.sign[row])
                 self.last.setdefault(key, int(self.returning[row]))
@@ -319,12 +319,12 @@ class Growth:
     def _stop(self, curve: int, length: float) -> None:
         """Note that an end has stopped; after the second keep the curve or drop it."""
         self.growing[curve] -= 1
-        self.lengths[curve] = self.lengths.get(curve, 0.0) + length
+        self.lengths[curve] += length
         if self.growing[curve]:
             return
         del self.growing[curve]
         # A curve that two others have cut short is dropped if it is too short to be read.
-        cut = self.cut.get(curve, 0)
+        cut = self.cut[curve]
         # In a gap there is room for half the length on either side of the seed.
         share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
         if self.lengths[curve] < share * SHORTEST * self.spacing:
