@@ -168,9 +168,7 @@ class View:
             If the argument is not a camera.
         """
         if not is_camera(camera):
-            remedy = "pass its .camera" if is_camera(getattr(camera, "camera", None)) else ""
-            expected = "a pyvista.Camera or vtkCamera"
-            raise TypeError(_check.message("camera", expected, _check.describe(camera), remedy))
+            raise TypeError(_no_camera("camera", "a pyvista.Camera or vtkCamera", camera))
         direction = tuple(-x for x in camera.GetDirectionOfProjection())
         up = tuple(camera.GetViewUp())
         return cls(
@@ -253,9 +251,13 @@ def as_view(view: View | vtkCamera | None) -> View | None:
         return view
     if is_camera(view):
         return View.from_camera(view)
-    remedy = "pass its .camera" if is_camera(getattr(view, "camera", None)) else ""
-    expected = "a vizlight.View, a camera or None"
-    raise TypeError(_check.message("view", expected, _check.describe(view), remedy))
+    raise TypeError(_no_camera("view", "a vizlight.View, a camera or None", view))
+
+
+def _no_camera(name: str, expected: str, value: object) -> str:
+    """Return the message for what is no camera; a plotter has one."""
+    remedy = "pass its .camera" if is_camera(getattr(value, "camera", None)) else ""
+    return _check.message(name, expected, _check.describe(value), remedy)
 
 
 def is_camera(value: object) -> TypeGuard[vtkCamera]:

@@ -233,7 +233,8 @@ def _beyond(plan: Plan) -> str:
 @lru_cache(maxsize=256)
 def _kernel(source: str) -> _compiled.Kernel[..., None]:
     """Return the kernel of a text, which is not compiled before its first call."""
-    scope = _functions(source, math.sqrt)
+    # A square root that keeps the type.
+    scope = _compiled.generated(source, {"sqrt": math.sqrt}, "light")
     for name in HELPERS:
         scope[name] = _compiled.Kernel(
             scope[name],  # type: ignore[arg-type]
@@ -244,11 +245,6 @@ def _kernel(source: str) -> _compiled.Kernel[..., None]:
     # The text calls the compiled helpers, not the plain ones.
     light.__globals__.update(scope)
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING, apart=True)
-
-
-def _functions(source: str, sqrt: Callable[[float], float]) -> dict[str, object]:
-    """Return the functions of a kernel's text, with a square root that keeps the type."""
-    return _compiled.generated(source, {"sqrt": sqrt}, "light")
 
 
 def _sort(plan: Plan) -> tuple[object, ...]:
