@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Color, Value, Vector
     from vizlight.model.manifolds import Highlight
-    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Plan
 
 
@@ -35,6 +34,9 @@ class Lamp:
 
 class Operations(Vectors, Protocol):
     """What the terms ask of an algebra, beside what all algebras share."""
+
+    def has(self, name: str) -> bool:
+        """Return whether an input is there."""
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an input at the point: a vector, or a number, perhaps of one lamp."""
@@ -82,13 +84,10 @@ class Algebra(Operations):
     Parameters
     ----------
     plan : Plan
-    inputs : ShadingInputs, optional
-        Arrays of the points.
     """
 
-    def __init__(self, plan: Plan, inputs: ShadingInputs | None) -> None:
-        self.plan, self.inputs, self.n = plan, inputs, plan.n
-        self.colored = plan.colored
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.n, self.colored = plan, plan.n, plan.colored
         #: |x_N| up to which a direction is along a line.
         self.least = ALONG * float(np.finfo(plan.dtype).eps)
 
@@ -103,10 +102,6 @@ class Algebra(Operations):
     def integral(self, z: Value, shininess: float) -> Value:
         """Return G(z) of a cylinder."""
         raise NotImplementedError
-
-    def has(self, name: str) -> bool:
-        """Return whether an input is there."""
-        return getattr(self.inputs, name) is not None
 
     def lamps(self) -> Iterator[Lamp]:
         """Yield the lights of the scene."""

@@ -313,7 +313,7 @@ class Loop(Writer):
     """Writes the light of one point; kinds are "f4", "f8" and "bool"."""
 
     def __init__(self, plan: Plan, kinds: dict[str, str]) -> None:
-        super().__init__(plan, None)
+        super().__init__(plan)
         self.type, self.kinds = "f4" if plan.dtype == np.float32 else "f8", kinds
         self.constants: dict[tuple[float, str], str] = {}
         self.numbers: dict[str, list[float]] = {"g": [], "h": []}
