@@ -114,7 +114,7 @@ class Shader(Writer):
         highlights = tuple(h._replace(shininess=shininess, half=None) for h in plan.highlights)
         # White light on colours of data would move them along the colour map.
         specular = plan.specular and not data
-        super().__init__(dataclasses.replace(plan, highlights=highlights, specular=specular), None)
+        super().__init__(dataclasses.replace(plan, highlights=highlights, specular=specular))
         self.data, self.colored = data, True
         self.made: dict[str, Value] = {}
 

@@ -267,7 +267,7 @@ def fur(
     if inside:
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
     meshes = [_mesh(points, m), surface.copy(deep=True)]
-    lighting.finish(meshes, results, "fur", scene, options, dimmings=dimmings)
+    lighting.finish(meshes, results, "fur", scene, options, options.name, dimmings=dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 
 

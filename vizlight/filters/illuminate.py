@@ -260,7 +260,9 @@ def light_parts(
             normals.keep(block, kept)
         refining.forget(block, options.name)
     inside = sum(sided.inside for sided in sides if sided is not None)
-    lighting.finish(lit, shadings, "illuminate", fitted, options, inside=inside, dimmings=dimmings)
+    lighting.finish(
+        lit, shadings, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
+    )
     _warn_of_normals(lit, sides, options)
     return out
 

@@ -19,11 +19,10 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight.filters.fur import FurOptions
     from vizlight.mesh.bundles import Dimming
     from vizlight.scene import Scene
     from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
+    from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
     from vizlight.shading.results import Record
     from vizlight.vtk.normals import Sided, Told
     from vizlight.vtk.parts import Part
@@ -152,7 +151,8 @@ def finish(
     results: Sequence[engine.Shading],
     filter_name: str,
     scene: Scene,
-    options: LightOptions | FurOptions,
+    options: Options,
+    name: str,
     *,
     inside: int = 0,
     dimmings: Sequence[Dimming] = (),
@@ -161,7 +161,6 @@ def finish(
 
     Points inside volumes, ``inside`` in number, have no normal and are not counted.
     """
-    name = options.name
     shared: dict[tuple[object, ...], str] = {}
     invalid = -inside
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):

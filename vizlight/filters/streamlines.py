@@ -12,6 +12,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
+from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, records, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
 from vizlight.mesh.records import all_made
@@ -377,7 +378,7 @@ def _lines(
         length = 4 * float(mesh.length)
     else:
         length = _check.number("max_length", length, low=np.finfo(float).tiny) / size
-    how = tracers.Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
+    how = Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
     count, places = _seeds(options.seeds, origin, size)
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
@@ -408,7 +409,7 @@ def _lines(
 
 def _in_space(
     mesh: pv.DataSet,
-    how: tracers.Tracing,
+    how: Tracing,
     count: int,
     places: Array | None,
     report: Callable[[int], None],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 from vizlight import _check
 from vizlight.geometry.lines import even, evenness, fur, tracing
 from vizlight.geometry.lines.simplices import Places, Simplices
-from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, trace
+from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, Tracing, trace
 from vizlight.mesh import polylines
 from vizlight.model import kernels, line_fields
 
@@ -33,16 +32,6 @@ MOST_SAMPLES = 20_000_000
 MOST_SPACING = 1e6
 #: Order of the 6 components of a symmetric tensor in VTK: XX, YY, ZZ, XY, YZ, XZ.
 SYMMETRIC = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
-
-
-@dataclass(frozen=True)
-class Tracing:
-    """How curves are traced, in a mesh of size 1; see the options of streamlines."""
-
-    step: float
-    max_length: float
-    max_steps: int
-    seed: int
 
 
 def principal_directions(rows: Array) -> Array:
@@ -123,10 +112,8 @@ class CellTracer:
             self.cells, rows = tracing.double_cover(points, cells, rows.reshape(-1, 2, 3))
         else:
             self.cells = Simplices(points, cells)
-        self.flow = Flow(self.cells, rows, line_field=line_field)
-        self.normals = None
-        if normals is not None:
-            self.normals = self._rows(normals).astype(np.float64)
+        upright = None if normals is None else self._rows(normals).astype(np.float64)
+        self.flow = Flow(self.cells, rows, line_field=line_field, normals=upright)
 
     def _rows(self, name: str) -> Array:
         """Return a point array, on each sheet."""
@@ -171,9 +158,7 @@ class CellTracer:
             new = trace(
                 self.flow,
                 seeds,
-                step=how.step,
-                max_length=how.max_length,
-                max_steps=how.max_steps,
+                how,
                 report=lambda done, total=total: report(100 * done // total),  # type: ignore[misc]
             )
             curves = new if curves is None else curves.joined(new)
@@ -202,17 +187,15 @@ class CellTracer:
         spacing : float
             Distance between curves.
         """
-        asked = even.Spacing(spacing, how.step, how.max_length, how.max_steps)
-        total = even.place_count(self.flow, asked.spacing)
+        total = even.place_count(self.flow, spacing)
         curves, closed = even.evenly_spaced(
             self.flow,
-            self.normals,
-            asked,
+            spacing,
+            how,
             seeds=seeds,
-            seed=how.seed,
             report=lambda done: report(100 * done // total),
         )
-        gap, near = evenness.evenness(self.flow, self.normals, asked, curves)
+        gap, near = evenness.evenness(self.flow, spacing, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
     def lines(self, curves: Curves, unsigned: Vectors | None = None) -> pv.PolyData:

@@ -12,7 +12,7 @@ from vizlight.model import formulas
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array
+    from vizlight._types import Array, FloatType
 
 __all__ = ["depth_cue", "distance", "fur"]
 
@@ -198,13 +198,13 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
     # log(1 - rho) is infinite: such fur is opaque, except where it has no height.
     if density == 1:
         return np.asarray(heights == 0).astype(sines.dtype)
-    limits = np.finfo(sines.dtype)
-    rate = fur_rate(density, float(limits.tiny), float(limits.max))
+    rate = fur_rate(density, sines.dtype)
     with np.errstate(all="ignore"):
         return np.asarray(formulas.fur_passes(formulas.fur_path(heights, sines), rate))
 
 
-def fur_rate(density: float, tiny: float, largest: float) -> float:
+def fur_rate(density: float, dtype: FloatType) -> float:
     """Return log(1 - rho), neither 0 nor infinite: 0 times an infinite path is no number."""
-    rate = float(np.log1p(-density)) if density < 1 else -largest
-    return min(rate, -tiny)
+    limits = np.finfo(dtype)
+    rate = np.log1p(-density) if density < 1 else -limits.max
+    return float(min(rate, -limits.tiny))

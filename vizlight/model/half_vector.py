@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight.model import frames, kernels
+from vizlight.model import frames, kernels, manifolds
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -112,7 +112,7 @@ def reflection(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
     light, eye, up, shape = _three(wi, wo, normal)
     half, size = kernels.unit(light + eye)
     with np.errstate(invalid="ignore"):
-        triple = kernels.triple(light, half, up)
+        triple = manifolds.triple(light, half, up)
         value = 2 * np.square(kernels.dot(up, half)) - 1 + 2 * np.square(triple)
         # R.E without the half vector, which has no direction for wi = -wo.
         straight = 2 * kernels.dot(up, light) * kernels.dot(up, eye) - kernels.dot(light, eye)
@@ -146,21 +146,17 @@ def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
     light, eye, up, shape = _three(wi, wo, normal)
     le, en, nl = (kernels.dot(a, b) for a, b in ((light, eye), (eye, up), (up, light)))
     value = le * le + en * en + nl * nl - 2 * le * en * nl - 1
-    value += np.square(kernels.triple(light, eye, up))
+    value += np.square(manifolds.triple(light, eye, up))
     return frames.result(value.reshape(shape))
 
 
 def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
     """Return three component-first batches of unit vectors and the shape of their batch."""
-    arrays = [
-        _check.vectors(name, v, n=3)
-        for name, v in zip(("wi", "wo", "normal"), vectors, strict=True)
-    ]
-    shape = _check.broadcast_shape(
-        **{name: v.shape for name, v in zip(("wi", "wo", "normal"), arrays, strict=True)}
-    )
+    names = ("wi", "wo", "normal")
+    given = {name: _check.vectors(name, v, n=3) for name, v in zip(names, vectors, strict=True)}
+    arrays = _check.together(**given)
     found = []
     for v in arrays:
-        row, size = kernels.unit(np.ascontiguousarray(np.broadcast_to(v, shape).reshape(-1, 3).T))
+        row, size = kernels.unit(np.ascontiguousarray(v.reshape(-1, 3).T))
         found.append(np.where(size > 0, row, np.nan))
-    return found[0], found[1], found[2], shape[:-1]
+    return found[0], found[1], found[2], arrays[0].shape[:-1]

@@ -39,16 +39,6 @@ def cross(a: Array, b: Array) -> Array:
     return result
 
 
-def triple(a: Array, b: Array, c: Array) -> Array:
-    """Return the triple products a x b . c of three batches of 3-vectors."""
-    result: Array = (
-        (a[1] * b[2] - a[2] * b[1]) * c[0]
-        + (a[2] * b[0] - a[0] * b[2]) * c[1]
-        + (a[0] * b[1] - a[1] * b[0]) * c[2]
-    )
-    return result
-
-
 def length(v: Array) -> Array:
     """Return the lengths of vectors of any scale; NaN where a component is not finite."""
     return _length(v)[0]
@@ -146,19 +136,12 @@ def _reject(x: Array, frame: Array) -> Array:
     return x
 
 
-def coefficients(x: Array, frame: Array) -> Array:
-    """Return the tangential coefficients ``(k, B)`` of x."""
-    if len(frame) == 1:
-        return dot(frame[0], x)[np.newaxis]
-    return np.stack([dot(row, x) for row in frame])
-
-
 def split(x: Array, frame: Array) -> tuple[Array, Array]:
     """Return the tangential coefficients ``(k, B)`` and the length of the normal part.
 
     The length comes from the residual, because sqrt(1 - cos^2) would lose half the digits.
     """
-    along = coefficients(x, frame)
+    along = np.stack([dot(row, x) for row in frame])
     # All coefficients are of x itself, so that none depends on the order of the rows.
     residual = x - along[0] * frame[0]
     for c, row in zip(along[1:], frame[1:], strict=True):

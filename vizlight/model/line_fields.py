@@ -76,29 +76,3 @@ def principal(products: Array, k: int = 1) -> tuple[Array, Array]:
     # eigh sorts eigenvalues upward, with the eigenvectors as columns.
     tangents = np.swapaxes(vectors[..., ::-1][..., :k], -1, -2)
     return np.where(unique[..., np.newaxis, np.newaxis], tangents, 0), np.where(unique, gap, 0)
-
-
-def mean(tangents: Array, weights: Array) -> Array:
-    """Return weighted means of tangents as lines and planes, whatever their signs.
-
-    Parameters
-    ----------
-    tangents : ndarray, shape (..., m, k, n)
-        Tangents of m places, of any length.
-    weights : ndarray, shape (..., m)
-        Weights of the places, for example of an interpolation.
-
-    Returns
-    -------
-    ndarray of float64, shape (..., k, n)
-        Orthonormal tangents; a single one has the sign that most of its places have, by weight.
-        Zero where no space is closest.
-    """
-    # t and -t have the same outer product, so opposite tangents do not cancel in the mean.
-    products = outer(tangents)
-    found, _ = principal(np.einsum("...m,...mij->...ij", weights, products), tangents.shape[-2])
-    if tangents.shape[-2] == 1:
-        rows = np.where(np.isfinite(tangents), tangents, 0)
-        along = np.einsum("...ki,...mki,...m->...", found, rows, weights)
-        found = np.where((along < 0)[..., np.newaxis, np.newaxis], -found, found)
-    return np.asarray(found)

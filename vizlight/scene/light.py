@@ -15,7 +15,7 @@ from vizlight.scene.keywords import named
 from vizlight.scene.view import View
 
 if TYPE_CHECKING:
-    from vizlight._types import Color, ColorLike, Vector, VectorLike
+    from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 
 __all__ = ["Light"]
 
@@ -191,6 +191,15 @@ class Light:
 SHOULDER, KEY, FILL = (125.0, 45.0), 0.8, 0.3
 
 
+def of_eye(azimuth: float, altitude: float) -> Array:
+    """Return a unit direction of the eye's frame: x right, y up, z toward the eye.
+
+    Its angles are in degrees, from right toward up and from there toward the eye.
+    """
+    a, h = math.radians(azimuth), math.radians(altitude)
+    return np.array([math.cos(h) * math.cos(a), math.cos(h) * math.sin(a), math.sin(h)])
+
+
 def default_lights(view: View | None) -> tuple[Light, ...]:
     """Return the lights of a scene that names none: a lamp over the shoulder and one at the eye.
 
@@ -199,17 +208,10 @@ def default_lights(view: View | None) -> tuple[Light, ...]:
     """
     if view is not None and view.direction is None:
         return (Light.headlight(),)
-    # In the frame of the eye: x right, y up, z toward the eye.
-    azimuth, altitude = map(math.radians, SHOULDER)
-    toward = (
-        math.cos(altitude) * math.cos(azimuth),
-        math.cos(altitude) * math.sin(azimuth),
-        math.sin(altitude),
-    )
     # sum(w |wi_N|) is at most sqrt(W sum(w |wi_N|^2)); of two lamps the least eigenvalue of
     # sum(w L L^T) is 0, for a tangent across both, so that the bound is W.
     white = KEY + FILL
     return (
-        Light(direction=toward, follows_view=True, intensity=KEY / white),
+        Light(direction=of_eye(*SHOULDER), follows_view=True, intensity=KEY / white),
         Light.headlight(intensity=FILL / white),
     )

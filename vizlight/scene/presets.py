@@ -14,7 +14,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model.formulas import LUMA
-from vizlight.scene.light import Light
+from vizlight.scene.light import Light, of_eye
 from vizlight.scene.material import Material
 from vizlight.scene.scene import Scene
 from vizlight.scene.view import View, as_view
@@ -224,16 +224,10 @@ def hues(count: int, saturation: float) -> Array:
     return np.asarray(1 + saturation * ways / np.abs(np.minimum(ways, 0)).max())
 
 
-def _toward(azimuth: float, height: float) -> Array:
-    """Return a direction of the eye's frame, by degrees from right toward up and toward the eye."""
-    a, h = np.radians(azimuth), np.radians(height)
-    return np.array([np.cos(h) * np.cos(a), np.cos(h) * np.sin(a), np.sin(h)])
-
-
 def _ring(height: float, saturation: float, head: float) -> list[Lamp]:
     """Return three lamps of equal luma around the eye, and a white one at it."""
     lamps = [
-        (_toward(FIRST_AZIMUTH + 120.0 * i, height), color)
+        (of_eye(FIRST_AZIMUTH + 120.0 * i, height), color)
         for i, color in enumerate(hues(3, saturation))
     ]
     return [*lamps, (np.array([0.0, 0.0, 1.0]), np.full(3, head))]

@@ -240,7 +240,8 @@ class Scene:
                 _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
             )
         camera, own_view = plotter.camera, "view" not in fields
-        fields.setdefault("view", View.from_camera(camera))
+        seen = View.from_camera(camera)
+        fields.setdefault("view", seen)
         fields.setdefault("lights", list(conversion.lights_of(renderer.GetLights(), camera)))
         if actor is not None:
             if "material" in fields:
@@ -248,8 +249,7 @@ class Scene:
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
             if own_view and conversion.vtk_model(conversion.all_lights(lights, view)) == "blinn":
-                own = View.from_camera(camera)
-                fields["view"] = dataclasses.replace(own, parallel=True)
+                fields["view"] = dataclasses.replace(seen, parallel=True)
         return cls(**fields)
 
 
@@ -284,16 +284,15 @@ def _of_actor(
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if mapper is None or not hasattr(actor, "GetProperty"):
         raise TypeError(_check.message("actor", "a pyvista.Actor", _check.describe(actor)))
-    own = actor.GetProperty()
-    if not mapper.GetScalarVisibility():
-        return Material.from_property(own, lights=lights, view=view, model=model)
-    plain = type(own)()
-    plain.DeepCopy(own)
-    # Where data colour an actor its own colour is not drawn; SetColor sets all of its colours, so
-    # that of the highlight is put back.
-    plain.SetColor(1.0, 1.0, 1.0)
-    plain.SetSpecularColor(*own.GetSpecularColor())
-    return Material.from_property(plain, lights=lights, view=view, model=model)
+    own = drawn = actor.GetProperty()
+    if mapper.GetScalarVisibility():
+        drawn = type(own)()
+        drawn.DeepCopy(own)
+        # Where data colour an actor its own colour is not drawn; SetColor sets all of its colours,
+        # so that of the highlight is put back.
+        drawn.SetColor(1.0, 1.0, 1.0)
+        drawn.SetSpecularColor(*own.GetSpecularColor())
+    return Material.from_property(drawn, lights=lights, view=view, model=model)
 
 
 def _fields(

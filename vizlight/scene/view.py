@@ -133,18 +133,18 @@ class View:
             expected = "a view with a direction, by which a light beside the eye turns"
             remedy = "pass View(direction=), or View.from_camera(camera)"
             raise ValueError(_check.message("view", expected, self, remedy))
-        toward = _unit(self.direction)
+        toward = unit(self.direction)
         n = len(toward)
         if n == 2:
             return np.stack([np.array([toward[1], -toward[0]]), np.zeros(2), toward])
         # Seen along z, z cannot be up: y takes its place.
-        up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else _unit(self.up)
+        up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else unit(self.up)
         if n == 3:
-            right = _unit(np.cross(up, toward))
+            right = unit(np.cross(up, toward))
             return np.stack([right, np.cross(toward, right), toward])
-        up = _unit(_across(up, toward[np.newaxis]))
+        up = unit(_across(up, toward[np.newaxis]))
         sides = [_across(axis, np.stack([toward, up])) for axis in np.eye(n)[:3]]
-        right = _unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
+        right = unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
         # In the first three axes right, up and toward the eye are to be right-handed.
         turn = float(np.linalg.det(np.stack([right, up, toward])[:, :3]))
         return np.stack([-right if turn < 0 else right, up, toward])
@@ -168,9 +168,7 @@ class View:
             If the argument is not a camera.
         """
         if not is_camera(camera):
-            remedy = "pass its .camera" if is_camera(getattr(camera, "camera", None)) else ""
-            expected = "a pyvista.Camera or vtkCamera"
-            raise TypeError(_check.message("camera", expected, _check.describe(camera), remedy))
+            raise TypeError(_no_camera("camera", "a pyvista.Camera or vtkCamera", camera))
         direction = tuple(-x for x in camera.GetDirectionOfProjection())
         up = tuple(camera.GetViewUp())
         return cls(
@@ -253,9 +251,13 @@ def as_view(view: View | vtkCamera | None) -> View | None:
         return view
     if is_camera(view):
         return View.from_camera(view)
-    remedy = "pass its .camera" if is_camera(getattr(view, "camera", None)) else ""
-    expected = "a vizlight.View, a camera or None"
-    raise TypeError(_check.message("view", expected, _check.describe(view), remedy))
+    raise TypeError(_no_camera("view", "a vizlight.View, a camera or None", view))
+
+
+def _no_camera(name: str, expected: str, value: object) -> str:
+    """Return the message for what is no camera; a plotter has one."""
+    remedy = "pass its .camera" if is_camera(getattr(value, "camera", None)) else ""
+    return _check.message(name, expected, _check.describe(value), remedy)
 
 
 def is_camera(value: object) -> TypeGuard[vtkCamera]:
@@ -264,7 +266,7 @@ def is_camera(value: object) -> TypeGuard[vtkCamera]:
     return all(hasattr(value, name) for name in names)
 
 
-def _unit(vector: VectorLike) -> Array:
+def unit(vector: VectorLike) -> Array:
     """Return a vector other than 0 with length 1, whatever its size."""
     v = np.asarray(vector, dtype=np.float64)
     # Squares of tiny or huge components would leave float64.
@@ -282,5 +284,5 @@ def _across(vector: Array, rows: Array) -> Array:
 
 def _parallel(a: Vector, b: Vector) -> bool:
     """Return whether two directions other than 0 lie on one line, within rounding."""
-    u, v = _unit(a), _unit(b)
+    u, v = unit(a), unit(b)
     return bool(np.linalg.norm(u - (u @ v) * v) < LEAST_SINE)

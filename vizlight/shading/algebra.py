@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from vizlight.model import falloff
 from vizlight.model.manifolds import ALONG, Vectors
 from vizlight.scene.light import WHITE
+from vizlight.scene.view import unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from vizlight._types import Color, Value, Vector
     from vizlight.model.manifolds import Highlight
-    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Plan
 
 
@@ -32,7 +32,50 @@ class Lamp:
         )  # fmt: skip
 
 
-class Algebra(Vectors):
+class Operations(Vectors, Protocol):
+    """What the terms ask of an algebra, beside what all algebras share."""
+
+    def has(self, name: str) -> bool:
+        """Return whether an input is there."""
+
+    def read(self, name: str, lamp: Lamp | None = None) -> Value:
+        """Return an input at the point: a vector, or a number, perhaps of one lamp."""
+
+    def wide(self, value: float) -> Value:
+        """Return a number of the plan in float64."""
+
+    def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
+        """Return a vector of the plan, in the precision of the work or in float64."""
+
+    def difference(self, position: Vector, *, wide: bool = False) -> Value:
+        """Return a position less the point, without loss of digits."""
+
+    def work(self, x: Value) -> Value:
+        """Return a number or a vector in the precision of the work."""
+
+    def unit(self, v: Value) -> tuple[Value, Value]:
+        """Return a unit vector and the length that the vector had."""
+
+    def need(self, test: Value) -> None:
+        """Take points where a test does not hold for points without light."""
+
+    def known(self, x: Value) -> None:
+        """Take points where a number is NaN for points without light."""
+
+    def present(self, x: Value, distance: Value | None) -> Value:
+        """Return x, and 0 where the distance of its cause is 0."""
+
+    def sound(self, x: Value, other: float) -> Value:
+        """Return x at points with light, else another number."""
+
+    def added(self, total: Value | None, value: Value) -> Value:
+        """Return the sum of a total over the lamps, None before the first, and a value."""
+
+    def put(self, name: str, value: Value) -> None:
+        """Take a value for a result."""
+
+
+class Algebra(Operations):
     """Numbers, inputs and vector operations of the terms.
 
     The numbers of an algebra are used with operators, NumPy's functions, and the formulas of
@@ -41,42 +84,15 @@ class Algebra(Vectors):
     Parameters
     ----------
     plan : Plan
-    inputs : ShadingInputs, optional
-        Arrays of the points.
     """
 
-    def __init__(self, plan: Plan, inputs: ShadingInputs | None) -> None:
-        self.plan, self.inputs, self.n = plan, inputs, plan.n
-        self.colored = plan.colored
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.n, self.colored = plan, plan.n, plan.colored
         #: |x_N| up to which a direction is along a line.
         self.least = ALONG * float(np.finfo(plan.dtype).eps)
 
-    def read(self, name: str, lamp: Lamp | None = None) -> Value:
-        """Return an input at the point: a vector, or a number, perhaps of one lamp."""
-        raise NotImplementedError
-
     def vectors(self, name: str, k: int) -> Sequence[Value]:
         """Return the k vectors of an input at the point."""
-        raise NotImplementedError
-
-    def wide(self, value: float) -> Value:
-        """Return a number of the plan in float64."""
-        raise NotImplementedError
-
-    def vector(self, values: Sequence[float], *, wide: bool = False) -> Value:
-        """Return a vector of the plan, in the precision of the work or in float64."""
-        raise NotImplementedError
-
-    def difference(self, position: Vector, *, wide: bool = False) -> Value:
-        """Return a position less the point, without loss of digits."""
-        raise NotImplementedError
-
-    def work(self, x: Value) -> Value:
-        """Return a number or a vector in the precision of the work."""
-        raise NotImplementedError
-
-    def unit(self, v: Value) -> tuple[Value, Value]:
-        """Return a unit vector and the length that the vector had."""
         raise NotImplementedError
 
     def apart(self, v: Value) -> Value:
@@ -87,34 +103,6 @@ class Algebra(Vectors):
         """Return G(z) of a cylinder."""
         raise NotImplementedError
 
-    def need(self, test: Value) -> None:
-        """Take points where a test does not hold for points without light."""
-        raise NotImplementedError
-
-    def known(self, x: Value) -> None:
-        """Take points where a number is NaN for points without light."""
-        raise NotImplementedError
-
-    def present(self, x: Value, distance: Value | None) -> Value:
-        """Return x, and 0 where the distance of its cause is 0."""
-        raise NotImplementedError
-
-    def sound(self, x: Value, other: float) -> Value:
-        """Return x at points with light, else another number."""
-        raise NotImplementedError
-
-    def added(self, total: Value | None, value: Value) -> Value:
-        """Return the sum of a total over the lamps, None before the first, and a value."""
-        raise NotImplementedError
-
-    def put(self, name: str, value: Value) -> None:
-        """Take a value for a result."""
-        raise NotImplementedError
-
-    def has(self, name: str) -> bool:
-        """Return whether an input is there."""
-        return getattr(self.inputs, name) is not None
-
     def lamps(self) -> Iterator[Lamp]:
         """Yield the lights of the scene."""
         for number in range(len(self.plan.scene.lights)):
@@ -122,10 +110,7 @@ class Algebra(Vectors):
 
     def way(self, direction: Vector, *, wide: bool = False) -> Value:
         """Return the unit vector of a direction of the plan."""
-        column = np.array(direction, np.float64)
-        # Scaled by its largest component first: squares of 1e-200 or 1e200 would leave float64.
-        column /= np.abs(column).max()
-        return self.vector((column / np.sqrt(column @ column)).tolist(), wide=wide)
+        return self.vector(unit(direction).tolist(), wide=wide)
 
     def toward(
         self, position: Vector | None, direction: Vector | None, *, far: bool
@@ -176,9 +161,7 @@ class Algebra(Vectors):
 
     def fur_rate(self) -> Value:
         """Return the rate log(1 - rho) at which fur lets light through, as a finite number."""
-        limits = np.finfo(self.plan.dtype)
-        rate = falloff.fur_rate(self.plan.fur, float(limits.tiny), float(limits.max))
-        return self.number(rate)
+        return self.number(falloff.fur_rate(self.plan.fur, self.plan.dtype))
 
     def direction(self, name: str) -> Value:
         """Return the unit vector of an input; a point without one has no light."""

@@ -117,11 +117,9 @@ class Arrays(Algebra):
     (1, rows) where it depends on the row alone.
     """
 
-    inputs: ShadingInputs
-
     def __init__(self, plan: Plan, inputs: ShadingInputs, rows: Slice) -> None:
-        super().__init__(plan, inputs)
-        self.rows, self.type = rows, plan.dtype.type
+        super().__init__(plan)
+        self.inputs, self.rows, self.type = inputs, rows, plan.dtype.type
         self.valid: Bools | None = None
         self.made: dict[str, Value] = {}
         self._shares: dict[str, Array] = {}
@@ -148,6 +146,10 @@ class Arrays(Algebra):
     @cached_property
     def _points(self) -> Array:
         return self._columns("points")
+
+    def has(self, name: str) -> bool:
+        """Return whether an input is there."""
+        return getattr(self.inputs, name) is not None
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an input at the points."""

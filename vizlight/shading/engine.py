@@ -302,7 +302,7 @@ def run(
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)
     # Only the structure of the inputs decides, not their values, so that all blocks share one plan.
-    made = decide(scene, inputs.layout, options, narrow=inputs.narrow)
+    made = decide(scene, inputs.layout, options)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     # Compiled code where numba is there and the points are many enough to pay for its start-up.

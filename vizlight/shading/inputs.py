@@ -179,6 +179,11 @@ class ShadingInputs:
             self.transmittance is not None, self.occlusion is not None, self.two_sided, mixed,
         )  # fmt: skip
 
+    def arrays(self) -> dict[str, ArraySource]:
+        """Return the arrays that are given, by their names."""
+        names = (*PLACED, *SHARES)
+        return {name: x for name in names if (x := getattr(self, name)) is not None}
+
     @property
     def narrow(self) -> bool:
         """Whether the vectors have no more digits than float32."""

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Raw, Slice, Value, Vector
+    from vizlight._types import Array, Keywords, Raw, Slice, Value, Vector
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
@@ -217,10 +217,8 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
 def _beyond(plan: Plan) -> str:
     """Return a reason if a light or the eye stands where the type of the work has no numbers."""
     most = float(np.finfo(plan.dtype).max)
-    view = plan.scene.view
-    places = [light.position for light in plan.scene.lights]
-    if view is not None:
-        places.append(view.position)
+    ends = (*plan.scene.lights, plan.scene.view)
+    places = [end.position for end in ends if end is not None]
     if any(abs(x) > most for place in places for x in place or ()):
         return f"a light or the eye is out of the range of {plan.dtype.name}"
     if plan.dtype == np.float32:
@@ -235,7 +233,8 @@ def _beyond(plan: Plan) -> str:
 @lru_cache(maxsize=256)
 def _kernel(source: str) -> _compiled.Kernel[..., None]:
     """Return the kernel of a text, which is not compiled before its first call."""
-    scope = _functions(source, math.sqrt)
+    # A square root that keeps the type.
+    scope = _compiled.generated(source, {"sqrt": math.sqrt}, "light")
     for name in HELPERS:
         scope[name] = _compiled.Kernel(
             scope[name],  # type: ignore[arg-type]
@@ -246,11 +245,6 @@ def _kernel(source: str) -> _compiled.Kernel[..., None]:
     # The text calls the compiled helpers, not the plain ones.
     light.__globals__.update(scope)
     return _compiled.Kernel(light, rounding=_compiled.ROUNDING, apart=True)
-
-
-def _functions(source: str, sqrt: Callable[[float], float]) -> dict[str, object]:
-    """Return the functions of a kernel's text, with a square root that keeps the type."""
-    return _compiled.generated(source, {"sqrt": sqrt}, "light")
 
 
 def _sort(plan: Plan) -> tuple[object, ...]:
@@ -265,10 +259,8 @@ def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
     """Return the program that lights some inputs by a plan."""
     work = "f4" if plan.dtype == np.float32 else "f8"
     kinds = []
-    for name in (*PLACED, *SHARES):
-        source: ArraySource | None = getattr(inputs, name)
-        needed = name != "points" or plan.needs_points
-        if source is not None and needed:
+    for name, source in inputs.arrays().items():
+        if name != "points" or plan.needs_points:
             # In float32 where nothing is lost by it.
             narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
             kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
@@ -289,13 +281,12 @@ def _flat(source: ArraySource | Raw | None, kind: str) -> Array:
 
 def _parts(rows: Slice, inputs: ShadingInputs) -> Iterator[tuple[Slice, ShadingInputs]]:
     """Yield the places of one point of each row, and their inputs as arrays."""
-    repeat, count = inputs.repeat, inputs.count
-    sources = {name: x for name in (*PLACED, *SHARES) if (x := getattr(inputs, name)) is not None}
+    repeat, count, sources = inputs.repeat, inputs.count, inputs.arrays()
     # What all points of a fibre share is read once for all of them.
-    shared = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
+    shared: Keywords = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
-        own = {name: x[at] for name, x in sources.items() if name not in shared}
+        own: Keywords = {name: x[at] for name, x in sources.items() if name not in shared}
         yield at, dataclasses.replace(inputs, repeat=1, **shared, **own)
 
 
@@ -303,14 +294,8 @@ def _light_again(
     plan: Plan, at: Slice, odd: NDArray[np.intp], part: ShadingInputs, output: Shading
 ) -> None:
     """Light some points of a block by NumPy."""
-    few = dataclasses.replace(
-        part,
-        **{
-            name: source[:][odd]
-            for name in (*PLACED, *SHARES)
-            if (source := getattr(part, name)) is not None
-        },
-    )
+    rows: Keywords = {name: source[:][odd] for name, source in part.arrays().items()}
+    few = dataclasses.replace(part, **rows)
     own = Shading.of(plan, len(odd))
     shade_block(plan, slice(0, len(odd)), few, own)
     for name, values in own.arrays().items():
@@ -328,7 +313,7 @@ class Loop(Writer):
     """Writes the light of one point; kinds are "f4", "f8" and "bool"."""
 
     def __init__(self, plan: Plan, kinds: dict[str, str]) -> None:
-        super().__init__(plan, None)
+        super().__init__(plan)
         self.type, self.kinds = "f4" if plan.dtype == np.float32 else "f8", kinds
         self.constants: dict[tuple[float, str], str] = {}
         self.numbers: dict[str, list[float]] = {"g": [], "h": []}

@@ -208,22 +208,19 @@ def check_sides(facing: object, feature_angle: object) -> None:
         If a value does not fit.
     """
     _check.choice("facing", facing, get_args(Facing))
-    if feature_angle is not None and not _is_auto(feature_angle):
-        expected = "a number of degrees from 0 to 180, 'auto' or None"
-        if isinstance(feature_angle, str):
+    if isinstance(feature_angle, str):
+        if feature_angle != "auto":
+            expected = "a number of degrees from 0 to 180, 'auto' or None"
             raise ValueError(_check.message("feature_angle", expected, repr(feature_angle)))
+    elif feature_angle is not None:
         _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
 
 
 def _exponent(value: object) -> Exponent:
     """Return an exponent of the diffuse term that has been checked."""
-    if isinstance(value, str) and value == "compensated":
-        return "compensated"
-    if isinstance(value, str):
+    if not isinstance(value, str):
+        return _check.number("exponent", value, low=LEAST_EXPONENT, high=LARGEST_EXPONENT)
+    if value != "compensated":
         expected = "a number above 0, or 'compensated'"
         raise ValueError(_check.message("exponent", expected, repr(value)))
-    return _check.number("exponent", value, low=LEAST_EXPONENT, high=LARGEST_EXPONENT)
-
-
-def _is_auto(value: object) -> bool:
-    return isinstance(value, str) and value == "auto"
+    return "compensated"

@@ -11,7 +11,7 @@ import numpy as np
 from vizlight import _check
 from vizlight.model import brightness, kernels
 from vizlight.model.manifolds import Highlight
-from vizlight.scene import Scene, View
+from vizlight.scene import Light, Scene, View
 from vizlight.scene.light import NO_ATTENUATION
 
 if TYPE_CHECKING:
@@ -290,16 +290,10 @@ def decide(
     layout: Layout,
     options: ShadingOptions,
     dtype: DTypeLike | None = None,
-    *,
-    narrow: bool = False,
 ) -> Plan:
-    """Return the plan for inputs of a layout; see :func:`plan`.
-
-    Inputs that are ``narrow`` have no more digits than float32.
-    """
+    """Return the plan for inputs of a layout; see :func:`vizlight.shading.engine.plan`."""
     _check.instance("scene", scene, Scene)
-    dtype = options.precision if dtype is None else dtype
-    kind = _precision((np.float32 if narrow else np.float64) if dtype is None else dtype)
+    kind = _precision((options.precision or np.float64) if dtype is None else dtype)
     _check_layout(layout, options)
     _check_scene(scene, layout.n)
     n, surface = layout.n, layout.k is None
@@ -345,14 +339,13 @@ def _highlights(scene: Scene, model: Model) -> tuple[Highlight, ...]:
     shininess = scene.material.shininess
     fixed = model == "blinn" and shininess >= LEAST_POWER
     return tuple(
-        Highlight(model, shininess, _half(scene, i) if fixed else None)
-        for i in range(len(scene.lights))
+        Highlight(model, shininess, _half(light, scene.view) if fixed else None)
+        for light in scene.lights
     )
 
 
-def _half(scene: Scene, index: int) -> Vector | None:
+def _half(light: Light, view: View | None) -> Vector | None:
     """Return the half vector that all points share, or None."""
-    light, view = scene.lights[index], scene.view
     if view is None or not view.parallel or light.direction is None or view.direction is None:
         return None
     # As two columns: kernels have the components first.
@@ -409,7 +402,7 @@ def _check_layout(layout: Layout, options: ShadingOptions) -> None:
     if base and not (n - 1 if k is None else k) <= base < n:
         expected = f"from k = {k} to less than n = {n} tangents per point"
         raise ValueError(_check.message("base_tangents", expected, base))
-    if _check.number("fur", fur, low=0.0, high=1.0) and not normals:
+    if fur and not normals:
         raise ValueError(_check.message("normals", "normals, across which fur stands", None))
 
 
@@ -430,9 +423,9 @@ def _check_scene(scene: Scene, n: int) -> None:
                 f"for light in {scene.n}-space name the arrays by positions= and tangents=",
             )
         )
-    if scene.view is None and scene.depth_cue is not None:
+    cue = scene.depth_cue
+    if scene.view is None and cue is not None:
         expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
         raise ValueError(_check.message("view", expected, None, remedy))
-    cue = scene.depth_cue
     if cue is not None and (cue.front is None or cue.back is None):
         raise ValueError(_check.message("depth_cue", "front= and back=", cue))

@@ -7,7 +7,7 @@ second notation: each operation is written down as a statement, and its result i
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from vizlight.shading.algebra import Algebra
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import numpy as np
 
     from vizlight._types import Value
-    from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.plan import Plan
 
 _SIGNS = {
@@ -89,41 +88,39 @@ for _name in ("gt", "ge", "lt", "le"):
     setattr(Symbol, f"__{_name}__", _operator(_SIGNS[_name]))
 
 
-class Writer(Algebra):
+class Language(Protocol):
+    """What a program is written in."""
+
+    def statement(self, name: str, text: str, kind: str) -> str:
+        """Return the statement that gives a name to an expression."""
+
+    def kind(self, *args: Value) -> str:
+        """Return the kind of what is made of some values."""
+
+    def literal(self, value: float, kind: str) -> str:
+        """Return a number as the language writes it where another kind is met."""
+
+    def call(self, name: str, *args: Value) -> Value:
+        """Return a function of NumPy of some values."""
+
+    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
+        """Return ``yes`` where a test holds, else ``no``."""
+
+    def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
+        """Return a number of [0, 1] to a power."""
+
+
+class Writer(Algebra, Language):
     """What programs share: statements, each written once."""
 
     #: First letters of the names of a program.
     prefix = "v"
 
-    def __init__(self, plan: Plan, inputs: ShadingInputs | None) -> None:
-        super().__init__(plan, inputs)
+    def __init__(self, plan: Plan) -> None:
+        super().__init__(plan)
         self.lines: list[str] = []
         self.names: dict[tuple[str, str], Symbol] = {}
         self.count = 0
-
-    def statement(self, name: str, text: str, kind: str) -> str:
-        """Return the statement that gives a name to an expression."""
-        raise NotImplementedError
-
-    def kind(self, *args: Value) -> str:
-        """Return the kind of what is made of some values."""
-        raise NotImplementedError
-
-    def literal(self, value: float, kind: str) -> str:
-        """Return a number as the language writes it where another kind is met."""
-        raise NotImplementedError
-
-    def call(self, name: str, *args: Value) -> Value:
-        """Return a function of NumPy of some values."""
-        raise NotImplementedError
-
-    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
-        """Return ``yes`` where a test holds, else ``no``."""
-        raise NotImplementedError
-
-    def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
-        """Return a number of [0, 1] to a power."""
-        raise NotImplementedError
 
     def present(self, x: Value, distance: Value | None) -> Value:
         """Return x: what becomes of points at their lamp or eye is decided at the end."""

@@ -119,7 +119,11 @@ def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
         w.need(occlusion >= 0.0)
         # NaN is not >= 0: such a point is marked by `need` and keeps the whole ambient light.
         occlusion = where(occlusion >= 0.0, occlusion, 1.0)
-    scale = None if cue is None else w.sound(_depth_scale(w, plan), 1.0)
+    scale: Value = None
+    if cue is not None:
+        # S between the scales of front and back: the Lecture, atmospheric attenuation.
+        depth, ends = w.depth()
+        scale = w.sound(w.work(formulas.depth_scale(depth, *ends, smooth=cue.smooth)), 1.0)
 
     def whole(ambient: Value, terms: Iterable[Value], grey: Value) -> Value:
         ambient = ambient if occlusion is None else ambient * occlusion
@@ -150,14 +154,6 @@ def _share(w: Algebra, name: str, lamp: Lamp) -> Value:
     share = w.read(name, lamp)
     w.need(share >= 0.0)
     return share
-
-
-def _depth_scale(w: Algebra, plan: Plan) -> Value:
-    """Return S between the scales of front and back: the Lecture, atmospheric attenuation."""
-    cue = plan.scene.depth_cue
-    assert cue is not None
-    depth, ends = w.depth()
-    return w.work(formulas.depth_scale(depth, *ends, smooth=cue.smooth))
 
 
 def _shape(w: Algebra, plan: Plan, normal: Value, wo: Value) -> Surface | Frame:

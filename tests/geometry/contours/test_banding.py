@@ -136,5 +136,5 @@ def test_diffuse_and_specular_together(levels_, random):
 def test_empty_shapes():
     for solid in (Sphere(radius=0), Frustum(radii=(0, 0)), Block(size=(0, 0, 1))):
         made = refinement.draw(triangle_mesh.mesh(solid, 24), spot, 5, low=0.1)
-        assert len(made.values) == 0
+        assert len(made.values) == len(made.normals()) == 0
         assert made.error == 0

@@ -148,6 +148,9 @@ def test_virtual_light_of_lights_and_views():
     np.testing.assert_allclose(
         virtual_light((1, 0, 0), light=Light(direction=(0, 3, 0)), eye=parallel), direct
     )
+    eye = View(position=(1, 0, 9))
+    headlight = virtual_light((1, 0, 0), light=Light.headlight(), eye=eye)
+    np.testing.assert_allclose(headlight, (0, 0, 1))
     with pytest.raises(ValueError, match="eye: expected an eye that is not opposite"):
         virtual_light((0, 0, 0), light=(0, 0, 1), eye=(0, 0, -1))
 

@@ -1,15 +1,17 @@
 """Curves on triangles and tetrahedra: places stay in cells, order of the error, line fields."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import pyvista as pv
 
 from vizlight import _compiled
 from vizlight.geometry.lines.simplices import Places, Simplices
-from vizlight.geometry.lines.tracing import Flow, trace
+from vizlight.geometry.lines.tracing import Flow, Tracing, trace
 
 RANDOM = np.random.default_rng(7)
-OPTIONS = {"max_length": 100.0, "max_steps": 10_000}
+HOW = Tracing(step=0.3, max_length=100.0, max_steps=10_000, seed=0)
 
 
 def square(n=9):
@@ -100,7 +102,7 @@ def orbit_error(make, step):
     radius = np.linalg.norm((mesh.points[mesh.cells].mean(axis=1) - middle)[:, :2], axis=1)
     cell = cell[np.abs(radius - 0.3) < 0.1][:20]
     seeds = Places(cell, np.full((len(cell), mesh.k + 1), 1 / (mesh.k + 1)))
-    curves = trace(flow, seeds, step=step, max_length=1.0, max_steps=10_000)
+    curves = trace(flow, seeds, dataclasses.replace(HOW, step=step, max_length=1.0))
     away = (mesh.positions(curves.places) - middle)[:, :2]
     radius = np.linalg.norm(away, axis=1)
     return max(
@@ -124,7 +126,7 @@ def test_a_line_field_has_no_sign(make):
     signs = RANDOM.choice([-1.0, 1.0], size=(len(vectors), 1))
     seeds = mesh.random(12, np.random.default_rng(3))
     found = [
-        trace(Flow(mesh, v, line_field=field), seeds, step=0.3, **OPTIONS)
+        trace(Flow(mesh, v, line_field=field), seeds, HOW)
         for v, field in ((vectors, False), (vectors, True), (signs * vectors, True))
     ]
     for other in found[1:]:
@@ -145,10 +147,10 @@ def test_curves_end_where_the_field_rests_or_turns_back():
     rests = np.stack([np.where(x < 0, 1.0, 0.0), 0 * x, 0 * x], axis=1)
     seeds = mesh.random(30, np.random.default_rng(1))
     seeds = seeds[mesh.positions(seeds)[:, 0] < -0.1]
-    curves = trace(Flow(mesh, rests), seeds, step=0.3, **OPTIONS)
+    curves = trace(Flow(mesh, rests), seeds, HOW)
     assert mesh.positions(curves.places)[:, 0].max() < 0.051
     meets = np.stack([-np.sign(x), 0 * x, 0 * x], axis=1)
-    curves = trace(Flow(mesh, meets), seeds, step=0.3, **OPTIONS)
+    curves = trace(Flow(mesh, meets), seeds, HOW)
     assert np.abs(mesh.positions(curves.places)[curves.offsets[1:] - 1, 0]).max() < 0.06
-    nothing = trace(Flow(mesh, 0 * rests), seeds, step=0.3, **OPTIONS)
+    nothing = trace(Flow(mesh, 0 * rests), seeds, HOW)
     assert len(nothing.offsets) == 1

@@ -1,11 +1,13 @@
 """Cross fields against closed forms: order and signs do not matter, also around singularities."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from vizlight.geometry.lines.tracing import Flow, double_cover, trace
+from vizlight.geometry.lines.tracing import Flow, Tracing, double_cover, trace
 
-OPTIONS = {"step": 0.3, "max_steps": 10_000}
+HOW = Tracing(step=0.3, max_length=3.0, max_steps=10_000, seed=0)
 MINOR = 0.4
 
 
@@ -59,7 +61,7 @@ def test_lines_of_a_torus_are_meridians_and_parallels_of_second_order(random):
         both = type(one)(one.cell % len(cells), one.weights)
         other = type(one)(both.cell + len(cells), one.weights)
         flow = Flow(mesh, lines, line_field=True)
-        curves = trace(flow, both.joined(other), max_length=3.0, **OPTIONS)
+        curves = trace(flow, both.joined(other), HOW)
         x, y, z = mesh.positions(curves.places).T
         phi, theta = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y) - 1)
         parallels, worst = [], 0.0
@@ -95,7 +97,8 @@ def test_lines_go_around_a_singularity(index, random):
     cell = random.choice(far, 20)
     share = np.full((40, 3), 1 / 3)
     seeds = type(mesh.one_each())(np.concatenate([cell, cell + len(cells)]), share)
-    curves = trace(Flow(mesh, lines, line_field=True), seeds, max_length=9.0, **OPTIONS)
+    how = dataclasses.replace(HOW, max_length=9.0)
+    curves = trace(Flow(mesh, lines, line_field=True), seeds, how)
     found = mesh.positions(curves.places)
     errors, turns = [], []
     for start, end in zip(curves.offsets[:-1], curves.offsets[1:], strict=True):

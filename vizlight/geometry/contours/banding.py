@@ -91,6 +91,8 @@ class Bands:
     def normals(self) -> Array:
         """Return the mean unit normal of each polygon, zero where it has no area."""
         corners, owner = self.triangles()
+        if not len(corners):
+            return np.zeros((len(self.values), 3))
         a, b, c = (self.points[corners[:, i], :3] for i in range(3))
         # Relative to the extent: squares of tiny lengths underflow, squares of huge ones overflow.
         unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0

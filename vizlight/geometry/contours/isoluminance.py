@@ -146,6 +146,8 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
     """
     middle = axial.triple("center", center)
     total = np.zeros(3)
+    # A headlight is where the eye is.
+    light = eye if getattr(light, "is_headlight", False) else light
     for name, given in (("light", light), ("eye", eye)):
         position = getattr(given, "position", None)
         if position is not None and not getattr(given, "parallel", False):

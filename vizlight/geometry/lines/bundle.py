@@ -289,28 +289,22 @@ class Medium:
         if not near:
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
-            left = _left(depth, targets.own(targets.facing(toward)), thick)
-        else:
-            # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a
-            # box.
-            lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
-            depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
-            way = lamp[:, np.newaxis] - targets.places
-            way /= np.maximum(size(way), NARROWEST)
-            width = np.maximum(width, NARROWEST)
-            own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(
-                thick / width
-            )
-            # More light than all comes of rounding alone.
-            left = np.exp(np.minimum(-thick * (depth - own), 0))
-        return left
+            return _left(depth, targets.own(targets.facing(toward)), _crowded(thick))
+        # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
+        lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
+        depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
+        way = lamp[:, np.newaxis] - targets.places
+        way /= np.maximum(size(way), NARROWEST)
+        width = np.maximum(width, NARROWEST)
+        own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(thick / width)
+        return _left(depth, own, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
         own = targets.own(facing)
-        forth, back = (_left(d, own, thick) for d in self.depths(targets.places, toward))
+        forth, back = (_left(d, own, _crowded(thick)) for d in self.depths(targets.places, toward))
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
     def crowded(self, targets: Targets, count: int) -> float:
@@ -395,9 +389,15 @@ def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> A
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
     others = depth - own
-    others *= -thick * (1 + CROWDING * thick)
+    others *= -thick
+    # More light than all comes of rounding alone.
     left: Array = np.exp(np.minimum(others, 0, out=others), out=others)
     return left
+
+
+def _crowded(thick: float) -> float:
+    """Return a diameter in voxels times the factor of lines in one another's shadow, far away."""
+    return thick * (1 + CROWDING * thick)
 
 
 def _frame(toward: VectorLike) -> Array:
@@ -460,53 +460,46 @@ def depths(
     across *= crowding(thick / np.maximum(width * gone, NARROWEST))
     face = np.argmax(np.abs(at), axis=0)
     for axis in range(3):
+        others = [i for i in range(3) if i != axis]
         for side in (1, -1):
             rows = np.flatnonzero((face == axis) & (side * at[axis] > 0))
             held = np.flatnonzero(side * middles[axis] > 0)
             if rows.size and held.size:
-                part = _Cone(axis, side, width)
-                seen = part.seen(at[:, rows])
-                out[rows] = part.depth(
-                    seen, far[rows], part.seen(middles[:, held]), gone[held], across[held]
+                # Tangents of the two angles under which the light sees points and pieces.
+                seen, pieces = (
+                    v[others] / (side * v[axis] * width) for v in (at[:, rows], middles[:, held])
                 )
+                out[rows] = _in_pyramid(seen, far[rows], pieces, gone[held], across[held], width)
                 height = side * at[axis, rows]
                 widths[rows] = width * height * np.sqrt(height / far[rows])
     return out, widths
 
 
-class _Cone(NamedTuple):
-    """One of the six pyramids around a light, cut into cones of an angular width."""
+def _in_pyramid(
+    seen: Array, far: Array, held: Array, gone: Array, across: Array, width: float
+) -> Array:
+    """Return the depth between a light and points, for pieces, in one of six pyramids around it.
 
-    axis: int
-    side: int
-    width: float
-
-    def seen(self, rows: Array) -> Array:
-        """Return the tangents of the two angles under which the light sees rows, in widths."""
-        height = self.side * rows[self.axis]
-        others = [i for i in range(3) if i != self.axis]
-        seen: Array = rows[others] / (height * self.width)
-        return seen
-
-    def depth(self, seen: Array, far: Array, held: Array, gone: Array, across: Array) -> Array:
-        """Return the depth between the light and points at distances, for pieces at distances."""
-        reach = far.max()
-        low = seen.min(axis=1, keepdims=True) - 2
-        high = seen.max(axis=1, keepdims=True) + 2
-        inside = ((held > low) & (held < high)).all(axis=0) & (gone < reach + 2)
-        if not inside.any():
-            return np.zeros(len(far), np.float32)
-        held, gone, across = held[:, inside], gone[inside], across[inside]
-        # Height over the light of the plane that is divided into squares, in voxels.
-        slant = np.sqrt(1 + self.width**2 * (held * held).sum(axis=0))
-        area = (self.width * gone) ** 2 / slant**3
-        rows = np.concatenate([held, gone[np.newaxis]])
-        low, shape = voxels.box(rows)
-        grid = voxels.spread((rows - low).astype(np.float32), across / area, shape)
-        voxels.summed(grid)
-        cells = np.concatenate([seen, far[np.newaxis]]) - low
-        limits = np.array(shape, np.float64)[:, np.newaxis] - 2
-        return voxels.read(grid, np.clip(cells, 0, limits).astype(np.float32))
+    Points and pieces are given by the tangents under which the light sees them, in widths of the
+    cones into which the pyramid is cut, and by their distances from it.
+    """
+    reach = far.max()
+    low = seen.min(axis=1, keepdims=True) - 2
+    high = seen.max(axis=1, keepdims=True) + 2
+    inside = ((held > low) & (held < high)).all(axis=0) & (gone < reach + 2)
+    if not inside.any():
+        return np.zeros(len(far), np.float32)
+    held, gone, across = held[:, inside], gone[inside], across[inside]
+    # Height over the light of the plane that is divided into squares, in voxels.
+    slant = np.sqrt(1 + width**2 * (held * held).sum(axis=0))
+    area = (width * gone) ** 2 / slant**3
+    rows = np.concatenate([held, gone[np.newaxis]])
+    low, shape = voxels.box(rows)
+    grid = voxels.spread((rows - low).astype(np.float32), across / area, shape)
+    voxels.summed(grid)
+    cells = np.concatenate([seen, far[np.newaxis]]) - low
+    limits = np.array(shape, np.float64)[:, np.newaxis] - 2
+    return voxels.read(grid, np.clip(cells, 0, limits).astype(np.float32))
 
 
 def size(rows: Array) -> Array:

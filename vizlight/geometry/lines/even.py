@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.lines.simplices import Simplices
+    from vizlight.geometry.lines.tracing import Tracing
 
 
 #: Samples of curves per spacing.
@@ -37,7 +37,7 @@ class Samples:
     """Samples of the curves, found by distance."""
 
     def __init__(self) -> None:
-        self.points = self.along = self.weights = self.embedded = np.empty((0, 3))
+        self.along = self.weights = self.embedded = np.empty((0, 3))
         self.sign = self.length = np.empty(0)
         self.curve = self.number = self.cell = np.empty(0, dtype=np.intp)
         self.used = np.empty(0, dtype=np.bool_)
@@ -49,11 +49,11 @@ class Samples:
         self._recent = self._rows
         self._whole, self._seen, self._stale = 0, 0, 0
 
-    def add(self, walkers: Walkers, points: Array, embedded: Array) -> None:
+    def add(self, walkers: Walkers, embedded: Array) -> None:
         """Add where ends are now."""
-        size, total = self._size, self._size + len(points)
+        size, total = self._size, self._size + len(embedded)
         new = vars(walkers) | vars(walkers.places)
-        new |= {"points": points, "embedded": embedded, "used": np.ones(len(points), np.bool_)}
+        new |= {"embedded": embedded, "used": np.ones(len(embedded), np.bool_)}
         del new["places"]
         for name, rows in new.items():
             known = getattr(self, name)
@@ -140,61 +140,37 @@ SHORTEST = 2.0
 DENSER, WIDE, SHARE = 4, 1.15, 0.7
 
 
-@dataclass(frozen=True)
-class Spacing:
-    """How far apart curves are.
-
-    Attributes
-    ----------
-    spacing : float
-        Distance at which a curve starts beside another.
-    step : float
-        Largest length of a step, in extents of its cell.
-    max_length, max_steps : float, int
-        Largest length, and number of steps, on either side of a seed.
-    """
-
-    spacing: float
-    step: float
-    max_length: float
-    max_steps: int
-
-
-def with_normals(normals: Array, points: Array, spacing: float) -> Array:
-    """Return points with their normals beside them, both of shape (M, 3), as (M, 6)."""
-    size = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    return np.hstack([points, NORMALS * spacing / size * normals])
-
-
-def embedded(
-    mesh: Simplices, normals: Array | None, spacing: float, places: Places, points: Array
-) -> Array:
+def embedded(flow: Flow, spacing: float, places: Places | None = None) -> Array:
     """Return positions and, on a surface, scaled normals, in which distances are measured.
 
     Parameters
     ----------
-    mesh : Simplices
-    normals : ndarray, shape (N, 3), or None
-        Normals at the vertices of a surface; None in a volume.
+    flow : Flow
     spacing : float
-    places : Places
-    points : ndarray, shape (M, 3)
-        Their positions.
+    places : Places, optional
+        Default: the vertices.
+
+    Returns
+    -------
+    ndarray, shape (M, 3) or (M, 6)
     """
-    return (
-        points
-        if normals is None
-        else with_normals(mesh.interpolated(normals, places), points, spacing)
-    )
+    rows = [flow.mesh.points] if flow.normals is None else [flow.mesh.points, flow.normals]
+    if places is not None:
+        rows = [flow.mesh.interpolated(values, places) for values in rows]
+    if flow.normals is None:
+        return rows[0]
+    points, normals = rows
+    size = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    return np.hstack([points, NORMALS * spacing / size * normals])
 
 
 class Growth:
     """Curves while they grow; see :func:`evenly_spaced`."""
 
     def __init__(
-        self, flow: Flow, normals: Array | None, asked: Spacing, random: np.random.Generator
+        self, flow: Flow, spacing: float, how: Tracing, random: np.random.Generator
     ) -> None:
-        self.flow, self.normals, self.asked, self.random = flow, normals, asked, random
+        self.flow, self.spacing, self.how, self.random = flow, spacing, how, random
         self.samples = Samples()
         self.trail: list[Walkers] = []
         #: Whether there are two families of curves that do not stop each other.
@@ -204,10 +180,10 @@ class Growth:
         self.closed: set[int] = set()
         self.dropped: set[int] = set()
         #: Number of ends that were stopped by another curve or by their own, by curve.
-        self.cut: dict[int, int] = {}
+        self.cut: Counter[int] = Counter()
         #: Number of ends that grow, and length of those that have stopped, by curve.
-        self.growing: dict[int, int] = {}
-        self.lengths: dict[int, float] = {}
+        self.growing: Counter[int] = Counter()
+        self.lengths: defaultdict[int, float] = defaultdict(float)
         self.count, self.apart = 0, APART
         #: Whether only wide gaps are still filled.
         self.last_gaps = False
@@ -220,30 +196,23 @@ class Growth:
         #: Places a spacing beside curves, from which others may start.
         self.beside = nowhere
 
-    def embedded(self, places: Places, points: Array) -> Array:
-        """Return what :func:`embedded` does."""
-        return embedded(self.flow.mesh, self.normals, self.asked.spacing, places, points)
-
     def distances(self, places: Places, radius: float) -> Array:
         """Return the distance of places from the nearest sample; infinite beyond a radius."""
-        embedded = self.embedded(places, self.flow.mesh.positions(places))
-        along = None
-        if self.crossing:
-            along = self.flow.directions(places, None, np.ones(len(places.cell)))[0]
-        return np.asarray(self.samples.near(embedded, radius, 4, along)[0].min(axis=1))
+        at = embedded(self.flow, self.spacing, places)
+        along = self.flow.directions(places)[0] if self.crossing else None
+        return np.asarray(self.samples.near(at, radius, 4, along)[0].min(axis=1))
 
     def start(self, seeds: Places) -> Bools:
         """Let curves grow from seeds that are apart from each other; return which were taken.
 
         Seeds without a direction are taken too, and nothing grows there.
         """
-        points = self.flow.mesh.positions(seeds)
-        embedded = self.embedded(seeds, points)
+        at = embedded(self.flow, self.spacing, seeds)
         # Too many at once would grow into each other; too few waste the vectorised step.
         room = CROWD - len(self.growing)
-        taken: Bools = ~self.flow.directions(seeds, None, np.ones(len(seeds.cell)))[1]
+        taken: Bools = ~self.flow.directions(seeds)[1]
         moving = np.flatnonzero(~taken)
-        chosen = moving[_apart(embedded[moving], self.apart * self.asked.spacing, room)]
+        chosen = moving[_apart(at[moving], self.apart * self.spacing, room)]
         # Seeds start farther apart at first; where few of them fit, nearer.
         wide = len(chosen) >= room // 4
         self.apart = min(APART, 1.5 * self.apart) if wide else max(NEAR, self.apart / 1.5)
@@ -251,11 +220,9 @@ class Growth:
         numbers = self.count + np.arange(len(chosen))
         self.count += len(chosen)
         made = Walkers.at(self.flow, seeds[chosen], numbers)
-        for curve in made.curve.tolist():
-            self.growing[curve] = self.growing.get(curve, 0) + 1
-        at = self.flow.mesh.positions(made.places)
+        self.growing.update(made.curve.tolist())
         self.trail.append(made)
-        self.samples.add(made, at, self.embedded(made.places, at))
+        self.samples.add(made, embedded(self.flow, self.spacing, made.places))
         self.walkers = self.walkers.joined(made)
         self.returning = np.append(self.returning, np.full(len(made.curve), -1))
         self.sampled = np.append(self.sampled, np.zeros(len(made.curve)))
@@ -263,17 +230,12 @@ class Growth:
 
     def grow(self) -> None:
         """Let all ends make one step."""
-        walkers, mesh = self.walkers, self.flow.mesh
-        sample = self.asked.spacing / SAMPLES
+        walkers, sample = self.walkers, self.spacing / SAMPLES
         # A step is at most the distance of samples, by which curves keep apart.
-        size = np.minimum(self.asked.step * mesh.sizes(walkers.places), sample)
-        places, along, made, inside = self.flow.advance(
-            walkers.places, walkers.along, walkers.sign, size
-        )
-        ahead = walkers.moved(places, along, size)
-        points = mesh.positions(places)
-        embedded = self.embedded(places, points)
-        blocked, back, reached, losers = self._met(ahead, points, embedded)
+        size = np.minimum(self.how.step * self.flow.mesh.sizes(walkers.places), sample)
+        ahead, made, inside = walkers.advanced(self.flow, size)
+        at = embedded(self.flow, self.spacing, ahead.places)
+        blocked, back, reached, losers = self._met(ahead, at)
         for curve in losers.tolist():
             self.samples.drop(curve)
             self.growing.pop(curve, None)
@@ -283,19 +245,19 @@ class Growth:
         self.trail.append(ahead[made])
         # Samples are set at even lengths; 0.999 absorbs the rounding of summed steps.
         due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
-        self.samples.add(ahead[due], points[due], embedded[due])
+        self.samples.add(ahead[due], at[due])
         self.sampled = np.where(due, ahead.length, self.sampled)
         for row in np.flatnonzero(made & (reached >= 0)).tolist():
             self._close(ahead, row, int(reached[row]))
         # An end stops at a boundary, at its longest, after its last step, or where its curve is
         # closed.
-        going = made & inside & (ahead.length < self.asked.max_length)
-        going &= (ahead.number < self.asked.max_steps) & ~np.isin(ahead.curve, [*self.closed])
+        going = made & inside & (ahead.length < self.how.max_length)
+        going &= (ahead.number < self.how.max_steps) & ~np.isin(ahead.curve, [*self.closed])
         began = np.where(self.returning < 0, walkers.number, self.returning)
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.
             if blocked[row]:
-                self.cut[int(ahead.curve[row])] = self.cut.get(int(ahead.curve[row]), 0) + 1
+                self.cut[int(ahead.curve[row])] += 1
             if self.returning[row] >= 0:
                 key = int(ahead.curve[row]), int(ahead.sign[row])
                 self.last.setdefault(key, int(self.returning[row]))
@@ -303,17 +265,15 @@ class Growth:
         self.returning = np.where(back, began, -1)[going]
         self.walkers, self.sampled = ahead[going], self.sampled[going]
 
-    def _met(
-        self, ahead: Walkers, points: Array, embedded: Array
-    ) -> tuple[Bools, Bools, Indices, Indices]:
+    def _met(self, ahead: Walkers, at: Array) -> tuple[Bools, Bools, Indices, Indices]:
         """Return which ends are blocked, which come back to their own curve, and what they reach.
 
         The third is the row of the sample at which the curve is closed, or -1; the fourth are the
         curves that give way.
         """
-        samples, spacing = self.samples, self.asked.spacing
+        samples, spacing = self.samples, self.spacing
         d = SEPARATION * spacing
-        distance, row = samples.near(embedded, d, 16, ahead.along if self.crossing else None)
+        distance, row = samples.near(at, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
         own = samples.curve[row] == ahead.curve[:, np.newaxis]
         # The way along the curve between an end and a sample of its own: near ones are no
@@ -327,7 +287,7 @@ class Growth:
         losers = np.unique(samples.curve[row[hit & later]])
         hit &= ~later
         # Split along and across the end's direction: what lies abreast is beside, not ahead.
-        toward = samples.points[row] - points[:, np.newaxis]
+        toward = samples.embedded[row][..., :3] - at[:, np.newaxis, :3]
         along = np.einsum("nkj,nj->nk", toward, ahead.along)
         lateral = np.linalg.norm(
             toward - along[..., np.newaxis] * ahead.along[:, np.newaxis], axis=2
@@ -359,15 +319,15 @@ class Growth:
     def _stop(self, curve: int, length: float) -> None:
         """Note that an end has stopped; after the second keep the curve or drop it."""
         self.growing[curve] -= 1
-        self.lengths[curve] = self.lengths.get(curve, 0.0) + length
+        self.lengths[curve] += length
         if self.growing[curve]:
             return
         del self.growing[curve]
         # A curve that two others have cut short is dropped if it is too short to be read.
-        cut = self.cut.get(curve, 0)
+        cut = self.cut[curve]
         # In a gap there is room for half the length on either side of the seed.
         share = SHARE * cut / 2 if self.last_gaps else min(cut, 1)
-        if self.lengths[curve] < share * SHORTEST * self.asked.spacing:
+        if self.lengths[curve] < share * SHORTEST * self.spacing:
             self.dropped.add(curve)
             self.samples.drop(curve)
         elif not self.last_gaps:
@@ -376,9 +336,9 @@ class Growth:
     def _look_beside(self, curve: int) -> None:
         """Queue places a spacing beside a curve."""
         places, along = self.samples.of(curve)
-        if self.normals is not None:
+        if self.flow.normals is not None:
             # On a surface the places beside a curve are to its left and right, across the normal.
-            u: Array = np.cross(self.flow.mesh.interpolated(self.normals, places), along)
+            u: Array = np.cross(self.flow.mesh.interpolated(self.flow.normals, places), along)
             sides = [u, -u]
         else:
             # In a volume: four directions around it, turned at random.
@@ -387,13 +347,13 @@ class Growth:
             sides = [u, -u, v, -v]
         for side in sides:
             size = np.linalg.norm(side, axis=1, keepdims=True)
-            step = self.asked.spacing * side / np.where(size > 0, size, 1)
+            step = self.spacing * side / np.where(size > 0, size, 1)
             found, inside = self.flow.mesh.walk(places, step)
             self.beside = self.beside.joined(found[inside])
 
     def refill(self, pool: Places) -> Places:
         """Start new curves where there is room; return the places of the pool still to be tried."""
-        spacing = self.asked.spacing
+        spacing = self.spacing
         while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
             first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
             # 0.95: rounding on the way beside a curve must not count as crowded.
@@ -413,19 +373,18 @@ class Growth:
 
     def widest(self, places: Places) -> Places:
         """Return the places in wide gaps, those farthest from all curves first."""
-        least = WIDE * self.asked.spacing
+        least = WIDE * self.spacing
         wide = places[self.distances(places, least) >= least]
         return wide[np.argsort(-self.distances(wide, 4 * least), kind="stable")]
 
 
 def evenly_spaced(
     flow: Flow,
-    normals: Array | None,
-    asked: Spacing,
+    spacing: float,
+    how: Tracing,
     /,
     *,
-    seeds: Places | None = None,
-    seed: int = 0,
+    seeds: Places | None,
     report: Callable[[int], None] = lambda _: None,
 ) -> tuple[Curves, int]:
     """Return integral curves that are evenly spaced, on a whole surface or in a whole volume.
@@ -433,13 +392,11 @@ def evenly_spaced(
     Parameters
     ----------
     flow : Flow
-    normals : ndarray, shape (N, 3), or None
-        Normals at the vertices of a surface; None in a volume.
-    asked : Spacing
-    seeds : Places, optional
-        Seeds of the first curves. Default: random places.
-    seed : int
-        Seed of the random numbers.
+    spacing : float
+        Distance at which a curve starts beside another.
+    how : Tracing
+    seeds : Places or None
+        Seeds of the first curves. None: random places.
     report : callable, optional
         Function that takes the number of places of :func:`places_of` that are covered.
 
@@ -458,12 +415,12 @@ def evenly_spaced(
     and Lefer, Creating evenly-spaced streamlines of arbitrary density (1997), with all curves
     growing at the same time.
     """
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(how.seed)
     # Random places all over find what is a spacing from all curves wherever no neighbour does.
-    pool = places_of(flow, asked.spacing, random)
+    pool = places_of(flow, spacing, random)
     # Parts that are too small for a random place have one of their own.
     pool = pool[random.permutation(len(pool.cell))].joined(flow.mesh.one_each())
-    growth = Growth(flow, normals, asked, random)
+    growth = Growth(flow, spacing, how, random)
     total, covered, before = len(pool.cell), 0, -1
     if seeds is not None:
         growth.beside = seeds
@@ -480,7 +437,7 @@ def evenly_spaced(
                 break
             # Last, with denser places, the gaps that are wide but too small for a whole spacing.
             before, growth.last_gaps = kept, True
-            pool = growth.widest(places_of(flow, asked.spacing, random, DENSER**flow.mesh.k))
+            pool = growth.widest(places_of(flow, spacing, random, DENSER**flow.mesh.k))
     report(total)
     curves = passed(growth.trail, growth.last, closed=growth.closed, dropped=growth.dropped)
     return curves, len(growth.closed - growth.dropped)

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from vizlight.geometry.lines.even import CROSSING, embedded, parallel, with_normals
+from vizlight.geometry.lines.even import CROSSING, embedded, parallel
 from vizlight.geometry.lines.simplices import Columns, Places
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.lines.even import Spacing
     from vizlight.geometry.lines.tracing import Curves, Flow
 
 #: What a gap is known to, in spacings.
@@ -34,44 +33,22 @@ ON_CURVES = 1000
 
 
 class Distances:
-    """Distances from curves, as :meth:`~vizlight.geometry.lines.even.Growth.embedded`.
+    """Distances from curves, as :func:`~vizlight.geometry.lines.even.embedded`.
 
     Parameters
     ----------
     flow : Flow
-    normals : ndarray, shape (N, 3), or None
-        Normals at the vertices of a surface; None in a volume.
     spacing : float
     curves : Curves
     """
 
-    def __init__(self, flow: Flow, normals: Array | None, spacing: float, curves: Curves) -> None:
-        self.flow, self.normals, self.spacing = flow, normals, spacing
-        self.there, self.along = self.embedded(curves.places), curves.along
+    def __init__(self, flow: Flow, spacing: float, curves: Curves) -> None:
+        self.flow, self.spacing = flow, spacing
+        self.there, self.along = embedded(flow, spacing, curves.places), curves.along
         self.curve = np.repeat(np.arange(len(curves.offsets) - 1), np.diff(curves.offsets))
         self._tree = scipy.spatial.cKDTree(self.there)
         #: Whether there are two families of curves, each with gaps of its own.
         self.crossing = flow.mesh.sheets is not None
-
-    def embedded(self, places: Places) -> Array:
-        """Return positions and, on a surface, scaled normals, in which distances are measured."""
-        mesh = self.flow.mesh
-        return embedded(mesh, self.normals, self.spacing, places, mesh.positions(places))
-
-    @property
-    def vertices(self) -> Array:
-        """Embedded vertices of the mesh."""
-        points = self.flow.mesh.points
-        return points if self.normals is None else with_normals(self.normals, points, self.spacing)
-
-    @property
-    def squares(self) -> float:
-        """Area of the mesh in squares, or volume in cubes, of the spacing."""
-        return float(self.flow.mesh.extent / self.spacing**self.flow.mesh.k)
-
-    def directions(self, places: Places) -> tuple[Array, Bools]:
-        """Return directions of curves at places, and where there is one."""
-        return self.flow.directions(places, None, np.ones(len(places.cell)))
 
     def of_points(
         self, at: Array, along: Array, curve: Indices | None, count: int
@@ -170,10 +147,11 @@ class Parts(Columns):
         rows, ends = np.arange(2 * count), np.concatenate([one[longest], other[longest]])
         opposite = np.roll(ends, count)
         weights[rows, ends] = (weights[rows, ends] + weights[rows, opposite]) / 2
-        corners[rows, ends] = distances.embedded(Places(cell, weights[rows, ends]))
+        flow, spacing = distances.flow, distances.spacing
+        corners[rows, ends] = embedded(flow, spacing, Places(cell, weights[rows, ends]))
         middles = Places(cell, weights.mean(axis=1))
-        at = distances.embedded(middles)
-        along, moving = distances.directions(middles)
+        at = embedded(flow, spacing, middles)
+        along, moving = flow.directions(middles)
         far = distances.of_lines(at, along)
         return Parts(cell, weights, corners, far, radii(np.swapaxes(corners, 0, 1), at)), moving
 
@@ -202,12 +180,14 @@ def largest_gap(distances: Distances) -> float:
     """
     if not len(distances.there):
         return np.inf
-    known = KNOWN * distances.spacing
+    spacing, mesh = distances.spacing, distances.flow.mesh
+    known = KNOWN * spacing
     parts, gap = _first_parts(distances)
-    room = max(LEAST_PARTS, int(MOST_PARTS**distances.flow.mesh.k * distances.squares))
+    # In squares of the spacing, or cubes.
+    room = max(LEAST_PARTS, int(MOST_PARTS**mesh.k * (mesh.extent / spacing**mesh.k)))
     while len(parts.cell) and room > 0:
         # Large parts come first and are not counted: what is in them is not known yet.
-        large = parts.radius > BOX * distances.spacing
+        large = parts.radius > BOX * spacing
         first = np.where(large, np.inf, parts.far)
         order = np.argpartition(-first, min(BATCH, len(first)) - 1)
         halves, moving = parts[order[:BATCH]].halved(distances)
@@ -220,9 +200,9 @@ def largest_gap(distances: Distances) -> float:
 
 def _first_parts(distances: Distances) -> tuple[Parts, float]:
     """Return the cells that can hold the largest gap, and one that was found."""
-    mesh, spacing = distances.flow.mesh, distances.spacing
-    vertices, used = distances.vertices, mesh.measures > 0
-    resting = ~np.any(distances.flow.vectors, axis=1)
+    flow, mesh, spacing = distances.flow, distances.flow.mesh, distances.spacing
+    vertices, used = embedded(flow, spacing), mesh.measures > 0
+    resting = ~np.any(flow.vectors, axis=1)
     if resting.any():
         used &= ~resting[mesh.cells].all(axis=1)
     cell = np.flatnonzero(used)
@@ -239,7 +219,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
         number = number * (box.max(initial=0) + 1) + box
     _, first, same = np.unique(number, return_index=True, return_inverse=True)
     share = np.full((len(first), mesh.k + 1), 1 / (mesh.k + 1))
-    along, there = distances.directions(Places(cell[first], share))
+    along, there = flow.directions(Places(cell[first], share))
     near = distances.of_points(middle[first], along, None, 1)[0].min(axis=1)
     away = middle - middle[first[same]]
     far = near[same] + np.sqrt(np.einsum("ni,ni->n", away, away))
@@ -252,9 +232,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     return Parts(cell[kept], whole, found, far[kept], radius[kept]), gap
 
 
-def evenness(
-    flow: Flow, normals: Array | None, asked: Spacing, curves: Curves, /, *, seed: int = 1
-) -> tuple[float, float]:
+def evenness(flow: Flow, spacing: float, curves: Curves, /) -> tuple[float, float]:
     """Return how even curves are.
 
     Returns
@@ -265,13 +243,13 @@ def evenness(
         Distance of a curve's place to the nearest other curve that 5 % of the places fall below, in
         spacings; infinite for a single curve.
     """
-    distances = Distances(flow, normals, asked.spacing, curves)
+    distances = Distances(flow, spacing, curves)
     gap = largest_gap(distances)
-    random, count = np.random.default_rng(seed), len(distances.there)
+    random, count = np.random.default_rng(1), len(distances.there)
     picked = random.choice(count, min(count, ON_CURVES), replace=False)
     found = distances.of_points(
         distances.there[picked], curves.along[picked], distances.curve[picked], 32
     )[0].min(axis=1, initial=np.inf)
     found = found[np.isfinite(found)]
     near = float(np.percentile(found, 5)) if len(found) else np.inf
-    return gap / asked.spacing, near / asked.spacing
+    return gap / spacing, near / spacing

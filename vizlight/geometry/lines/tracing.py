@@ -66,6 +66,26 @@ def _turned(a: Array, b: Array) -> Bools:
 AT_REST = 1e-6
 
 
+@dataclass(frozen=True)
+class Tracing:
+    """How curves are traced, in a mesh of size 1; see the options of streamlines.
+
+    Attributes
+    ----------
+    step : float
+        Largest length of a step, in extents of its cell.
+    max_length, max_steps : float, int
+        Largest length, and number of steps, on either side of a seed.
+    seed : int
+        Seed of random places.
+    """
+
+    step: float
+    max_length: float
+    max_steps: int
+    seed: int
+
+
 class Flow:
     """A field of directions on simplices.
 
@@ -77,13 +97,24 @@ class Flow:
     line_field : bool
         Whether the vectors have no sign: in each cell they are aligned with the direction of the
         curve before they are interpolated.
+    normals : ndarray, shape (N, 3), optional
+        Normals at the vertices of a surface; None in a volume.
     """
 
-    def __init__(self, mesh: Simplices, vectors: Array, *, line_field: bool = False) -> None:
-        self.mesh, self.line_field = mesh, line_field
+    def __init__(
+        self,
+        mesh: Simplices,
+        vectors: Array,
+        *,
+        line_field: bool = False,
+        normals: Array | None = None,
+    ) -> None:
+        self.mesh, self.line_field, self.normals = mesh, line_field, normals
         self.vectors = np.asarray(vectors, dtype=np.float64)
 
-    def directions(self, places: Places, along: Array | None, sign: Array) -> tuple[Array, Bools]:
+    def directions(
+        self, places: Places, along: Array | None = None, sign: Array | None = None
+    ) -> tuple[Array, Bools]:
         """Return unit directions, and where there is one.
 
         Parameters
@@ -91,9 +122,10 @@ class Flow:
         places : Places
         along : ndarray, shape (N, 3), optional
             Directions that lines without sign are aligned with.
-        sign : ndarray, shape (N,)
-            1 along the vectors, -1 against them; used where ``along`` does not decide.
+        sign : ndarray, shape (N,), optional
+            1 along the vectors, the default, -1 against them; used where ``along`` does not decide.
         """
+        sign = np.ones(len(places.cell)) if sign is None else sign
         corners = self.vectors[self.mesh.cells[places.cell]]
         if self.line_field:
             # The vertex that counts most gives the direction where there is none yet.
@@ -107,37 +139,6 @@ class Flow:
         speed = np.linalg.norm(found, axis=1)
         moving = speed > AT_REST
         return found / np.where(moving, speed, 1)[:, np.newaxis], moving
-
-    def advance(
-        self, places: Places, along: Array, sign: Array, step: Array
-    ) -> tuple[Places, Array, Bools, Bools]:
-        """Take one step by the midpoint rule.
-
-        Parameters
-        ----------
-        places : Places
-        along : ndarray, shape (N, 3)
-            Unit directions there.
-        sign : ndarray, shape (N,)
-        step : ndarray, shape (N,)
-            Lengths of the steps.
-
-        Returns
-        -------
-        places : Places
-        along : ndarray, shape (N, 3)
-            Unit directions at the new places.
-        made : ndarray of bool, shape (N,)
-            Whether a step was made: not where a curve comes to rest or turns back.
-        inside : ndarray of bool, shape (N,)
-            Whether the curve goes on: not where it has reached a boundary.
-        """
-        half, _ = self.mesh.walk(places, along * (step / 2)[:, np.newaxis])
-        middle, moving = self.directions(half, along, sign)
-        end, inside = self.mesh.walk(places, middle * step[:, np.newaxis])
-        last, still = self.directions(end, middle, sign)
-        made = moving & still & (np.einsum("ni,ni->n", last, middle) > 0)
-        return end, last, made, inside
 
 
 @dataclass
@@ -172,17 +173,38 @@ class Walkers(Columns):
         count = len(curves)
         sign = np.repeat([1.0, -1.0], count)
         places = seeds.joined(seeds)
-        along, moving = flow.directions(places, None, sign)
+        along, moving = flow.directions(places, sign=sign)
         made = cls(
             np.tile(curves, 2), sign, places, along,
             np.zeros(2 * count, dtype=np.intp), np.zeros(2 * count),
         )  # fmt: skip
         return made[moving]
 
-    def moved(self, places: Places, along: Array, step: Array) -> Walkers:
-        """Return the ends after a step."""
+    def advanced(self, flow: Flow, step: Array) -> tuple[Walkers, Bools, Bools]:
+        """Take one step by the midpoint rule.
+
+        Parameters
+        ----------
+        flow : Flow
+        step : ndarray, shape (N,)
+            Lengths of the steps.
+
+        Returns
+        -------
+        ahead : Walkers
+            Ends after the step.
+        made : ndarray of bool, shape (N,)
+            Whether a step was made: not where a curve comes to rest or turns back.
+        inside : ndarray of bool, shape (N,)
+            Whether the curve goes on: not where it has reached a boundary.
+        """
+        half, _ = flow.mesh.walk(self.places, self.along * (step / 2)[:, np.newaxis])
+        middle, moving = flow.directions(half, self.along, self.sign)
+        end, inside = flow.mesh.walk(self.places, middle * step[:, np.newaxis])
+        last, still = flow.directions(end, middle, self.sign)
+        made = moving & still & (np.einsum("ni,ni->n", last, middle) > 0)
         number, length = self.number + 1, self.length + step
-        return Walkers(self.curve, self.sign, places, along, number, length)
+        return Walkers(self.curve, self.sign, end, last, number, length), made, inside
 
 
 @dataclass
@@ -257,14 +279,7 @@ def passed(
 
 
 def trace(
-    flow: Flow,
-    seeds: Places,
-    /,
-    *,
-    step: float,
-    max_length: float,
-    max_steps: int,
-    report: Callable[[int], None] = lambda _: None,
+    flow: Flow, seeds: Places, how: Tracing, /, *, report: Callable[[int], None] = lambda _: None
 ) -> Curves:
     """Return the integral curves through seeds, in both directions.
 
@@ -273,12 +288,7 @@ def trace(
     flow : Flow
     seeds : Places
         N seeds.
-    step : float
-        Length of a step, in extents of its cell.
-    max_length : float
-        Largest length on either side of the seed.
-    max_steps : int
-        Largest number of steps on either side of the seed.
+    how : Tracing
     report : callable, optional
         Function that takes the number of ends that have stopped, out of 2 N.
 
@@ -294,15 +304,13 @@ def trace(
     """
     walkers = Walkers.at(flow, seeds, np.arange(len(seeds.cell)))
     trail = [walkers]
-    for _ in range(max_steps):
+    for _ in range(how.max_steps):
         if not len(walkers.curve):
             break
-        size = np.minimum(step * flow.mesh.sizes(walkers.places), max_length - walkers.length)
-        places, along, made, inside = flow.advance(
-            walkers.places, walkers.along, walkers.sign, size
-        )
-        walkers = walkers.moved(places, along, size)
+        room = how.max_length - walkers.length
+        size = np.minimum(how.step * flow.mesh.sizes(walkers.places), room)
+        walkers, made, inside = walkers.advanced(flow, size)
         trail.append(walkers[made])
-        walkers = walkers[made & inside & (walkers.length < max_length * (1 - 1e-9))]
+        walkers = walkers[made & inside & (walkers.length < how.max_length * (1 - 1e-9))]
         report(2 * len(seeds.cell) - len(walkers.curve))
     return passed(trail, {}, closed=set(), dropped=set())

@@ -76,7 +76,7 @@ def sky(
     *,
     error: float = 0.01,
     openness: bool = False,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int], None] = lambda _: None,
 ) -> Sky:
     """Return the share of the sky that the nodes of a height field see.
 
@@ -136,8 +136,7 @@ def sky(
                 t = _by_steps(field, *whole, way, GROWTH, 0.5)
                 total += _seen(t, *slopes, way, openness)
             done += 1
-            if progress is not None:
-                progress(done)
+            progress(done)
         return total
 
     wanted = np.zeros((len(rows), len(columns)))
