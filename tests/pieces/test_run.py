@@ -85,6 +85,18 @@ def assert_alike(folder, whole, labels, view, **options):
     assert_as_whole(lit, vizlight.illuminate(whole, scene, **options))
 
 
+def test_arrays_of_the_user_with_names_of_vtk_are_kept(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    ball = pv.Sphere()
+    ball["vtkOriginalPointIds"] = np.asarray(ball.points)[:, 0]
+    half = np.arange(ball.n_cells) < ball.n_cells // 2
+    for i, which in enumerate((half, ~half)):
+        ball.remove_cells(~which, pass_point_ids=False).save(f"half{i}.vtp")
+    for path in pieces.light("half*.vtp", PLAIN).files:
+        part = pv.read(path)
+        np.testing.assert_array_equal(part["vtkOriginalPointIds"], np.asarray(part.points)[:, 0])
+
+
 @pytest.mark.parametrize(
     ("kind", "options"),
     [

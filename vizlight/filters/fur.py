@@ -107,13 +107,6 @@ class FurOptions(Options):
             return self.density
         return ABSORPTION if self.absorption is None else self.absorption
 
-    @property
-    def shading(self) -> ShadingOptions:
-        """The options of the fibres' light."""
-        return ShadingOptions(
-            exponent=self.exponent, model=self.model, conditioned=self.conditioned
-        )
-
 
 @named
 def fur(
@@ -257,7 +250,8 @@ def fur(
     # A depth cue spans the skin.
     scene = lighting.fit_depth_cue(scene, [below])
     m = hairs.repeat
-    parts = [(hairs, options.shading), (below, options.shading.for_surface())]
+    light = ShadingOptions.of(vars(options))
+    parts = [(hairs, light), (below, light.for_surface())]
     del hairs, below
     results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
     # What the light was computed from is freed before the cells of the lines are made.
@@ -338,7 +332,10 @@ class _Coat:
         def work(block: Slice) -> int:
             face, weights = geometry.seed_block(self.total, block.start, count, options.seed)
             # Drawn by the block of seeds, so that the curls do not depend on the number of threads.
-            phases = self._phases(block.start, len(face))
+            phases: Array | None = None
+            if options.curl:
+                random = np.random.default_rng([options.seed, block.start, 1])
+                phases = random.random(len(face)) * 2 * np.pi
             reversed_ = 0
             # In parts that fit the caches.
             for part in _pool.blocks(len(face), AT_ONCE):
@@ -389,13 +386,6 @@ class _Coat:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
         return root, normal, way, self._strands(way, length, toward, phase), inside
-
-    def _phases(self, start: int, count: int) -> Array | None:
-        """Return the angles at which the curl starts, of the block at ``start``."""
-        if not self.options.curl:
-            return None
-        random = np.random.default_rng([self.options.seed, start, 1])
-        return np.asarray(random.random(count) * 2 * np.pi)
 
     def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, int]:
         """Return unit directions at the root, and how many of the vectors point inward."""

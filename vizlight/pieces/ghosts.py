@@ -31,21 +31,9 @@ def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
     """Return some cells of a mesh with their points, of the same kind of mesh; itself for all."""
     if which.all():
         return mesh
-    if isinstance(mesh, pv.PolyData):
-        if not which.any():
-            return pv.PolyData()
-        rest: Foreign = np.flatnonzero(~which)
-        found: pv.PolyData = mesh.remove_cells(rest)
-        for data, name in (
-            (found.point_data, "vtkOriginalPointIds"),
-            (found.cell_data, "vtkOriginalCellIds"),
-        ):
-            if name in data and name not in (*mesh.point_data, *mesh.cell_data):
-                del data[name]
-        return found
-    ids: Foreign = np.flatnonzero(which)
-    part: pv.DataSet = mesh.extract_cells(ids, pass_point_ids=False, pass_cell_ids=False)
-    return part
+    rest: Foreign = ~which
+    found: pv.DataSet = mesh.remove_cells(rest, pass_point_ids=False, pass_cell_ids=False)
+    return found
 
 
 def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:

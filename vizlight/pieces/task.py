@@ -21,6 +21,7 @@ from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
 from vizlight.vtk import hull, sides
+from vizlight.vtk.arrays import means
 from vizlight.vtk.parts import uses_normals
 from vizlight.vtk.polylines import has_lines_only
 
@@ -199,10 +200,7 @@ def look(piece: Piece, job: Job) -> sides.Look | None:
 
 def _others(mesh: pv.DataSet) -> Array:
     """Return the share of the cells around each point that belong to other pieces."""
-    around = pv.wrap(mesh.NewInstance())
-    around.CopyStructure(mesh)
-    around.cell_data[GHOST] = np.asarray(mesh.cell_data[GHOST], dtype=np.float32)
-    return np.asarray(around.cell_data_to_point_data().point_data[GHOST])
+    return means(mesh, np.asarray(mesh.cell_data[GHOST], dtype=np.float32))
 
 
 def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Found:
