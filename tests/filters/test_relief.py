@@ -9,7 +9,7 @@ from refusals import refusals
 
 import vizlight
 from studies.relief import hills
-from vizlight import Light, Material, Scene, relief_day, relief_shadow
+from vizlight import DepthCue, Light, Material, Scene, View, relief_day, relief_shadow
 from vizlight.filters import relight
 from vizlight.geometry import relief, sun
 
@@ -206,6 +206,10 @@ def test_lit_has_t_in_place_of_the_cosine():
     np.testing.assert_allclose(out["luminance"], 0.1 + 0.5 * out["t"], atol=1e-12)
     assert out.active_scalars_name == "luminance"
     assert "cos-theta" in vizlight.engine.plan(SCENE, normals=True, shadowed=True).explain()
+    # The ends of a depth cue are those of the points.
+    cued = SCENE.replace(view=View(direction=(0, 0.6, 0.8)), depth_cue=DepthCue())
+    faded = relief_shadow(grid, cued, depth=0.2, lit=True)["luminance"] / out["luminance"]
+    np.testing.assert_allclose([faded.min(), faded.max()], [0, 1], atol=1e-12)
 
 
 def test_colours_and_several_lights():

@@ -255,7 +255,7 @@ class Live:
     def explain(self, scene: Scene) -> str:
         """Return where the light is computed, what is computed, and what is skipped and why."""
         seen = scene if self.scalars is None else for_colors(scene)
-        plan = decide(lighting.fit_depth_cue(seen, [self.source.inputs]), *self.lit_as())
+        plan = decide(lighting.fit_depth_cue(seen, [self.source.inputs.points]), *self.lit_as())
         where = f"light at the points: {self.reason}" if self.reason else "light in each fragment"
         return f"{where}\n{plan.explain()}"
 
@@ -684,7 +684,7 @@ class Fragments(Live):
         placed = self.placed(actor)
         # The camera may have crossed to the other side of a height field.
         self.see(placed, scene.view)
-        scene = lighting.fit_depth_cue(scene, [placed])
+        scene = lighting.fit_depth_cue(scene, [placed.points])
         data = self.scalars is not None
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
         # A new text costs a compilation, some 0.1 s; moved lamps and cameras only set uniforms.

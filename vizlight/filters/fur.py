@@ -248,7 +248,7 @@ def fur(
             for own, share in zip((hairs, below), shares, strict=True)
         )
     # A depth cue spans the skin.
-    scene = lighting.fit_depth_cue(scene, [below])
+    scene = lighting.fit_depth_cue(scene, [below.points])
     m = hairs.repeat
     light = ShadingOptions.of(vars(options))
     parts = [(hairs, light), (below, light.for_surface())]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from vizlight.mesh.bundles import Dimming
     from vizlight.scene import Scene
-    from vizlight.shading.inputs import ShadingInputs
+    from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
     from vizlight.shading.results import Record
     from vizlight.vtk.normals import Sided, Told
@@ -71,7 +71,7 @@ def light(
         Scene with both ends of its depth cue.
     """
     # One range of depth for all parts: a cue that began anew in each block would lie.
-    fitted = fit_depth_cue(scene, [inputs for inputs, _ in parts])
+    fitted = fit_depth_cue(scene, [inputs.points for inputs, _ in parts])
     results: list[engine.Shading] = []
     total, done = sum(inputs.count for inputs, _ in parts), 0
     with _progress.progress("light", total, show=progress_bar) as report:
@@ -85,12 +85,12 @@ def light(
     return results, fitted
 
 
-def fit_depth_cue(scene: Scene, inputs: Sequence[ShadingInputs]) -> Scene:
+def fit_depth_cue(scene: Scene, points: Sequence[ArraySource]) -> Scene:
     """Return the scene with the ends of its depth cue, taken from the points where not given."""
     cue = scene.depth_cue
     if cue is None or scene.view is None or (cue.front is not None and cue.back is not None):
         return scene
-    return with_depth_ends(scene, [engine.depth_range(given.points, scene) for given in inputs])
+    return with_depth_ends(scene, [engine.depth_range(rows, scene) for rows in points])
 
 
 def with_depth_ends(scene: Scene, ranges: Sequence[tuple[float, float]]) -> Scene:

@@ -159,7 +159,7 @@ def refine(
     # The sky that new points see is that of the refined mesh.
     early = dataclasses.replace(asked, occlusion=None)
     taken, parts = parts_of(whole, scene, early)
-    fitted = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
+    fitted = lighting.fit_depth_cue(scene, [part.inputs.points for part in parts])
     # Each mesh is refined alone.
     made = [
         refining.refined(own, path, part, fitted, asked.error, asked.max_points)

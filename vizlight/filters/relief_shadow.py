@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
-from vizlight.filters.lighting import refuse_overwriting
+from vizlight.filters.lighting import fit_depth_cue, refuse_overwriting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
@@ -234,7 +234,7 @@ def relief_shadow(
     )  # fmt: skip
     shading, share = None, share_of(sunlit, asked.occlusion)
     if asked.lit:
-        fixed = scene.replace(lights=lights)
+        fixed = fit_depth_cue(scene.replace(lights=lights), [shadow.points])
         shading = engine.shade(
             shadow.points, None, fixed, normals=shadow.normals, shadow=t,
             components=asked.components, occlusion=share,

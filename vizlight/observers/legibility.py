@@ -469,7 +469,7 @@ def legibility(
     blocks.check(mesh)
     camera, scene = seen_from(mesh, scene, view)
     parts = parts_of(mesh, scene, options, scalars)
-    scene = lighting.fit_depth_cue(scene, [part.inputs for part in parts])
+    scene = lighting.fit_depth_cue(scene, [part.inputs.points for part in parts])
     taken, pixels, drawn = places_of(parts, camera, scene, samples, np.random.default_rng(seed))
     notes: list[str] = []
     lamps = any(light.intensity > 0 for light in scene.lights)

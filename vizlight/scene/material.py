@@ -82,7 +82,7 @@ class Material:
         ----------
         lights : Light or sequence of Light, optional
             All lights of the scene that VTK will render; they determine the reflection model of
-            VTK. Default: one headlight, as in :class:`Scene`.
+            VTK. Default: those of :class:`Scene`.
         view : View, optional
             View of the scene. Its direction determines the angle between light and eye, on which
             the conversion between the reflection models depends.
