@@ -18,7 +18,7 @@ from studies import PIXEL, SHINY, Curve, Row, Study
 from vizlight import data
 from vizlight.filters.lighting import part_of
 from vizlight.filters.refine import refine
-from vizlight.mesh import splitting
+from vizlight.mesh import subdivision
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
@@ -121,7 +121,7 @@ def _lit(mesh, options, seed):
     """Return light between points, the lit cells, the light at points, and random places."""
     inputs = part_of(mesh, "", SCENE, options).inputs
     shading = engine.run(inputs, SCENE, options)
-    between, cells = Between(inputs, SCENE, options), splitting.simplices(mesh)
+    between, cells = Between(inputs, SCENE, options), subdivision.simplices(mesh)
     cells = cells[shading.valid[cells].all(axis=1)]
     places, _ = random_places(between.points, cells, PLACES, np.random.default_rng(seed))
     return between, cells, columns(shading), places

@@ -23,8 +23,8 @@ from vizlight.shading.display import on_colors
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.corners import MANY_SHARP, SHARP
 from vizlight.vtk.normals import Sided, computed_normals, piece_numbers
-from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:

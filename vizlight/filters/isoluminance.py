@@ -16,7 +16,7 @@ from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
-from vizlight.mesh import blocks, normals, records, splitting
+from vizlight.mesh import blocks, normals, records, subdivision
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
@@ -374,7 +374,7 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
                 "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
             )
         )
-    triangles, _ = splitting.triangles(surface)
+    triangles, _ = subdivision.triangles(surface)
     used = np.zeros(surface.n_points, np.bool_)
     used[triangles] = True
     finite: Bools = np.isfinite(np.asarray(surface.points)).all(axis=1)

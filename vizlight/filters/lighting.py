@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _progress
-from vizlight.mesh import bundles, normals, records, splitting
+from vizlight.mesh import bundles, normals, records, subdivision
 from vizlight.shading import engine
 from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
 from vizlight.vtk import parts as vtk_parts
@@ -47,10 +47,10 @@ def part_of(
         scene,
         options,
         kept_normals=normals.kept if known is None else lambda _: known,
-        kept_tangents=splitting.kept_tangents,
+        kept_tangents=subdivision.kept_tangents,
         told=told,
     )
-    cells = lambda: splitting.simplices(mesh)  # noqa: E731
+    cells = lambda: subdivision.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))
 
 

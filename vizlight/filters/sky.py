@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkPointSet, vtkPolyData
 from vizlight import _check, _progress
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
-from vizlight.mesh import blocks, normals, records, splitting
+from vizlight.mesh import blocks, normals, records, subdivision
 from vizlight.mesh.sky import VOXELS, skies
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
@@ -21,8 +21,8 @@ from vizlight.shading.options import Options, check_sides
 from vizlight.shading.results import VALID, digest, plain
 from vizlight.verify.report import noted_sky
 from vizlight.vtk.cells import places, point_data
+from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import computed_normals
-from vizlight.vtk.orientation import SHARP
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -273,7 +273,7 @@ def _finer(mesh: pv.DataSet) -> pv.DataSet:
     sided = normals.kept(mesh) or computed_normals(mesh)
     bare = mesh.copy(deep=False)
     bare.point_data[normals.KEPT] = np.concatenate([sided.vectors, sided.facts()], axis=1)
-    fine = splitting.with_sides(bare, side)
+    fine = subdivision.with_sides(bare, side)
     if fine.n_points == mesh.n_points:
         return mesh
     rows = np.asarray(fine.point_data.pop(normals.KEPT), dtype=np.float64)

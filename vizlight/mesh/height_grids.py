@@ -12,7 +12,7 @@ import scipy
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks, records, splitting
+from vizlight.mesh import blocks, records, subdivision
 from vizlight.vtk.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def _sampled(
         blocks.surface(mesh, "mesh")
     else:
         _check_layer(mesh)
-    triangles = splitting.simplices(mesh)
+    triangles = subdivision.simplices(mesh)
     # A face with a corner that has no height is a hole.
     known = np.all(np.isfinite(points), axis=1)
     triangles = triangles[np.all(known[triangles], axis=1)]

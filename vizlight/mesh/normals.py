@@ -24,9 +24,8 @@ from vizlight.vtk.cells import (
     places,
     triangles,
 )
-from vizlight.vtk.corners import numbered, split_faces
+from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
 from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
-from vizlight.vtk.orientation import MANY_SHARP, SHARP
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:

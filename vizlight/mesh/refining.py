@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _check
-from vizlight.mesh import records, splitting
-from vizlight.mesh.splitting import Cells
+from vizlight.mesh import records, subdivision
+from vizlight.mesh.subdivision import Cells
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, error_between, random_places
 from vizlight.vtk.cells import field_data, has_faces
@@ -103,16 +103,16 @@ def refined(
     """
     # Of several blocks the message must say which one it is about.
     try:
-        flat = splitting.as_polydata(mesh)
+        flat = subdivision.as_polydata(mesh)
     except ValueError as cause:
         if not path:
             raise
         raise ValueError(f"block {path}: {cause}") from cause
     origin: Indices | None = None
     if has_faces(flat):
-        parents, origin = splitting.triangles(flat)
+        parents, origin = subdivision.triangles(flat)
     else:
-        parents = splitting.simplices(flat)
+        parents = subdivision.simplices(flat)
     inputs, options, count = part.inputs, part.options, mesh.n_points
     with engine.observed(None):
         shading = engine.run(inputs, scene, options)
@@ -121,13 +121,13 @@ def refined(
     cells, left = refine(between, shading, parents, error, most)
     given = _named(flat, between, options)
     positions = options.positions if isinstance(options.positions, str) else None
-    found = splitting.rebuilt(flat, cells, origin, given, places=positions)
+    found = subdivision.rebuilt(flat, cells, origin, given, places=positions)
     records.carry(mesh, found)
     made = _extended(part, between, cells.corners)
     # Taken from the refined line, tangents would be those of its straight segments.
     if origin is None and options.tangents is None and made.inputs.tangents is not None:
         tangents = np.asarray(made.inputs.tangents[:])
-        records.keep(found, splitting.TANGENTS, "refine", tangents)
+        records.keep(found, subdivision.TANGENTS, "refine", tangents)
     return Refined(found, made, left)
 
 

@@ -21,7 +21,7 @@ from vizlight.draw.backends import BackendError, choose_backend, window_class
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
 from vizlight.filters.tint import values_of
-from vizlight.mesh import blocks, records, splitting
+from vizlight.mesh import blocks, records, subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
 from vizlight.scene import Scene, View
@@ -287,7 +287,7 @@ def _part(
     options: LightOptions,
     scalars: str | ArrayLike | None,
 ) -> Part:
-    cells = splitting.simplices(mesh)
+    cells = subdivision.simplices(mesh)
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]

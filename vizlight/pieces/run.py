@@ -31,7 +31,7 @@ from vizlight.shading.options import LightOptions
 from vizlight.shading.results import unlit
 from vizlight.verify import report
 from vizlight.vtk import sides
-from vizlight.vtk.orientation import SHARP
+from vizlight.vtk.corners import SHARP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

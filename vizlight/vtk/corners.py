@@ -1,4 +1,4 @@
-"""Corners of the faces around points: normals as means over them, and points split between them."""
+"""Corners of the faces around points: normals as means over them, and points split at creases."""
 
 from __future__ import annotations
 
@@ -144,6 +144,29 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
                     total[k, low:high] += sums
                 else:
                     total[k, used] += sums
+
+
+#: Angle in degrees between the normals of two faces above which their common edge is sharp.
+SHARP = 30.0
+#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
+MANY_SHARP = 0.02
+#: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
+STAND_APART = 0.5
+#: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
+#: than of those between by this factor: corners stand apart from coarse arcs.
+CORNERS_APART = 0.7
+
+
+def crease_share(counts: Indices) -> float:
+    """Return the share of sharp edges where these are creases, else 0.
+
+    Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
+    are more of those, and no edge is meant to be seen. ``counts`` are
+    :attr:`.orientation.Shape.edges`.
+    """
+    beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
+    apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
+    return float(share) if apart or nearly - share <= STAND_APART * share else 0.0
 
 
 #: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are

@@ -26,20 +26,20 @@ from vizlight.vtk.cells import (
     used,
 )
 from vizlight.vtk.corners import (
+    SHARP,
     common_normals,
     corner_normals,
     corners_by_size,
+    crease_share,
     joined,
     surface_normals,
 )
 from vizlight.vtk.hull import dimension, scattered, surface_of
 from vizlight.vtk.orientation import (
     MOST_LEAN,
-    SHARP,
     PartShape,
     Shape,
     Sums,
-    crease_share,
     sides_of,
     toward_eye,
 )
@@ -383,7 +383,7 @@ def computed_normals(
     centroid of the piece. Points that slivers join, with a side of at most
     :data:`~vizlight.vtk.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
     have them, have one normal, where their own are within
-    :data:`~vizlight.vtk.orientation.SHARP` degrees of it.
+    :data:`~vizlight.vtk.corners.SHARP` degrees of it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Sides of the pieces of a surface, how far its normals lean, and edges that are sharp."""
+"""Sides of the pieces of a surface: outside and inside, and how far normals lean from faces."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.cells import faces, places, triangles
+from vizlight.vtk.corners import SHARP
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
@@ -22,17 +23,8 @@ if TYPE_CHECKING:
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
 #: share of its area.
 NEARLY_CLOSED = 0.2
-#: Angle in degrees between the normals of two faces above which their common edge is sharp.
-SHARP = 30.0
 #: Least height of a triangle that has a direction, as a share of its longest side.
 NARROWEST = 1e-5
-#: Share of sharp edges, of all edges of a mesh, from which a warning names the remedy.
-MANY_SHARP = 0.02
-#: Sharp edges are creases if at most this many times as many edges are half as sharp or more.
-STAND_APART = 0.5
-#: They also are if of those above twice the angle, at least MANY_SHARP of all edges, there are more
-#: than of those between by this factor: corners stand apart from coarse arcs.
-CORNERS_APART = 0.7
 #: Most that a normal may lean, as a sine, but on height fields. Where faces around a point differ
 #: by more, its surface is too rough or too coarse to tell bumps from hollows: of the pixels of a
 #: noisy isosurface, lit from the side, 26 % are off by more than a tenth of white without the
@@ -399,14 +391,3 @@ def middles(
         # The step of a perceptron: what is furthest beyond a right angle draws the direction to it.
         np.add.at(middle, of[beyond], own[beyond])
     return middle
-
-
-def crease_share(counts: Indices) -> float:
-    """Return the share of sharp edges where these are creases, else 0.
-
-    Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-    are more of those, and no edge is meant to be seen. ``counts`` are :attr:`Shape.edges`.
-    """
-    beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
-    apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
-    return float(share) if apart or nearly - share <= STAND_APART * share else 0.0

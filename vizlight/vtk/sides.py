@@ -8,8 +8,9 @@ import numpy as np
 
 from vizlight import _pool
 from vizlight.model import kernels
+from vizlight.vtk.corners import crease_share
 from vizlight.vtk.normals import Told, facing_of, given_normals, wound_normals
-from vizlight.vtk.orientation import crease_share, middles, sides_of
+from vizlight.vtk.orientation import middles, sides_of
 from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ import pytest
 import pyvista as pv
 from vectors import areas
 
-from vizlight.mesh import splitting
-from vizlight.mesh.splitting import Cells
+from vizlight.mesh import subdivision
+from vizlight.mesh.subdivision import Cells
 
 
 def split_at_random(points, cells, random, rounds=6):
@@ -76,12 +76,12 @@ def test_shares_are_those_of_the_corners_of_a_cell(random):
 def test_lines_that_share_points_and_segments(random):
     points = random.standard_normal((6, 3))
     mesh = pv.PolyData(points, lines=[4, 0, 1, 2, 3, 3, 4, 1, 2, 1, 5, 2, 3, 0])
-    parts = Cells(points, splitting.simplices(mesh))
+    parts = Cells(points, subdivision.simplices(mesh))
     assert parts.parents.tolist() == [[0, 1], [1, 2], [2, 3], [4, 1], [1, 2], [3, 0]]
     for _ in range(3):
         codes = np.unique(parts.edges(np.arange(len(parts.corners)))[0])
         parts.split(codes, random.uniform(0.2, 0.8, len(codes)))
-    made = splitting.rebuilt(mesh, parts, None, {})
+    made = subdivision.rebuilt(mesh, parts, None, {})
     sizes, at = [], 0
     while at < len(made.lines):
         sizes.append(made.lines[at])
@@ -102,7 +102,7 @@ def test_triangles_of_every_kind_of_face():
     points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]])
     mesh = pv.PolyData(points, [4, 0, 1, 2, 3])
     mesh = mesh.append_polydata(pv.PolyData(points, strips=[4, 1, 4, 2, 5]))
-    found, cell = splitting.triangles(mesh)
+    found, cell = subdivision.triangles(mesh)
     assert len(found) == 4
     assert sorted(cell) == [0, 0, 1, 1]
     assert areas(np.asarray(mesh.points)[found]).sum() == pytest.approx(2)
@@ -110,14 +110,14 @@ def test_triangles_of_every_kind_of_face():
 
 def test_simplices_of_every_kind_of_mesh():
     grid = pv.ImageData(dimensions=(3, 3, 3))
-    hull = splitting.simplices(grid)
+    hull = subdivision.simplices(grid)
     assert hull.shape == (48, 3)
     assert 13 not in hull
-    assert splitting.simplices(pv.PolyData()).shape == (0, 3)
-    assert splitting.simplices(pv.PointSet(np.eye(3))).shape[0] == 0
-    assert splitting.simplices(pv.PolyData(np.eye(3))).shape[0] == 0
+    assert subdivision.simplices(pv.PolyData()).shape == (0, 3)
+    assert subdivision.simplices(pv.PointSet(np.eye(3))).shape[0] == 0
+    assert subdivision.simplices(pv.PolyData(np.eye(3))).shape[0] == 0
     lines = pv.MultipleLines(np.eye(3)).cast_to_unstructured_grid()
-    assert splitting.simplices(lines).tolist() == [[0, 1], [1, 2]]
+    assert subdivision.simplices(lines).tolist() == [[0, 1], [1, 2]]
 
 
 def test_flat_grids_become_polydata_with_the_same_points():
@@ -125,7 +125,7 @@ def test_flat_grids_become_polydata_with_the_same_points():
     grid["a"] = np.arange(12.0)
     grid.cell_data["c"] = np.arange(6)
     grid.field_data["f"] = [1]
-    made = splitting.as_polydata(grid)
+    made = subdivision.as_polydata(grid)
     assert np.array_equal(made.points, grid.points)
     assert np.array_equal(made["a"], grid["a"])
     assert np.array_equal(np.sort(made.cell_data["c"]), np.arange(6))
