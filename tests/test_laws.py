@@ -64,16 +64,6 @@ def test_the_exponent_gives_a_mean_of_one_half(n):
         assert mean == pytest.approx(0.5, abs=1e-9)
 
 
-@pytest.mark.parametrize("k", [1, 2, 3, 7])
-def test_the_exponent_for_large_n(k):
-    """sin^2(a) tends to 1 - chi^2_k / n, so the mean to (1 + p/n)^(-k/2), p to n (4^(1/k) - 1)."""
-    slope = 4 ** (1 / k) - 1
-    errors = [abs(brightness.exponent(k, n) / n / slope - 1) for n in (10**3, 10**4, 10**5)]
-    for n, error in zip((10**3, 10**4, 10**5), errors, strict=True):
-        # The next term is of order 1/n.
-        assert error < 5 * k / n
-
-
 def test_a_field_takes_the_brightness_of_what_carries_it(random):
     """Light of the field alone times that of the carrier alone, light by light."""
     n = 4
