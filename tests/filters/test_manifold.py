@@ -16,11 +16,7 @@ from vizlight.geometry import manifolds
         (manifolds.torus(1.0, resolution=9), pv.PolyData, {pv.CellType.LINE: 9}),
         (manifolds.klein_bottle(resolution=(6, 5)), pv.PolyData, {pv.CellType.QUAD: 30}),
         (manifolds.veronese(resolution=3), pv.PolyData, {pv.CellType.QUAD: 27}),
-        (
-            manifolds.sphere3(resolution=2),
-            pv.UnstructuredGrid,
-            {pv.CellType.HEXAHEDRON: 64},
-        ),
+        (manifolds.sphere3(resolution=2), pv.UnstructuredGrid, {pv.CellType.HEXAHEDRON: 64}),
     ],
 )
 def test_cells_and_arrays(shape, kind, cells):

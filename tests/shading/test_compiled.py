@@ -146,11 +146,7 @@ def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
 
 @pytest.mark.parametrize(
     ("old", "new"),
-    [
-        ("sum0 = sum0 + ", "sum0 = sum0 - "),
-        ("odd = odd | (not ", "odd = odd | ("),
-        ("sqrt(", "("),
-    ],
+    [("sum0 = sum0 + ", "sum0 = sum0 - "), ("odd = odd | (not ", "odd = odd | ("), ("sqrt(", "(")],
 )
 def test_a_wrong_statement_of_a_loop_is_found(old, new, cases, monkeypatch):
     right = loops.program_of
