@@ -2,6 +2,7 @@
 
 import numpy as np
 import oracles
+import pytest
 from refusals import refusals
 
 from vizlight.model import reflection
@@ -10,6 +11,12 @@ from vizlight.model import reflection
 def test_shininess_0_is_bright_everywhere():
     frame = [[1.0, 0, 0]]
     assert reflection.specular([1, 0, 1], [1, 0, 1], frame, shininess=0) == 1
+
+
+def test_the_plain_law_and_phong_are_the_defaults():
+    frame, slant = [[0.0, 0, 1]], [1.0, 0, 1]
+    assert reflection.diffuse(slant, frame) == pytest.approx(0.5**0.5)
+    assert reflection.specular([1, 0, 0], slant, frame, shininess=1) == pytest.approx(0.5**0.5)
 
 
 def test_broadcasting_equals_a_loop(dtype, random):
