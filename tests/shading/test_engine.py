@@ -263,6 +263,9 @@ def test_points_that_share_a_normal(kind, random):
     for rows in (tangents, np.repeat(tangents, 3, axis=0)):
         found = engine.shade(points, rows, scene, **shared)
         np.testing.assert_allclose(found.luminance, expected.luminance, rtol=1e-5)
+    alone = engine.shade(points, None, scene, normals=normals, repeat=3)
+    each = engine.shade(points, None, scene, normals=whole["normals"])
+    np.testing.assert_allclose(alone.luminance, each.luminance, rtol=1e-5)
     with pytest.raises(ValueError, match="repeat: expected a divisor of 300 points, got 7"):
         engine.shade(points, tangents, scene, normals=normals, repeat=7)
     with pytest.raises(ValueError, match=r"tangents: expected shape \(100 or 300, k, 3\)"):
