@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import Light, Material, Scene, View
 
@@ -26,6 +27,13 @@ SHINY = shiny()
 HEADLIT = {"lights": Light.headlight(), "material": SHINY}
 
 
+#: The lamps of a plotter, as an eye along (1, 1, 1) has them.
+KIT = (
+    Light(direction=SHOULDER, intensity=8 / 11), Light(direction=(1, 1, 1), intensity=3 / 11)
+)  # fmt: skip
+
+
 def far(light: Any, eye: Any, material: Material = SHINY) -> Scene:
-    """Return a scene with a lamp and an eye at infinity."""
-    return Scene(lights=Light(direction=light), view=View(direction=eye), material=material)
+    """Return a scene with a lamp at infinity, and the eye there too or at a camera."""
+    view = View.from_camera(eye) if isinstance(eye, pv.Camera) else View(direction=eye)
+    return Scene(lights=Light(direction=light), view=view, material=material)

@@ -107,12 +107,8 @@ def highlights_of_two_laws():
 def flow_lines(**options):
     flow = vizlight.load_example()
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.55), zoom=1.1)
-    scene = Scene(
-        lights=Light(direction=options.pop("light", (1, 0.9, 0.5))),
-        view=View.from_camera(camera),
-        material=options.pop("material", SHINY),
-        depth_cue=options.pop("depth_cue", None),
-    )
+    light, material = options.pop("light", (1, 0.9, 0.5)), options.pop("material", SHINY)
+    scene = far(light, camera, material).replace(depth_cue=options.pop("depth_cue", None))
     seeds = flow.points[:: flow.n_points // 60]
     return vizlight.streamlines(flow, scene, vectors="V", seeds=seeds, **options), camera
 
@@ -138,9 +134,7 @@ def confined_streamlines():
     flow = vizlight.load_example()
     surface = flow.contour([400], scalars="Temp")
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3), zoom=1.9)
-    scene = Scene(
-        lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera), material=SHINY
-    )
+    scene = far((1, 0.9, 0.5), camera)
     lines = vizlight.streamlines(
         flow, scene, vectors="V", surface=surface, confined=True, seeds=80, max_length=20
     )
@@ -150,10 +144,8 @@ def confined_streamlines():
 def fibres():
     bundle = vizlight.load_example("fibre_bundle.vtp")
     camera = render.camera_on(bundle.bounds, (0.3, -1, 0.4), zoom=1.5)
-    scene = Scene(
-        lights=Light(direction=(-0.5, -1, 1)), view=View.from_camera(camera), material=SHINY
-    )
-    return plot(vizlight.illuminate(bundle, scene), camera, line_width=0.9)
+    lit = vizlight.illuminate(bundle, far((-0.5, -1, 1), camera))
+    return plot(lit, camera, line_width=0.9)
 
 
 def satin():
@@ -162,9 +154,7 @@ def satin():
     normals = np.asarray(mesh.points)
     mesh["satin"] = np.array([0, 0, 1], dtype=np.float32) - normals[:, 2:] * normals
     camera = render.camera_on(mesh.bounds, (0.2, -1, 0.35))
-    scene = Scene(
-        lights=Light(direction=(1, -1, 0.8)), view=View.from_camera(camera), material=SHINY
-    )
+    scene = far((1, -1, 0.8), camera)
     lit = [
         vizlight.illuminate(mesh, scene, tangents="satin", conditioned=conditioned)
         for conditioned in (False, True)
@@ -175,11 +165,7 @@ def satin():
 def fur():
     mesh = ball()
     camera = render.camera_on(mesh.bounds, (0.2, -1, 0.35))
-    scene = Scene(
-        lights=Light(direction=(1, -1, 0.8)),
-        view=View.from_camera(camera),
-        material=Material(ambient=0.05, diffuse=1.0, specular=0.6),
-    )
+    scene = far((1, -1, 0.8), camera, Material(ambient=0.05, diffuse=1.0, specular=0.6))
     # Few fibres, and black behind: the base of each is seen, where the fur takes most.
     coat = vizlight.fur(mesh, scene, density=0.7, fibres=8_000, length=0.3, exponent=1)
     return plot(coat, camera, background="black", line_width=0.45)
@@ -190,9 +176,7 @@ def turning():
     torus = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=96))
     camera = render.camera_on((-3, 3, -2, 2, -1, 1), (0.3, -1, 0.8), zoom=1.4)
     four = far((0.2, -0.8, 0.9, 0.3), (0.3, -1, 0.8, 0))
-    three = Scene(
-        lights=Light(direction=(0.2, -0.8, 0.9)), view=View.from_camera(camera), material=SHINY
-    )
+    three = far((0.2, -0.8, 0.9), camera)
     panels = [
         vizlight.project(torus, rotation=("xw", a), distance=3.0, scene=scene, light=light)
         for light, scene in (("before", four), ("after", three))

@@ -36,8 +36,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.slow] * (name != "light")) for name in COMMANDS],
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name != "light")) for name in COMMANDS]
 )
 def test_nothing_listens_and_nothing_is_open_to_others(name, tmp_path):
     work, temporary, home = (tmp_path / part for part in ("work", "tmp", "home"))

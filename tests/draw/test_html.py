@@ -39,30 +39,25 @@ WIDE = {"viewport": {"width": 1200, "height": 1000}}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
-
-
+LIT = Scene(lights=FAR, material=SHINY)
 AWAY = (5e6, -5e6, 2e6)
 CASES = {
-    "lines": (winding, Scene(lights=FAR, material=SHINY), {}),
-    "conditioned lines": (
-        winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}
-    ),
+    "lines": (winding, LIT, {}),
+    "conditioned lines": (winding, LIT, {"conditioned": True, "normals": "n"}),
     "surface with a field": (
-        torus, Scene(lights=FAR, material=SHINY),
-        {"tangents": "around", "conditioned": True, "normals": "n"},
+        torus, LIT, {"tangents": "around", "conditioned": True, "normals": "n"}
     ),
-    "compensated with colours": (torus, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
+    "compensated with colours": (torus, LIT, {"tangents": "around"}),
     "two lights, one near, in fog": (
-        torus,
-        Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
+        torus, LIT.replace(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
         {"normals": "n", "model": "blinn"},
     ),
     "faces, lines and vertices": (
-        lambda: several_kinds(120)[0], Scene(lights=[FAR, NEAR], material=SHINY), {}
+        lambda: several_kinds(120)[0], LIT.replace(lights=[FAR, NEAR]), {}
     ),
     "far from the origin": (
         lambda: torus(centre=AWAY),
-        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)], material=SHINY),
+        LIT.replace(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)]),
         {"normals": "n"},
     ),
 }  # fmt: skip
@@ -222,9 +217,7 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
     mesh.points[7] = (np.nan, 1, 2)
     mesh.points[9] = (0, np.inf, 2)
     camera = first_camera((3.0, -2.0, 1.0))
-    path = vizlight.live_html(
-        mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", normals="n", camera=camera
-    )
+    path = vizlight.live_html(mesh, LIT, tmp_path / "a.html", normals="n", camera=camera)
     page, _ = opened(browser, path)
     read = """async () => {
         const { gl, places, batches: [{ order, buffers, count }], given } = vizlight.meshes[0];
@@ -542,9 +535,7 @@ def test_keys_and_fingers_turn_the_page(browser, tmp_path):
 @needs_browser
 def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
     both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
-    path = vizlight.live_html(
-        both, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
-    )
+    path = vizlight.live_html(both, LIT, tmp_path / "a.html", background="black")
     page, _ = opened(browser, path, bare=False, **WIDE)
     every = shot(page)[60:880, :840]
     for name in ("ball", "ring"):
@@ -558,9 +549,7 @@ def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
 @needs_browser
 def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
     many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(12)})
-    path = vizlight.live_html(
-        many, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
-    )
+    path = vizlight.live_html(many, LIT, tmp_path / "a.html", background="black")
     page, _ = opened(browser, path, bare=False, **WIDE)
     meshes = page.locator("details", has_text="Meshes (12)")
     assert not meshes.evaluate("(list) => list.open")
@@ -654,16 +643,14 @@ def test_scans_are_points_in_the_page(tmp_path):
 
 
 def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
-    mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
+    path, options = tmp_path / "a.html", {"tangents": "around", "model": "cylinder"}
     with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
-        path = vizlight.live_html(
-            mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
-        )
+        vizlight.live_html(torus(), LIT, path, **options)
     _, _, content = scene_in(path)
     assert "does not follow the eye" in content["notices"][0]
     assert not content["meshes"][0]["live"]
     with pytest.warns(UserWarning, match="does not follow the eye; ambient and diffuse"):
-        path = vizlight.live_html(pv.Sphere(), scene, path, light="points")
+        vizlight.live_html(pv.Sphere(), LIT, path, light="points")
     _, _, content = scene_in(path)
     packed = content["meshes"][0]["colors"]["data"]
     colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
@@ -676,7 +663,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
         plotter.vizlight.export_html(tmp_path / "a.html")
-    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
+    plotter.vizlight.add_mesh(torus(), scene=LIT, scalars="height")
     plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
     plotter.add_mesh(pv.Cube())
     with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
@@ -705,7 +692,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
     path = tmp_path / options.pop("path", "lit.html")
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.live_html(torus(), Scene(lights=FAR, material=SHINY), path, **options)
+        vizlight.live_html(torus(), LIT, path, **options)
     assert not list(tmp_path.iterdir())
 
 
@@ -718,7 +705,7 @@ def test_the_viewer_is_small_and_asks_for_nothing():
 
 @pytest.mark.parametrize(("mesh", "colour"), [(pv.Line(), "#000000"), (pv.Plane(), "#ffffff")])
 def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
-    path = vizlight.live_html(mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html")
+    path = vizlight.live_html(mesh, LIT, tmp_path / "a.html")
     assert scene_in(path)[2]["background"] == colour
 
 

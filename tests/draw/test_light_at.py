@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import several_kinds
-from lamps import shiny
+from lamps import far, shiny
 from shapes import helix
 
 import vizlight
-from vizlight import Light, Scene, View, render
+from vizlight import View, render
 
 pytestmark = pytest.mark.opengl
 
@@ -26,11 +26,7 @@ def picture(mesh, **options):
 
 
 CAMERA = render.camera_on((-1, 1, -1, 1, -1, 1), (1, 0.5, 0.6))
-SCENE = Scene(
-    lights=Light(direction=(1, 0.9, 0.5)),
-    material=shiny(shininess=60),
-    view=View.from_camera(CAMERA),
-)
+SCENE = far((1, 0.9, 0.5), CAMERA, shiny(shininess=60))
 
 
 def lit_by(camera):

@@ -122,9 +122,7 @@ def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_p
     mesh = swatches()
     camera = vizlight.render.camera_on(mesh, (0, 0, 1))
     camera.parallel_projection = True
-    scene = Scene(
-        lights=Light(direction=(0.3, 0.2, 1)), material=BRIGHT, view=View.from_camera(camera)
-    )
+    scene = far((0.3, 0.2, 1), camera, BRIGHT)
     lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap=cmap)
     found = []
     for light in ("fragments", "points"):

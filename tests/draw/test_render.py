@@ -15,7 +15,7 @@ from fields import half_known
 from lamps import HEADLIT, far, shiny
 
 import vizlight
-from vizlight import Light, Material, Scene, View, render
+from vizlight import Light, Scene, View, render
 from vizlight.draw import backends
 from vizlight.vtk import polylines
 
@@ -25,12 +25,7 @@ pytestmark = pytest.mark.opengl
 def ball(**material):
     mesh = pv.Sphere(radius=1, theta_resolution=80, phi_resolution=80)
     camera = render.camera_on(mesh.bounds, (0, -1, 0))
-    scene = Scene(
-        lights=Light(direction=(-1, -1, 1)),
-        material=shiny(**material),
-        view=View.from_camera(camera),
-    )
-    return vizlight.illuminate(mesh, scene), camera
+    return vizlight.illuminate(mesh, far((-1, -1, 1), camera, shiny(**material))), camera
 
 
 def pixels(path):
@@ -291,11 +286,7 @@ def test_picture_of_the_flow(verify_image_cache):
     )
     lit = surface.triangulate().subdivide(2, "linear")
     camera = render.camera_on(lit.bounds, (1.0, 0.5, 0.45), zoom=1.5)
-    scene = Scene(
-        lights=Light(direction=(1.0, 0.9, 0.5)),
-        material=Material(ambient=0.1, diffuse=0.5, specular=0.4),
-        view=View.from_camera(camera),
-    )
+    scene = far((1.0, 0.9, 0.5), camera)
     lit = vizlight.illuminate(lit, scene, name="surface_light")
     lit = vizlight.illuminate(lit, scene, tangents="V", conditioned=True, name="flow_light")
     panels = [

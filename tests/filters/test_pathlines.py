@@ -137,11 +137,7 @@ BAD = {
     "too few times": (lambda: steps(gust, TIMES), {"times": [0, 1]}, "times: expected 3 times"),
     "no times": (lambda: steps(gust, TIMES), {"times": None}, "times: .*TimeValue"),
     "one step": (lambda: steps(gust, [0]), {"times": [0]}, "series: expected two steps"),
-    "points": (
-        other_points,
-        {},
-        r"series\[1\] \(time 1\): expected the 1875 points of",
-    ),
+    "points": (other_points, {}, r"series\[1\] \(time 1\): expected the 1875 points of"),
     "vectors": (lacking, {}, r"series\[2\] \(time 2\): expected the point array 'V'"),
     "no mesh": (lambda: [1, 2, 3], {}, r"series\[0\] .*a mesh with cells"),
     "a number": (lambda: 3, {}, "series: expected meshes, a reader"),

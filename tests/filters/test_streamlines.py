@@ -57,16 +57,6 @@ def test_confined_lines_stay_on_the_surface_and_follow_meridians():
     assert sphere == before
 
 
-def test_drift_is_measured_against_the_true_sphere_as_the_mesh_is_refined():
-    """On triangles of size h a sphere is missed by h^2: order 2."""
-    sizes, misses = [20, 40, 80], []
-    for n in sizes:
-        lines = streamlines(ball(n), SCENE, vectors="V", seeds=12)
-        misses.append(np.abs(np.linalg.norm(lines.points, axis=1) - 0.5).max())
-    order = -np.polyfit(np.log(sizes), np.log(misses), 1)[0]
-    assert abs(order - 2) < 0.3
-
-
 def test_a_surface_conditions_the_lines():
     sphere = ball()
     dark = SCENE.replace(material=Material(ambient=0.1))

@@ -208,8 +208,7 @@ def test_result_replaces_the_one_before_and_no_array_of_the_user():
 
 
 @pytest.mark.parametrize(
-    ("material", "components", "runs"),
-    [("matte", False, 0), ("dark", True, 0), ("dark", False, 1)],
+    ("material", "components", "runs"), [("matte", False, 0), ("dark", True, 0), ("dark", False, 1)]
 )
 def test_light_is_computed_at_most_once(material, components, runs):
     """Not at all where the mesh carries it."""

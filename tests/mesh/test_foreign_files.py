@@ -267,8 +267,7 @@ def test_depths_are_below_the_surface(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("cut", "rise"),
-    [((), 600), (("--clip", "z:3"), 1000), (("--slice", "x:1.15"), 1500)],
+    ("cut", "rise"), [((), 600), (("--clip", "z:3"), 1000), (("--slice", "x:1.15"), 1500)]
 )
 def test_a_volume_in_degrees_is_no_needle_in_pictures(cut, rise, tmp_path, capsys):
     """Planes that cut it are in the coordinates of the file."""

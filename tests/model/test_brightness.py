@@ -31,12 +31,6 @@ def test_whole_exponents_are_whole():
     assert brightness.exponent(6, 913_239) == pytest.approx(237369.00000006381, rel=2e-14)
 
 
-def test_exponent_for_large_n():
-    """For k = 1 the mean tends to (1 + p/n)^(-1/2), so p tends to 3 n."""
-    for n in (10**4, 10**5, 10**6):
-        assert brightness.exponent(1, n) / n == pytest.approx(3, abs=6 / n)
-
-
 def test_mean_falls_with_p_and_is_1_at_0():
     p = np.linspace(0, 30, 100)
     mean = brightness.mean_intensity(2, 5, p)

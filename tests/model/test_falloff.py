@@ -1,20 +1,10 @@
-"""Distance and depth: the Lecture's functions against their formulas in 50 digits."""
+"""Distance and depth at the ends of their ranges; elsewhere see the stability suite."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from refusals import refusals
 
 from vizlight.model import falloff
-
-coefficient = st.floats(0, 100, width=32)
-
-
-@given(st.floats(0, 1e6), coefficient, coefficient, st.floats(2**-10, 100, width=32))
-def test_distance_is_between_0_and_1_and_falls(d, c1, c2, c3):
-    near, far = falloff.distance([d, d + 1], c1, c2, c3)
-    assert 0 <= far <= near <= 1
 
 
 def test_distance_at_its_ends():
@@ -69,21 +59,10 @@ def test_bad_depth_cue():
 
 
 def test_fur_at_its_ends(dtype):
-    h, s = np.array([0, 0, 1, 1], dtype), np.array([0, 1, 0, 1], dtype)
-    np.testing.assert_array_equal(falloff.fur(h, s, 0.0), [1, 1, 1, 1])
-    np.testing.assert_array_equal(falloff.fur(h, s, 0.5), [1, 1, 0, 0.5])
-    np.testing.assert_array_equal(falloff.fur(h, s, 1.0), [1, 1, 0, 0])
     assert falloff.fur(dtype(1e30), dtype(1e-30), 0.02) == 0
     assert falloff.fur(dtype(1), dtype(0), 1e-50) == 0
     assert falloff.fur(dtype(1), dtype(1), 1e-50) == 1
     assert falloff.fur(dtype(np.finfo(dtype).tiny), dtype(1), 1.0) == 0
-
-
-@given(st.floats(0, 10), st.floats(1e-3, 1), st.floats(0, 1))
-def test_fur_falls_with_height_and_grazing(height, sine, density):
-    here = falloff.fur(height, sine, density)
-    assert 0 <= falloff.fur(height + 1, sine, density) <= here <= 1
-    assert falloff.fur(height, sine / 2, density) <= here
 
 
 test_bad_fur = refusals(

@@ -3,9 +3,6 @@
 import numpy as np
 import oracles
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra import numpy as hnp
 from refusals import refusals
 
 from vizlight.model import frames
@@ -46,16 +43,6 @@ def test_batch_equals_loop_and_input_stays(dtype, random):
         np.testing.assert_allclose(frame[index], one, rtol=0, atol=4 * oracles.eps(dtype))
         assert r == rank[index]
     np.testing.assert_array_equal(vectors, kept)
-
-
-finite = st.floats(-10, 10, width=32)
-
-
-@given(hnp.arrays(np.float64, (2, 5), elements=finite), hnp.arrays(np.float64, 5, elements=finite))
-def test_pythagoras(vectors, x):
-    frame, _ = frames.orthonormalize(vectors)
-    along, normal = frames.split(x, frame)
-    assert np.sum(along**2) + normal**2 == pytest.approx(np.sum(x**2), rel=1e-13, abs=1e-13)
 
 
 test_bad_vectors = refusals(

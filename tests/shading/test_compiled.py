@@ -146,11 +146,7 @@ def test_a_wrong_formula_is_found(name, old, new, cases, monkeypatch):
 
 @pytest.mark.parametrize(
     ("old", "new"),
-    [
-        ("sum0 = sum0 + ", "sum0 = sum0 - "),
-        ("odd = odd | (not ", "odd = odd | ("),
-        ("sqrt(", "("),
-    ],
+    [("sum0 = sum0 + ", "sum0 = sum0 - "), ("odd = odd | (not ", "odd = odd | ("), ("sqrt(", "(")],
 )
 def test_a_wrong_statement_of_a_loop_is_found(old, new, cases, monkeypatch):
     right = loops.program_of
@@ -324,7 +320,7 @@ def test_calls_add_up_until_a_kernel_pays(random, monkeypatch):
     monkeypatch.setattr(loops, "SAVED_PER_LIGHT", 0.2)
     loops._kernel.cache_clear()
     points, _, normals = cloud(random, 1)
-    inputs = compiled_inputs(points, normals)
+    inputs = ShadingInputs(points=points, normals=normals)
     one, two = (
         engine.plan(SCENE, normals=True, model=model, dtype=np.float32)
         for model in ("phong", "blinn")
@@ -384,7 +380,7 @@ def test_ambient_light_alone_needs_none():
 
 def test_a_text_has_the_terms_of_its_form_and_no_others(random):
     points, _, normals = cloud(random, 4)
-    inputs = compiled_inputs(points, normals)
+    inputs = ShadingInputs(points=points, normals=normals)
     plain = engine.plan(Scene(lights=SUN, view=NEAR, material=SHINY), normals=True)
     text = loops.program_of(plain, inputs).source
     body = text[text.index("def light(") :]
@@ -393,12 +389,6 @@ def test_a_text_has_the_terms_of_its_form_and_no_others(random):
     assert "rgb[" not in body
     assert "exp_(" not in body
     assert body.count("sqrt(") == 2
-
-
-def compiled_inputs(points, normals):
-    from vizlight.shading.inputs import ShadingInputs
-
-    return ShadingInputs(points=points, normals=normals)
 
 
 def test_a_power_that_is_not_whole_has_the_digits_of_numpy(random):

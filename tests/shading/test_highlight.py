@@ -12,19 +12,15 @@ SUN, LOW = Light(direction=(1, 1, 1)), Light(direction=(1, 0, -0.7))
 NEAR = Light(position=(3, 2, 4))
 
 
-def test_a_half_vector_of_all_points_needs_no_eye(random):
-    """Blinn's model under a parallel view and a light at infinity, against the light of each."""
-    points, tangents = random.standard_normal((2, 2000, 3))
+def test_a_half_vector_of_all_points_needs_no_eye():
+    """Blinn's model under a parallel view and a light at infinity."""
     scene = Scene(lights=[SUN, LOW], view=FAR, material=SHINY)
-    made = engine.shade(points, tangents, scene, model="blinn")
-    assert all(h.half is not None for h in made.plan.highlights)
-    assert not made.plan.splits_eye
-    assert "eye: no split per point" in made.plan.explain()
-    assert "half vector: one for all points for 2 light(s)" in made.plan.explain()
-    far = scene.replace(view=View(position=(0, 0, 1e9)))
-    each = engine.shade(points, tangents, far, model="blinn")
-    assert each.plan.splits_eye
-    np.testing.assert_allclose(made.luminance, each.luminance, atol=1e-7)
+    made = plan(scene, k=1, model="blinn")
+    assert all(h.half is not None for h in made.highlights)
+    assert not made.splits_eye
+    assert "eye: no split per point" in made.explain()
+    assert "half vector: one for all points for 2 light(s)" in made.explain()
+    assert plan(scene.replace(view=View(position=(0, 0, 9))), k=1, model="blinn").splits_eye
 
 
 @pytest.mark.parametrize(

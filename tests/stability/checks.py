@@ -109,12 +109,7 @@ def rows_of(kernel, dtype, checks):
         if before and float(before.more["seen / claimed"]) >= ratio:
             found[way, check.case] = before._replace(more={**before.more, "inputs": count})
             continue
-        more = {
-            "type": kind,
-            "case": check.case,
-            "seen / claimed": ratio,
-            "inputs": count,
-        }
+        more = {"type": kind, "case": check.case, "seen / claimed": ratio, "inputs": count}
         # Less than a millionth of eps is none.
         seen = seen if seen > 1e-6 else 0.0
         found[way, check.case] = Row(way, claimed, seen, cost, more)

@@ -6,16 +6,7 @@ import numpy as np
 import oracles
 
 from stability import hard
-from stability.checks import (
-    DOUBLE,
-    TYPES,
-    Check,
-    exactly,
-    off,
-    refused,
-    spread,
-    timed,
-)
+from stability.checks import DOUBLE, TYPES, Check, exactly, off, refused, spread, timed
 from vizlight.geometry.lines import curves
 from vizlight.geometry.nspace import projection, slices
 from vizlight.geometry.relief import depth_map, shadowing

@@ -267,11 +267,7 @@ def test_light_inside_a_bundle_is_not_measured_between_points_and_the_report_say
 
 @pytest.mark.parametrize(
     ("scene", "again"),
-    [
-        (Scene(view=View(direction=(0, 0, 1))), "stored"),
-        (PLAIN, "diffuse"),
-        (SCENE, "diffuse"),
-    ],
+    [(Scene(view=View(direction=(0, 0, 1))), "stored"), (PLAIN, "diffuse"), (SCENE, "diffuse")],
 )
 def test_points_on_whose_colours_light_is_put_count_once(scene, again):
     sphere = pv.Sphere()

@@ -127,16 +127,6 @@ def test_degenerate_shapes(radii, height, cells, area, light):
         assert banded.is_closed(bands)
 
 
-def test_a_light_along_the_axis():
-    bands = truncus((0, 0, 0), (0, 0, 1), (0.5, 0.5), direction=(0, 0, 1), levels=5)
-    assert np.all(bands.values[bands.patch == 0] == 0)
-    assert bands.values[bands.patch == 1] == 1
-    assert bands.values[bands.patch == 2] == 0
-    cone = truncus((0, 0, 0), (0, 0, 1), (0, 1.0), direction=(0, 0, 1), levels=5)
-    np.testing.assert_allclose(cone.values[cone.patch == 0], np.sqrt(0.5))
-    assert len(cone.lines) == 0
-
-
 @pytest.mark.parametrize("size", [1e-150, 1e150])
 @pytest.mark.parametrize("method", ["rulings", "curves"])
 def test_any_scale(size, method):

@@ -5,7 +5,6 @@ import itertools
 import numpy as np
 import pytest
 from refusals import refusals
-from vectors import unit
 
 from vizlight.geometry import curves
 
@@ -15,13 +14,6 @@ def test_straight_line_is_exact(dtype):
     tangents = curves.polyline_tangents(points)
     assert tangents.dtype == dtype
     np.testing.assert_allclose(tangents, np.tile([1 / 3, 2 / 3, 2 / 3], (5, 1)), rtol=1e-6)
-
-
-def test_parabola_in_its_own_parameter_is_nearly_exact_at_ends_too():
-    s = np.linspace(0, 1e-3, 4)
-    points = np.stack([s, s * s], axis=1)
-    exact = unit(np.stack([np.ones_like(s), 2 * s], axis=1))
-    np.testing.assert_allclose(curves.polyline_tangents(points), exact, atol=1e-8)
 
 
 def test_closed_line_has_no_seam():

@@ -26,21 +26,6 @@ def test_a_batch_is_a_loop_and_shapes_are_kept(random):
     assert odd[1] > 1
 
 
-def test_more_occluder_is_less_light():
-    x = np.linspace(0, 10, 101)
-    tower = (np.abs(x - 6) < 0.5) & (np.abs(x[:, None] - 5) < 1.5)
-    before = None
-    for height in (0, 0.2, 0.5, 1, 2, 4):
-        z = np.where(tower, height, 0.0)
-        t = relief.shadow(x, x, z, depth=0.3, direction=sun(25, 15))
-        t = t[:, x < 5]
-        if before is not None:
-            assert np.all(t <= before + 1e-12)
-        before = t if before is None else np.minimum(before, t)
-    assert before.min() < 0.2 < 0.4 < np.median(before)
-    assert before.max() <= np.sin(np.radians(25)) + 1e-12
-
-
 def test_mirrors_turns_and_scale():
     x, y, z = hills(40, 55)
     way = sun(20, 35)

@@ -40,10 +40,7 @@ def test_numpy_follows_the_rays_that_a_kernel_fails_with(light, monkeypatch):
     monkeypatch.setattr(_compiled, "_BROKEN", [])
     monkeypatch.setattr(walks.walk, "_proven", True)
     monkeypatch.setattr(walks.walk, "_compiled", broken)
-    with (
-        _compiled.setting("1"),
-        pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught,
-    ):
+    with _compiled.setting("1"), pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
         found = relief.shadow(x, y, z, depth=0.1, **light)
     assert len(caught) == 1
     np.testing.assert_array_equal(found, numpys)

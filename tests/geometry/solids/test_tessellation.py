@@ -9,6 +9,7 @@ import solid_trees
 from refusals import refusals
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from vectors import areas
 
 from vizlight.geometry import solids
 from vizlight.geometry.contours import refinement
@@ -238,19 +239,16 @@ def test_sharp_apexes_keep_the_error(radius):
     assert bands.error <= 0.05
 
 
+def count_of_parts(mesh):
+    links = mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()
+    return connected_components(coo_array((np.ones(len(links[0])), links)), directed=False)[0]
+
+
 def test_no_parts_without_volume():
     """Four points in one straight line, as on an edge, make no part of their own."""
     mesh = solids.tessellate(Block(size=(1.6, 1.6, 1)) - Sphere((0, 0, 1)))
-    corners = mesh.points[mesh.triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    links = (
-        np.ones(3 * len(across)),
-        (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
-    )
-    count, part = connected_components(coo_array(links), directed=False)
-    area = np.bincount(part[mesh.triangles[:, 0]], np.linalg.norm(across, axis=1))
-    assert count == 1
-    assert area.min() > 1e-3
+    assert count_of_parts(mesh) == 1
+    assert areas(mesh.points[mesh.triangles]).sum() > 1e-3
 
 
 def test_flat_parts_add_nothing():
@@ -369,12 +367,7 @@ def test_a_gap_below_the_facets_is_held_or_refused():
     for gap in (1e-2, 1e-4):
         mesh = solids.tessellate(tube - Sphere(radius=1 - gap))
         # Nothing of the ball is open to the outside: it has its own part of the surface.
-        links = (
-            np.ones(3 * len(mesh.triangles)),
-            (mesh.triangles.ravel(), mesh.triangles[:, [1, 2, 0]].ravel()),
-        )
-        count, _ = connected_components(coo_array(links), directed=False)
-        assert count == 2
+        assert count_of_parts(mesh) == 2
     inner = Sphere((0.4, 0, 0), 0.6 - 1e-6)
     with pytest.raises(ValueError, match=r"at most 60000 points.*separate or join"):
         solids.tessellate(Sphere() - inner)
