@@ -125,6 +125,7 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     """
     check(levels)
     span, error = high - low, allowed(levels)
+    # A surface of one luminance, or without points, is a single band without contours.
     if not span > 0:
         edges = np.array([low])
     elif isinstance(levels, numbers.Integral):
