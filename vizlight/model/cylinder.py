@@ -188,6 +188,7 @@ def specular_gradient(
     size, root = 2 + 2 * x.m, np.sqrt(x.ww)
     to_eye, to_light = x.b * root, x.a * root
     cos_b, cos_c = (np.clip(u, -1, 1) for u in ((x.bb + x.dot) / to_eye, (x.aa + x.dot) / to_light))
+    # wo_N x (wi_N + wo_N) is wo_N x wi_N: one product serves both angles.
     sin_b, sin_c = np.minimum(x.cross / to_eye, 1), np.minimum(x.cross / to_light, 1)
     integral = highlight_integral.half_integral(s, x.a.dtype)
     both = integral(cos_b) + integral(cos_c)
@@ -196,6 +197,7 @@ def specular_gradient(
     # Both are divided by |wi_N x wo_N|, so they stay finite where wi_N and wo_N are parallel.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye
     by_gamma = -power_c / (x.a * x.b)
+    # |h_N|^2, and its deficit below is the tangential share, in which nothing cancels.
     share = np.minimum(x.ww / size, 1)
     peak = kernels.power(share, s / 2, np.square(x.p + x.q) / size) / 2
     # Derivative by the logarithm of |h_N|^2, which is |(wi + wo)_N|^2 over |wi + wo|^2.

@@ -187,6 +187,7 @@ class ShadingInputs:
     @property
     def narrow(self) -> bool:
         """Whether the vectors have no more digits than float32."""
+        # Points do not count: their differences to lights and eye lose no digits in either type.
         given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
         return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
 
@@ -212,6 +213,7 @@ class ShadingInputs:
         rows, rest = divmod(count, _check.integer("repeat", self.repeat, low=1))
         if rest:
             raise ValueError(_check.message("repeat", f"a divisor of {count} points", self.repeat))
+        # Tangents may be shared by the points of a row, or each point has its own.
         for name, given, counts in (
             ("tangents", self.tangents, {count, rows}),
             ("base_tangents", self.base_tangents, {rows}),
