@@ -193,6 +193,8 @@ def specular_gradient(
     integral = highlight_integral.half_integral(s, x.a.dtype)
     both = integral(cos_b) + integral(cos_c)
     power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
+    # The bracket of the closed form at class Cylinder, by the powers that the derivatives need as
+    # well.
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
     # Both are divided by |wi_N x wo_N|, so they stay finite where wi_N and wo_N are parallel.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye

@@ -104,6 +104,7 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
     vectors before it is at most ``rtol`` of its length is dropped. Rows past the rank are 0.
     """
     k = v.shape[0]
+    # A single vector has nothing to be projected on.
     if k == 1:
         row, size = unit(v[0])
         return row[np.newaxis], (size > 0).astype(np.intp)

@@ -255,6 +255,7 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     """
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]
+        # To check the values of what is made on demand would be to make all of it at once.
         return source
     return _check.reals(name, value)
 
@@ -266,6 +267,7 @@ def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int)
     elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
         k = shape[1] // n
     if not 0 < k < n:
+        # The tangents of a point stand one after the other in its row.
         count = " or ".join(str(number) for number in sorted(counts))
         expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}, as points has {n}"
         raise ValueError(_check.message(name, expected, f"shape {shape}"))

@@ -312,6 +312,7 @@ def decide(
         highlights=_highlights(scene, options.model),
         surface=surface,
         two_sided=layout.two_sided,
+        # A surface is lit by its normals themselves, which would then count twice.
         conditioned=bool(options.conditioned and layout.normals and not surface),
         base=layout.base,
         base_exponent=(
@@ -364,7 +365,7 @@ def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
     diffuse = bool(scene.material.diffuse > 0 and lights)
-    # What needs an eye without a view, as fur and single points, has it there.
+    # Without a view, what needs an eye all the same, as fur and single points, has it there.
     view = View.isometric(layout.n) if scene.view is None else scene.view
     # Lights that follow the view get the place or direction that they have under it.
     fixed = tuple(light.seen_from(view) for light in lights) if diffuse or specular else ()

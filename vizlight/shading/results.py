@@ -54,6 +54,7 @@ def arrays_of(
     """
     parts: dict[str, Raw] = {}
     if shading.diffuse is not None and shading.specular is not None:
+        # One number for all, but an array of the mesh like the other terms.
         ambient = np.full_like(shading.luminance, shading.plan.ambient)
         if occlusion is not None:
             ambient *= occlusion

@@ -97,6 +97,7 @@ class Bands:
         # Relative to the extent: squares of tiny lengths underflow, squares of huge ones overflow.
         unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0
         across = np.cross((b - a) / unit, (c - a) / unit)
+        # The sum is twice the vector area, which a polygon that bends has as well.
         total = np.stack([np.bincount(owner, x, len(self.values)) for x in across.T], axis=1)
         size = np.sqrt(np.einsum("ij,ij->i", total, total))[:, np.newaxis]
         return np.asarray(total / np.where(size > 0, size, 1))

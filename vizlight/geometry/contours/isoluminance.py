@@ -259,6 +259,7 @@ def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error
     turned = np.roll(ring, -1, axis=1)
     strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
     cap = np.stack([np.full(count, ring.size), ring[0], turned[0]], axis=-1)
+    # The far cap faces the other way, and its corners run the other way around.
     floor = np.stack([np.full(count, ring.size + 1), turned[-1], ring[-1]], axis=-1)
     corners = np.concatenate([cap.ravel(), strips.ravel(), floor.ravel()])
     sizes = np.repeat([3, 4, 3], [len(cap), len(strips), len(floor)])
@@ -415,6 +416,7 @@ def shade(light: axial.Source, center: Array) -> Luminance:
     def luminance(points: Array, normals: Array) -> Array:
         if math.isinf(light.distance):
             return light.luminance(normals @ light.toward)
+        # The light less the point, both seen from the centre.
         toward = light.toward * light.distance - (points - center)
         size = kernels.length(np.ascontiguousarray(toward.T))
         cosine = np.einsum("ij,ij->i", toward, normals) / np.where(size > 0, size, 1)

@@ -131,6 +131,7 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     elif isinstance(levels, numbers.Integral):
         edges = np.linspace(low, high, int(levels) + 1)
     elif error is not None:
+        # The middle of a step of twice the error is nowhere farther off than the error.
         ratio = span / (2 * error)
         if ratio > MOST * (1 if exact else 1 - CHORDS):
             expected = f"an error that at most {MOST} steps keep"

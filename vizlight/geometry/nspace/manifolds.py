@@ -470,10 +470,10 @@ def _slope(value: Function, z: Complex, side: float) -> Complex:
     with np.errstate(all="ignore"):
         part = np.fft.fft(around, axis=-1) / 8
         size = np.abs(part)
-        # Terms that an analytic function hardly has: they measure what the others are known to.
+        # Terms 5 and 6 are hardly there where f is analytic, and show what noise the others have.
         high = size[..., 5] + size[..., 6]
         floor = ROUNDING * (np.median(high) + eps * (np.abs(w) + np.abs(z) * size[..., 1] / h))
-        # No more of the conjugate than of those, and those small beside the first ones.
+        # Little more of the conjugate than of those, and those small beside the first ones.
         good = (size[..., 7] <= 8 * high + floor) & (high <= size[..., 1:5].sum(-1) / 99 + floor)
     if not np.all(good):
         got = f"one that depends on the conjugate of z or jumps, at {_first(z, ~good)}"

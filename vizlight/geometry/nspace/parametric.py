@@ -248,6 +248,7 @@ def _slopes(
         return lambda u, _: _central(function, u, n, steps, ends)
     coarse = _central_steps(None, ends, eps)
     fine = (step or COMPLEX_STEP) * (ends[:, 1] - ends[:, 0])
+    # The complex step subtracts nothing, and only has to be a normal number.
     if not np.all(fine >= np.finfo(np.float64).tiny):
         raise ValueError(_lost_step(step, fine, ends))
 
@@ -274,6 +275,7 @@ def _slopes(
 def _central_steps(step: float | None, ends: Array, eps: float) -> Array:
     """Return the step in each direction, if it is large compared to the parameters' rounding."""
     steps: Array = (central_step(eps) if step is None else step) * (ends[:, 1] - ends[:, 0])
+    # A step of few units in the last place of a parameter would be rounding for the most part.
     if not np.all(steps >= 8 * np.spacing(np.abs(ends).max(axis=1))):
         raise ValueError(_lost_step(step, steps, ends))
     return steps

@@ -102,7 +102,8 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     ordered = np.sort(cells, axis=1)
     # Where the cut passes through a corner, cells shrink to fewer points and are left out.
     whole = np.all(ordered[:, 1:] != ordered[:, :-1], axis=1)
-    # A face of two simplices that lies in the hyperplane is a cell of both, and is kept once.
+    # A face in the hyperplane is a cell of both its simplices where both are below: it is kept
+    # once.
     _, first = np.unique(ordered[whole], axis=0, return_index=True)
     cells = cells[whole][np.sort(first)]
     used, cells_of = np.unique(cells, return_inverse=True)

@@ -120,7 +120,7 @@ class _Grid:
         # About one point to a cell.
         self.count = min(max(int(np.sqrt(points.shape[1])), 1), CELLS)
         extent = top - self.low
-        # Points on one line have no extent across it, and share one row or column.
+        # Without an extent, all points share one row or column.
         self.scale = self.count / np.where(extent > 0, extent, 1)
         # Points outside all triangles are left out.
         x, y = points

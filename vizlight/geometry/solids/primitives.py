@@ -63,6 +63,7 @@ class Solid:
         xyz : vector of 3 components
             Displacement, in the unit of the solid.
         """
+        # The frame of `moved` goes the other way than the solid.
         return self.moved(-axial.triple("xyz", xyz), 1.0)
 
     def scale(self, factor: float, /, *, point: VectorLike = (0.0, 0.0, 0.0)) -> Solid:
@@ -386,6 +387,7 @@ class Block(Primitive):
         if np.any(self.size < 0):
             raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
         rows = np.asarray(_check.vectors("axes", np.eye(3) if axes is None else axes, n=3), float)
+        # Rows that were computed in float32 pass.
         if rows.shape != (3, 3) or not np.allclose(rows @ rows.T, np.eye(3), atol=1e-6):
             expected, remedy = "3 orthonormal rows", "orthonormalise them"
             raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))

@@ -187,7 +187,7 @@ class _Tree:
         balls = [(k, p) for k, p in enumerate(self.parts) if isinstance(p, Sphere) and not p.empty]
         for i, part in enumerate(self.parts):
             radius = part.roundness
-            # Planes have no facets that could cut into anything.
+            # The facets of planes are exact: none of them cuts into a ball inside.
             if part.empty or radius == 0:
                 continue
             side = part.surfaces()[0]
