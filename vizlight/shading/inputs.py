@@ -265,9 +265,9 @@ def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int)
     if len(shape) == 3 and shape[0] in counts and shape[2] == n:
         k = shape[1]
     elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
+        # The tangents of a point stand one after the other in its row.
         k = shape[1] // n
     if not 0 < k < n:
-        # The tangents of a point stand one after the other in its row.
         count = " or ".join(str(number) for number in sorted(counts))
         expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}, as points has {n}"
         raise ValueError(_check.message(name, expected, f"shape {shape}"))

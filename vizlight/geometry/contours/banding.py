@@ -205,7 +205,7 @@ def cut(
     side they come from: a closed surface stays closed. Triangles without contour points are taken
     over as they are.
     """
-    # Nothing is above the highest edge, which would be a level that no edge crosses.
+    # Nothing is brighter than the last edge of the steps: as a level it would cross nothing.
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
     # One patch for all needs no memory of its own: an array of stride 0, which the result has too.
     patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch

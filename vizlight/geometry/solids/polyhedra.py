@@ -215,8 +215,8 @@ class Polyhedron(Primitive):
         a, b, c = self.points[self.triangles[cell]].transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)
         with np.errstate(divide="ignore", invalid="ignore"):
-            # Height above the point at which the upward ray meets the plane of the triangle; NaN,
-            # which is not above, where the triangle is vertical.
+            # Height above the point at which the upward ray meets the plane of the triangle. One
+            # that is vertical has none, and counts as 0 below.
             above = np.einsum("ij,ij->i", a - points[ray], normal) / normal[:, 2] > 0
         # A ray leaves through a face that looks up and enters through one that looks down: the sum
         # is the number of times that the point is enclosed.
