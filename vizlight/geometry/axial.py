@@ -47,7 +47,9 @@ class Source:
     def luminance(self, cosine: Array, distance: Array | float = math.inf) -> Array:
         """Return the luminance for the cosine of incidence and the distance to the light."""
         lit = np.maximum(cosine, 0)
+        # A high power of a small cosine underflows to 0, which is right.
         with np.errstate(under="ignore"):
+            # With a power of 0 the unlit side would be lit, since 0^0 is 1.
             value = np.where(lit > 0, lit**self.power, 0)
             if math.isfinite(self.distance):
                 value = value * falloff.fading(np.asarray(distance, float), self.attenuation)
@@ -74,6 +76,7 @@ def source(
         return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
     size = math.hypot(*offset)
+    # A light in the centre is in no direction; any will do.
     toward = offset / size if size > 0 else np.array([0.0, 0, 1])
     return Source(toward, size, low, scale, power, fading)
 
@@ -94,9 +97,12 @@ def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:
     """
     across = np.zeros(3)
     if toward is not None:
+        # Once more: the first difference leaves a rounded part along the axis where little is left
+        # of it.
         across = toward - (toward @ axis) * axis
         across = across - (across @ axis) * axis
     if math.hypot(*across) <= 8 * np.finfo(np.float64).eps:
+        # The coordinate axis that is farthest from the axis gives the longest product.
         across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
     first = across / math.hypot(*across)
     return first, np.cross(axis, first)
@@ -112,6 +118,7 @@ def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> A
     low, high = np.zeros(len(levels)), np.full(len(levels), end)
     while True:
         middle = (low + high) / 2
+        # No number lies between the two ends any more.
         if np.all((middle == low) | (middle == high)):
             return high
         bright = luminance(middle) > levels

@@ -188,14 +188,18 @@ def specular_gradient(
     size, root = 2 + 2 * x.m, np.sqrt(x.ww)
     to_eye, to_light = x.b * root, x.a * root
     cos_b, cos_c = (np.clip(u, -1, 1) for u in ((x.bb + x.dot) / to_eye, (x.aa + x.dot) / to_light))
+    # wo_N x (wi_N + wo_N) is wo_N x wi_N: one product serves both angles.
     sin_b, sin_c = np.minimum(x.cross / to_eye, 1), np.minimum(x.cross / to_light, 1)
     integral = highlight_integral.half_integral(s, x.a.dtype)
     both = integral(cos_b) + integral(cos_c)
     power_b, power_c = kernels.power(sin_b, s), kernels.power(sin_c, s)
+    # The bracket of the closed form at class Cylinder, by the powers that the derivatives need as
+    # well.
     mean = cos_b * both + sin_b * (power_b * sin_b - power_c * sin_c) / (s + 1)
     # Both are divided by |wi_N x wo_N|, so they stay finite where wi_N and wo_N are parallel.
     by_beta = cos_b * (power_b / to_eye - power_c / to_light) / (s + 1) - both / to_eye
     by_gamma = -power_c / (x.a * x.b)
+    # |h_N|^2, and its deficit below is the tangential share, in which nothing cancels.
     share = np.minimum(x.ww / size, 1)
     peak = kernels.power(share, s / 2, np.square(x.p + x.q) / size) / 2
     # Derivative by the logarithm of |h_N|^2, which is |(wi + wo)_N|^2 over |wi + wo|^2.

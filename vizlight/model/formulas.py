@@ -118,7 +118,9 @@ def depth_scale(
     smooth: bool,
 ) -> Number:
     """Return the scale S of the depth cue (Lecture), linear or as a smooth step."""
+    # From 0 at the back to 1 at the front.
     t = clamp((depth - back) / (front - back), 0.0, 1.0)
+    # The Lecture's small sigmoid, with a slope of 0 at both ends.
     t = t * t * (3.0 - 2.0 * t) if smooth else t
     return back_scale + (front_scale - back_scale) * t
 

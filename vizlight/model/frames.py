@@ -68,6 +68,7 @@ def orthonormalize(vectors: ArrayLike, /, *, rtol: float | None = None) -> tuple
     if rtol is None:
         rtol = default_rtol(n, array.dtype)
     rtol = _check.number("rtol", rtol, low=0.0)
+    # Points last, as the kernels have them.
     rows = np.ascontiguousarray(array.reshape(-1, k, n).transpose(1, 2, 0))
     frame, rank = kernels.orthonormalize(rows, rtol)
     shape = array.shape[:-2]
@@ -163,6 +164,7 @@ def as_frame(frame: ArrayLike) -> Array:
     # Rows past the rank are zero: their diagonal is 0, not 1.
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0
+    # Negated, since a row that is not finite gives NaN, of which no comparison holds.
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
         remedy = "call vizlight.model.frames.orthonormalize first"
         got = f"rows off by {worst:.2g}"

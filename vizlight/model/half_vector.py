@@ -158,5 +158,6 @@ def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
     found = []
     for v in arrays:
         row, size = kernels.unit(np.ascontiguousarray(v.reshape(-1, 3).T))
+        # A vector without a direction makes NaN of all that follows from it.
         found.append(np.where(size > 0, row, np.nan))
     return found[0], found[1], found[2], arrays[0].shape[:-1]

@@ -24,6 +24,7 @@ CELLS, DEGREE, REACH = 64, 5, 9.0
 
 def round_mean(shininess: float) -> float:
     """Return the mean of max(0, cos)^s over the full circle, for a cylinder that is seen end on."""
+    # Half the mean of |cos|^s; by logarithms, as the gamma functions of large powers overflow.
     log = scipy.special.gammaln(shininess / 2 + 0.5) - scipy.special.gammaln(shininess / 2 + 1)
     return float(np.exp(log) / (2 * np.sqrt(np.pi)))
 
@@ -59,6 +60,7 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
         place -= cell
         # Beyond the table G no longer grows: such z are taken to the end of the last cell.
         np.minimum(place, 1, out=place)
+        # Horner's rule, with the coefficients of each point's cell.
         value: Array = rows[-1].take(cell)
         for row in rows[-2::-1]:
             value *= place

@@ -187,6 +187,8 @@ def max_pixel_error(
     beta, r, factor = _check.together(light_eye_angle=angle / 2, r=r, factor=factor)
     more, less, at_more, at_less = extremes(beta, r, factor, lit=_check.boolean("lit", lit))
     phong_wins = more >= less
+    # Phong exceeds most where N leans from H toward the perpendicular of light and eye, and falls
+    # short most where it leans in their plane.
     theta = np.where(phong_wins, np.pi / 2 - np.arcsin(np.sqrt(at_more)), np.pi / 2)
     phi = np.pi / 2 - beta + np.where(phong_wins, 0, np.arcsin(np.sqrt(at_less)))
     error = PEAK * np.where(phong_wins, more, -less)
@@ -504,8 +506,11 @@ def _maximum(a: Array, r: Array, q: Array, end: Array, sign: float) -> tuple[Arr
     """Return the maximum over x from 0 to ``end`` of a signed :func:`difference`, and its x."""
     m = q / 2
     with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+        # Beyond 1 / a Phong's highlight is 0 and Blinn's never rises: no difference there is
+        # larger.
         end = np.minimum(end, 1 / a)
 
+        # The logarithm of the ratio of both terms of the derivative: 0 where they are equal.
         def slope(x: Array) -> Array:
             return (
                 (m - 1) * np.log1p(-x)
@@ -524,6 +529,7 @@ def _maximum(a: Array, r: Array, q: Array, end: Array, sign: float) -> tuple[Arr
                 middle = (near + far) / 2
                 same = (slope(middle) > 0) == side
                 near, far = np.where(same, middle, near), np.where(same, far, middle)
+            # A maximum is at the root or at the end of its side.
             for x in (near, high):
                 value = sign * difference(x, a, r, q)
                 better = value > best
@@ -540,6 +546,7 @@ def sphere_errors(beta: float, r: float, factor: float) -> dict[str, float]:
     round_nodes, round_weights = np.polynomial.legendre.leggauss(NODES[1])
     psi = np.pi / 4 * (1 + round_nodes)
     cos_beta, sin_beta = np.cos(beta), np.sin(beta)
+    # Where N.E or N.L is 0: tan(nu) = cos(beta) / (sin(beta) sin(psi)).
     end = np.arctan2(cos_beta, sin_beta * np.sin(psi))
     # The panels grow geometrically; the first one is as wide as the narrower highlight.
     least = min(end.min(), 0.5 / np.sqrt(r * max(factor, 4.0)))
@@ -548,6 +555,7 @@ def sphere_errors(beta: float, r: float, factor: float) -> dict[str, float]:
     nodes, weights = np.polynomial.legendre.leggauss(NODES[0])
     u = (cuts[:-1, None] + np.diff(cuts)[:, None] * (1 + nodes) / 2).ravel()
     du = (np.diff(cuts)[:, None] / 2 * weights).ravel()
+    # The panels are shares of nu's range, which ends elsewhere for each psi.
     nu = np.multiply.outer(end, u)
     sine = np.sin(nu)
     # By (9') with |wi_N| - |wo_N| = 2 sin(beta) sin(nu) sin(psi), V.R is 1 - a sin^2(nu).

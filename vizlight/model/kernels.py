@@ -55,6 +55,7 @@ def unit(v: Array) -> tuple[Array, Array]:
         return v / size, size
     result = np.empty(v.shape, dtype=v.dtype)
     np.divide(v, size, out=result, where=~extreme)
+    # The squares of these leave the range of the type: they are scaled before they are taken.
     scaled, _, _ = _rescale(v[:, extreme])
     scaled_size = np.sqrt(dot(scaled, scaled))
     result[:, extreme] = scaled / np.where(scaled_size > 0, scaled_size, 1)
@@ -103,6 +104,7 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
     vectors before it is at most ``rtol`` of its length is dropped. Rows past the rank are 0.
     """
     k = v.shape[0]
+    # A single vector has nothing to be projected on.
     if k == 1:
         row, size = unit(v[0])
         return row[np.newaxis], (size > 0).astype(np.intp)
@@ -169,6 +171,7 @@ def power(x: Array, exponent: float, deficit: Array | None = None) -> Array:
 def _integer_power(x: Array, exponent: int) -> Array:
     if exponent == 0:
         return np.ones_like(x)
+    # By squaring: as many rounds as the exponent has bits.
     result = None
     while exponent > 1:
         if exponent & 1:

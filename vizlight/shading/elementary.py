@@ -88,6 +88,7 @@ def prelude(work: str) -> str:
             5.0000001201e-1,
         ), "r")  # fmt: skip
         exp += "\n    y = y * z + r + F(1)"
+        # arctan(v) = v + v^3 p(v^2).
         arctan = _horner("p", (
             8.05374449538e-2, -1.38776856032e-1, 1.99777106478e-1, -3.33329491539e-1,
         ), "z")  # fmt: skip
@@ -101,6 +102,7 @@ def prelude(work: str) -> str:
         # exact.
         second = -2.12194440e-4
     else:
+        # log(1 + g) = g - g^2 / 2 + g^3 P(g) / Q(g).
         log = _horner("p", (
             1.01875663804580931796e-4, 4.97494994976747001425e-1, 4.70579119878881725854,
             1.44989225341610930846e1, 1.79368678507819816313e1, 7.70838733755885391666,
@@ -119,6 +121,7 @@ def prelude(work: str) -> str:
             2.00000000000000000009,
         ), "z")  # fmt: skip
         exp += "\n    y = F(1) + F(2) * (p / (q - p))"
+        # arctan(v) = v + v^3 P(v^2) / Q(v^2).
         arctan = _horner("p", (
             -8.750608600031904122785e-1, -1.615753718733365076637e1, -7.500855792314704667340e1,
             -1.228866684490136173410e2, -6.485021904942025371773e1,
@@ -129,6 +132,7 @@ def prelude(work: str) -> str:
         ), "z", monic=True)  # fmt: skip
         arctan += "\n    p = v * (z * p / q) + v"
         kinds = "F, I, MANTISSA = np.float64, np.int64, np.int64(52)"
+        # At about the least x whose exp is a normal number, which the bits of an exponent can hold.
         low, magic = -708.0, 6755399441055744.0
         second = -2.121944400546905827679e-4
     constants = f"""

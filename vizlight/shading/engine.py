@@ -387,4 +387,5 @@ def _depth(view: View, points: Array) -> Array:
         # A view by its position alone has no axis.
         return kernels.length(points - origin)
     axis, _ = kernels.unit(np.array(view.direction, dtype=np.float64)[:, np.newaxis])
+    # The direction of a view is toward the eye, so that depth grows away from it.
     return kernels.dot(axis, origin - points)

@@ -187,6 +187,7 @@ class ShadingInputs:
     @property
     def narrow(self) -> bool:
         """Whether the vectors have no more digits than float32."""
+        # Points do not count: their differences to lights and eye lose no digits in either type.
         given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
         return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
 
@@ -212,6 +213,7 @@ class ShadingInputs:
         rows, rest = divmod(count, _check.integer("repeat", self.repeat, low=1))
         if rest:
             raise ValueError(_check.message("repeat", f"a divisor of {count} points", self.repeat))
+        # Tangents may be shared by the points of a row, or each point has its own.
         for name, given, counts in (
             ("tangents", self.tangents, {count, rows}),
             ("base_tangents", self.base_tangents, {rows}),
@@ -253,6 +255,7 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     """
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]
+        # To check the values of what is made on demand would be to make all of it at once.
         return source
     return _check.reals(name, value)
 
@@ -262,6 +265,7 @@ def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int)
     if len(shape) == 3 and shape[0] in counts and shape[2] == n:
         k = shape[1]
     elif len(shape) == 2 and shape[0] in counts and shape[1] % n == 0:
+        # The tangents of a point stand one after the other in its row.
         k = shape[1] // n
     if not 0 < k < n:
         count = " or ".join(str(number) for number in sorted(counts))

@@ -558,6 +558,7 @@ class Loop(Writer):
         for c, x in enumerate(values):
             place = f"{name}[{len(values)} * i + {c}]" if len(values) > 1 else f"{name}[i]"
             text = self.text(x, self.type)
+            # The luminance alone carries the mark: NaN, which sends the point to NumPy.
             self.puts.append(f"{place} = LOST if odd else {text}" if name == "luminance" else
                              f"{place} = {text}")  # fmt: skip
 
@@ -567,6 +568,7 @@ class Loop(Writer):
         body = [*self.sums, *self.lines, *self.puts]
         # Numbers are read from their arrays once, before the loop over the points.
         used = sorted(set(re.findall(r"\b[gh]\d+\b", "\n".join(body))))
+        # A plain number of Python would widen work in float32 to float64.
         types = {"f4": "np.float32", "f8": "np.float64"}
         text = [
             *(f"{name} = {types[k]}({x!r})" for (x, k), name in self.constants.items()),

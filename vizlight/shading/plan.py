@@ -312,6 +312,7 @@ def decide(
         highlights=_highlights(scene, options.model),
         surface=surface,
         two_sided=layout.two_sided,
+        # A surface is lit by its normals themselves, which would then count twice.
         conditioned=bool(options.conditioned and layout.normals and not surface),
         base=layout.base,
         base_exponent=(
@@ -321,6 +322,7 @@ def decide(
         ),
         line_exponent=_exponent(options, 1, n) if layout.mixed else None,
         shadowed=layout.shadowed,
+        # A share of the lights has nothing to multiply where no term of them is computed.
         dimmed=layout.dimmed and (diffuse or specular),
         occluded=layout.occluded,
         fur=layout.fur if diffuse or specular else 0.0,
@@ -363,7 +365,9 @@ def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
     diffuse = bool(scene.material.diffuse > 0 and lights)
+    # Without a view, what needs an eye all the same, as fur and single points, has it there.
     view = View.isometric(layout.n) if scene.view is None else scene.view
+    # Lights that follow the view get the place or direction that they have under it.
     fixed = tuple(light.seen_from(view) for light in lights) if diffuse or specular else ()
     return scene.replace(lights=fixed, view=view), diffuse, specular
 

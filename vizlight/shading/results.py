@@ -54,6 +54,7 @@ def arrays_of(
     """
     parts: dict[str, Raw] = {}
     if shading.diffuse is not None and shading.specular is not None:
+        # One number for all, but an array of the mesh like the other terms.
         ambient = np.full_like(shading.luminance, shading.plan.ambient)
         if occlusion is not None:
             ambient *= occlusion
@@ -115,6 +116,7 @@ def plain(options: object) -> Record:
     """Return options, a dataclass or a dict, as values that JSON can hold."""
     if not isinstance(options, Mapping):
         names = [field.name for field in dataclasses.fields(options)]  # type: ignore[arg-type]
+        # What a filter decides by itself could not be passed to it again.
         decided = options.DECIDED if isinstance(options, Options) else ()
         options = {name: getattr(options, name) for name in names if name not in decided}
     return {str(name): _plain(value) for name, value in options.items()}
@@ -124,6 +126,7 @@ def _plain(value: object) -> object:
     """Return a value that JSON can hold, with a description of a mesh or a long array."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
+    # By VTK's methods: a mesh need not be PyVista's.
     if hasattr(value, "GetNumberOfPoints") or hasattr(value, "GetNumberOfBlocks"):  # a mesh
         return f"{type(value).__name__} of {getattr(value, 'n_points', 0)} points"
     if isinstance(value, Fraction):

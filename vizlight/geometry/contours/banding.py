@@ -97,6 +97,7 @@ class Bands:
         # Relative to the extent: squares of tiny lengths underflow, squares of huge ones overflow.
         unit = float(np.ptp(self.points[:, :3], axis=0).max(initial=0)) or 1.0
         across = np.cross((b - a) / unit, (c - a) / unit)
+        # The sum is twice the vector area, which a polygon that bends has as well.
         total = np.stack([np.bincount(owner, x, len(self.values)) for x in across.T], axis=1)
         size = np.sqrt(np.einsum("ij,ij->i", total, total))[:, np.newaxis]
         return np.asarray(total / np.where(size > 0, size, 1))
@@ -104,6 +105,7 @@ class Bands:
     def triangles(self) -> tuple[Indices, Indices]:
         """Return the polygons as fans of triangles, and the polygon of each triangle."""
         size = np.diff(self.offsets)
+        # A polygon of n corners is n - 2 triangles about its first corner.
         owner, turn = ranges(np.zeros_like(size), size - 2)
         first = self.offsets[owner]
         parts = [self.corners[first + step] for step in (0 * turn, turn + 1, turn + 2)]
@@ -203,7 +205,9 @@ def cut(
     side they come from: a closed surface stays closed. Triangles without contour points are taken
     over as they are.
     """
+    # Nothing is brighter than the last edge of the steps: as a level it would cross nothing.
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
+    # One patch for all needs no memory of its own: an array of stride 0, which the result has too.
     patch = np.broadcast_to(np.intp(0), len(triangles)) if patch is None else patch
     lowest, touched = _touched(triangles, values, levels, patch)
     rows, whole = np.flatnonzero(touched), np.flatnonzero(~touched)
@@ -222,6 +226,7 @@ def cut(
     old = np.searchsorted(used, count)
     made = np.concatenate([points[used[:old]], new[used[old:] - count]])
     lines = lookup[lines]
+    # A segment from a point to itself, or one with an end that no polygon uses, is none.
     kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
     cut_bands = Bands(
         points=made,
@@ -278,19 +283,25 @@ def _pieces(
         share = _linear(side_values[of_side], levels[level])
     else:
         share = _crossed(ends[edge], owner, side_values, levels, of_side, level, luminance)
+    # A contour point within rounding of a corner would leave a sliver between them.
     share[share < SNAP] = 0
     share[share > 1 - SNAP] = 1
 
     # Along each edge: by fraction, and for equal fractions in the order of a side's levels.
+    # An edge runs from its lower to its higher index; where the luminance falls on the way, the
+    # levels are met from the highest down.
     down = at[of_side, 0] > at[of_side, 1]
     after = np.cumsum(last - first)
     row = np.arange(len(level))
     order = np.where(down, (2 * after - (last - first) - 1)[of_side] - row, row)
     same = np.diff(edge[of_side]) == 0
+    # At a crease an edge has the contours of two patches, which share it in the order of their
+    # places.
     if np.any(same & (np.diff(share[order]) < 0)):
         order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
     of_side, level, share = of_side[order], level[order], share[order]
     a, b = ends[edge[of_side]].T
+    # A contour through a corner of the mesh has no point of its own there.
     between = (share > 0) & (share < 1)
     number = count + np.cumsum(between) - 1
     vertex = np.where(between, number, np.where(share > 0.5, b, a))
@@ -366,6 +377,8 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     """
     size = np.diff(bands.offsets)
     owner = np.repeat(np.arange(len(size)), size)
+    # The number of a polygon stands for its triangle and for its band, since it has but one of
+    # each.
     size, corners, first = _polygons(owner, owner, clusters[bands.corners])
     cell = owner[first]
     used, lookup = _compact(corners, len(bands.points))
@@ -398,6 +411,8 @@ def _sides(
     patches, patch_of = np.unique(patch, return_inverse=True)
     both = edge_of.reshape(-1) * len(patches) + np.repeat(patch_of.reshape(-1), 3)
     _, first, side = np.unique(both, return_index=True, return_inverse=True)
+    # The two values of a side are in the order of the ends of its edge, whichever way the triangle
+    # that was found first runs through it.
     forward = (triangles < np.roll(triangles, -1, axis=1)).reshape(-1, 1)[first]
     there = np.stack([values, np.roll(values, -1, axis=1)], axis=-1).reshape(-1, 2)[first]
     there = np.where(forward, there, there[:, ::-1])
@@ -415,6 +430,7 @@ def ranges(first: Indices, last: Indices) -> tuple[Indices, Indices]:
 def _linear(values: Array, level: Array) -> Array:
     """Return the fraction of an edge at which a luminance that is linear crosses each level."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        # Without a slope the place is 0/0: half way is as good as any other.
         linear = (level - values[:, 0]) / (values[:, 1] - values[:, 0])
     return np.clip(np.nan_to_num(linear, nan=0.5), 0, 1)
 
@@ -445,6 +461,8 @@ def _crossed(
     share[rows] = _rooted(rows, bright[rows], top[rows], bottom[rows], jump, above)
     # Where the luminance is not monotone the levels stay in order.
     same, down = np.diff(of_side) == 0, ~rising[of_side[1:]]
+    # Each round passes a place on by one level only; it ends once no level is before its
+    # predecessor.
     while True:
         step = np.where(down, -1, 1) * np.diff(share)
         turned = np.flatnonzero(same & (step < 0))
@@ -458,8 +476,10 @@ def _divided(rows: Indices, bright: Array, above: Callable[[Indices, Array], Arr
     start, size = bright, 1 - 2 * bright
     share = np.arange(1, PARTS) / PARTS
     for _ in range(round(math.log(WIDTH, 1 / PARTS))):
+        # All parts of all brackets at once: few calls on many places are faster than many on few.
         lit = above(rows, start[:, np.newaxis] + share * size[:, np.newaxis]) > 0
         size = size / PARTS
+        # The first part without light ends the lit part, even if there is light again beyond it.
         start = start + size * np.logical_and.accumulate(lit, axis=1).sum(axis=1)
     # A jump as near to a corner as it is searched is at the corner.
     middle = np.where(start == bright, 0, np.where(start + size == 1 - bright, 1, 0.5))
@@ -475,10 +495,13 @@ def _rooted(
     which = np.arange(len(rows))
     # The last place, the other end of the bracket, and the place before; with the luminance there.
     x1, x2, f1, f2 = bright, 1 - bright, top, bottom
+    # The first place by the chord through both ends, as in the rule of false position.
     t = f1 / (f1 - f2)
     while len(which):
         x = x1 + t * (x2 - x1)
         f = above(rows[which], x[:, np.newaxis])[:, 0]
+        # The new place replaces the end of the bracket whose luminance is on the same side of the
+        # level.
         same = (f > 0) == (f1 > 0)
         x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
         x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
@@ -492,10 +515,13 @@ def _rooted(
         share[which[done]] = found[done]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+            # Chandrupatla's test, whether inverse quadratic interpolation stays between the ends;
+            # else the bracket is halved.
             smooth = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
             t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (
                 f3 - f2
             )
+        # A step of at least half the width that is aimed at, so that the other end moves too.
         least = WIDTH / 2 / np.maximum(width, WIDTH)
         t = np.where(smooth, np.clip(np.nan_to_num(t, nan=0.5), least, 1 - least), 0.5)
         kept = ~done
@@ -525,16 +551,21 @@ def _walk(
         tri, index = ranges(first, last)
         step = index - first[tri]
         forward = ends[of_edge[tri], 0] == corner[tri, slot]
+        # Contour points are stored once per edge, and its other triangle meets them in the other
+        # order.
         index = np.where(forward, index, last[tri] - 1 - step)
         # Only the contours of the own side of a crease lead to another band.
         own = of_side[index] == side[tri, slot]
         passed = np.cumsum(own)
+        # The sum runs through all triangles: what it was before each one's own points is taken off.
         passed -= np.append(0, passed)[np.searchsorted(tri, tri)]
         sign = np.where(band[tri, (slot + 1) % 3] > band[tri, slot], 1, -1)
         after = band[tri, slot] + sign * passed
         position = slot * span + 2 * (step + 1)
         crossed = np.where(own, level[index], -1)
         rows.append([tri, after, position, vertex[index], crossed])
+        # A contour point is the last of the band that it ends and the first of the one that it
+        # begins.
         before = [tri, after - sign, position - 1, vertex[index], np.full(len(tri), -1)]
         rows.append([column[own] for column in before])
     return tuple(np.concatenate(part) for part in zip(*rows, strict=True))
@@ -549,6 +580,7 @@ def _polygons(
     group = np.cumsum(new) - 1
     first = np.flatnonzero(new)
     previous = np.roll(corner, 1)
+    # Before the first corner of a polygon comes its last one.
     previous[first] = corner[np.roll(first, -1) - 1]
     # A point equal to its predecessor around the polygon is left out.
     kept = corner != previous
@@ -562,5 +594,6 @@ def _lines(triangle: Indices, crossed: Indices, corner: Indices) -> tuple[Indice
     """Return contour segments, one per triangle and level, and the level of each."""
     on = np.flatnonzero(crossed >= 0)
     order = on[np.lexsort((crossed[on], triangle[on]))]
+    # A contour that enters a triangle leaves it, so the points of each level are two.
     pairs = corner[order].reshape(-1, 2)
     return pairs, crossed[order][::2]

@@ -154,6 +154,7 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
             total += _check.unit(name, axial.triple(name, position) - middle)
         else:
             total += _check.unit(name, getattr(given, "direction", given))
+    # Halfway between opposite directions there is no direction.
     if math.hypot(*total) < 1e-12:
         expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
         raise ValueError(_check.message("eye", expected, _check.describe(eye), remedy))
@@ -172,13 +173,16 @@ class _Latitudes:
     def __init__(self, light: axial.Source, solid: primitives.Sphere) -> None:
         self.light, self.solid = light, solid
         near, radius = light.distance, solid.radius
+        # A light on or inside the sphere has all of its outside behind the horizon, as at R/d = 1.
         self.ratio = 0.0 if math.isinf(near) else (radius / near if near > radius else 1.0)
+        # The terminator, cos = R/d, as a value of q.
         self.dark = (1 - self.ratio) / 2
 
     def luminance(self, q: ArrayLike) -> Array:
         """Return the luminance at values of q."""
         q = np.asarray(q, dtype=np.float64)
         r = self.ratio
+        # Distance of the light from the point, in units of its distance from the centre.
         far = np.sqrt((1 - r) ** 2 + 4 * r * q)
         cosine = np.where(q < self.dark, (1 - r - 2 * q) / np.where(far > 0, far, 1), 0)
         lit = self.light.luminance(cosine, far * self.light.distance)
@@ -189,6 +193,7 @@ class _Latitudes:
         """Return the largest change of the luminance by chords instead of circles."""
         # Angles avoid cancellation for small circles below a close light.
         angle = 2 * np.arcsin(np.sqrt(places))
+        # The middle of a chord is nearer to the axis of its circle by the cosine of half a segment.
         within = np.arctan2(np.sin(angle) * math.cos(math.pi / segments), np.cos(angle))
         middle = np.sin(within / 2) ** 2
         return float(np.abs(self.luminance(middle) - self.luminance(places)).max(initial=0))
@@ -198,6 +203,7 @@ class _Latitudes:
         axis = self.light.toward
         angle = 2 * np.pi * np.arange(count) / count
         ring = axial.circle(angle, *axial.frame(axis))
+        # Sine and cosine of the angle to the light, by q.
         across, along = 2 * np.sqrt(q * (1 - q)), 1 - 2 * q
         points = across[:, np.newaxis, np.newaxis] * ring + along[:, np.newaxis, np.newaxis] * axis
         return np.asarray(self.solid.center + self.solid.radius * points.reshape(-1, 3))
@@ -216,6 +222,7 @@ def _round(
         error = steps.error + latitudes.chord(places, count)
         if error <= allowed:
             break
+        # Few more segments each time, so that not many more than needed are made.
         count = math.ceil(count * 1.2)
     return count, error
 
@@ -229,6 +236,7 @@ def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
     inside = np.flatnonzero((places > 0) & (places < np.pi))
     contour = np.concatenate([[-1], inside[np.argsort(places[inside], kind="stable")]])
     ends = np.concatenate([[0.0], places[contour[1:]], [np.pi]])
+    # Rounding must not add a segment to a piece that is a whole number of them.
     pieces = np.maximum(np.ceil(np.diff(ends) * segments / (2 * np.pi) - 1e-9), 1).astype(int)
     piece, step = banding.ranges(np.zeros_like(pieces), pieces)
     angle = ends[piece] + step * (np.diff(ends) / pieces)[piece]
@@ -242,18 +250,22 @@ def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error
         return banding.none(steps, error)
     angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), min(count, 400))
     q = np.sin(angle / 2) ** 2
+    # The contours' own places, without the rounding of the way through angles.
     q[contour >= 0] = places[contour[contour >= 0]]
+    # The first angle is the pole, which is one point and no circle.
     q, contour = q[1:], contour[1:]
     poles = solid.center + solid.radius * np.outer([1, -1], toward)
     ring = np.arange(len(q) * count).reshape(len(q), count)
     turned = np.roll(ring, -1, axis=1)
     strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
     cap = np.stack([np.full(count, ring.size), ring[0], turned[0]], axis=-1)
+    # The far cap faces the other way, and its corners run the other way around.
     floor = np.stack([np.full(count, ring.size + 1), turned[-1], ring[-1]], axis=-1)
     corners = np.concatenate([cap.ravel(), strips.ravel(), floor.ravel()])
     sizes = np.repeat([3, 4, 3], [len(cap), len(strips), len(floor)])
     # Outward from the light, each contour decreases the band by one.
     passed = np.concatenate([[0], np.cumsum(contour >= 0)])
+    # Without any light the whole sphere is in the lowest band.
     number = len(places) if np.any(latitudes.luminance(0.0) > latitudes.light.low) else 0
     band = np.repeat(number - passed, count)
     on = contour >= 0
@@ -404,6 +416,7 @@ def shade(light: axial.Source, center: Array) -> Luminance:
     def luminance(points: Array, normals: Array) -> Array:
         if math.isinf(light.distance):
             return light.luminance(normals @ light.toward)
+        # The light less the point, both seen from the centre.
         toward = light.toward * light.distance - (points - center)
         size = kernels.length(np.ascontiguousarray(toward.T))
         cosine = np.einsum("ij,ij->i", toward, normals) / np.where(size > 0, size, 1)
@@ -424,6 +437,8 @@ class _Rulings:
         # The side's normal: across the axis by the height, along it by the difference of the
         # radii.
         across, along = (solid.height / size, slope / size) if slope or solid.height else (1.0, 0.0)
+        # A and B of N . L = A cos(phi) + B. Rounding could make A negative where the light is on
+        # the axis.
         self.a = across * max(float(self.first @ light.toward), 0.0)
         self.b = along * float(solid.axis @ light.toward)
 
@@ -478,6 +493,7 @@ def _ruled_bands(side: _Rulings, steps: Steps, places: Array, segments: int) -> 
         band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
         parts += [(0, int(k), float(steps.values[k])) for k in band]
         on = np.flatnonzero(contour >= 0)
+    # The second end is seen from below, and its rim runs the other way.
     for patch, radius, ring in ((1, first, top), (2, second, bottom[::-1])):
         if radius > 0:
             value = side.end(first=patch == 1)
@@ -511,6 +527,7 @@ def _chords(side: _Rulings, steps: Steps, places: Array, segments: int) -> Lamin
     far = np.full(len(beyond), float(side.luminance(np.pi)))
     values = np.concatenate([steps.values[1:][inside], far])
     quads = np.stack(
+        # Both rulings of a contour are at plus and minus its angle from the light.
         [side.place(-angle, first=True), side.place(angle, first=True),
          side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
     )  # fmt: skip

@@ -87,6 +87,7 @@ def draw(
     surfaces; contours are chords between them.
     """
     if not len(mesh.triangles):
+        # A solid without volume has no luminance; its steps still have to be valid.
         return banding.none(spacing.steps(levels, low or 0.0, low or 0.0))
     made = refine(LitSolid(open_apexes(mesh), luminance), levels, low=low, progress=progress)
     made = _close_apexes(made, mesh)
@@ -128,6 +129,7 @@ def refine(
         if not len(chosen) or turn == ROUNDS or count > ENOUGH or pieces.sum() > MANY:
             break
         same = surface.split(chosen)
+        # The first of the triangles are those that stay, in the order of these indices.
         error, pieces = error[same], pieces[same]
         found = _steps(surface, levels, low).edges
         share = STILL * steps.error
@@ -135,6 +137,7 @@ def refine(
             # New points are brighter than all before: other steps, by which nothing is known.
             steps = _settled(surface, levels, low)
             error, pieces = error[:0], pieces[:0]
+    # The last cut was of the new triangles only.
     if known:
         bands, _ = surface.cut(steps)
     worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
@@ -176,6 +179,8 @@ def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
         ceiling = top.max() + STILL * allowed
         few = count <= ASKED
         rows = np.arange(searched, count) if few else np.argpartition(top, -BRIGHTEST)[-BRIGHTEST:]
+        # Within one triangle a miss below the allowed error does no harm, but the highest luminance
+        # of all sets the steps of every band.
         above = surface.peaks(rows) > np.minimum(top[rows] + allowed if few else ceiling, ceiling)
         if not above.any():
             break
@@ -212,6 +217,7 @@ class LitTriangles:
         used = np.zeros(len(points), np.bool_)
         used[triangles] = True
         found = self.light(points[used])
+        # Points that no triangle uses must not take part in the lowest and the highest luminance.
         #: Luminance at the points, or at the corners of triangles.
         self.values = np.full(len(points), found.min(initial=np.inf))
         self.values[used] = found
@@ -246,12 +252,15 @@ class LitTriangles:
         """
         count = len(self.points)
         codes = banding.edge_codes(self.triangles, count)
+        # Each halved edge has one midpoint, whichever of its triangles asked for it.
         marked = np.unique(codes[chosen])
         a, b = np.divmod(marked, count)
+        # Edges beyond the last one that is halved have no rank of their own.
         rank = np.minimum(np.searchsorted(marked, codes), len(marked) - 1)
         number = np.where(marked[rank] == codes, count + rank, -1)
         new = self.place(a, b, np.full(len(a), 0.5))
         triangles, owner = triangle_mesh.split(self.triangles, number)
+        # Halfway to a point without light there may be none.
         self.lit = np.append(self.lit, self.lit[a] & self.lit[b])
         self.points, self.triangles = np.concatenate([self.points, new]), triangles
         self.patch = self.patch[owner]
@@ -267,6 +276,7 @@ class LitTriangles:
 
         A highlight may be smaller than a triangle.
         """
+        # Half steps: no point of the grid is on an edge, which the neighbour would search as well.
         steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
         weights = np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
         places = weights @ self.points[self.triangles[rows]]
@@ -289,17 +299,20 @@ class LitTriangles:
         unit = float(np.ptp(bands.points[:, :3], axis=0).max(initial=0)) or 1.0
         first = 0
         while first < len(worst):
+            # As many polygons as have BLOCK corners together, but at least one.
             last = int(np.searchsorted(bands.offsets, bands.offsets[first] + BLOCK, side="right"))
             last = max(last - 1, first + 1)
             start = bands.offsets[first:last]
             size, offsets = bands.offsets[first + 1 : last + 1] - start, start - start[0]
             after = np.arange(1, size.sum() + 1)
+            # The last corner of a polygon is followed by its first.
             after[offsets + size - 1] = offsets
             corner = bands.points[bands.corners[start[0] :][: len(after)], : self.columns]
             edge = corner[after] - corner
             middle = np.add.reduceat(corner, offsets) / size[:, np.newaxis]
             toward = np.repeat(middle, size, axis=0) - corner
             across = np.cross(edge[:, :3] / unit, toward[:, :3] / unit)
+            # Twice the area, as triangles about the middle.
             area[first:last] = np.add.reduceat(np.linalg.norm(across, axis=1), offsets)
             # The points are just inside the polygon: on a contour both bands are right.
             corner = corner + WITHIN * toward
@@ -334,6 +347,8 @@ class LitSolid(LitTriangles):
         self.codes, edge = np.unique(code, return_inverse=True)
         edge, owner = edge.ravel(), np.repeat(self.patch, 3)
         self.both = np.empty((len(self.codes), 2), np.intp)
+        # Whichever of its triangles is written last; a triangle of another surface is then the
+        # second.
         self.both[edge] = owner[:, np.newaxis]
         other = owner != self.both[edge, 0]
         self.both[edge[other], 1] = owner[other]
@@ -381,16 +396,21 @@ def open_apexes(mesh: Mesh) -> Mesh:
     for patch, apex in mesh.surfaces.apexes:
         count = len(mesh.points)
         gap = mesh.points - apex
+        # Within 1e-10 of the apex, in normalised lengths.
         at = np.einsum("ij,ij->i", gap, gap) < 1e-20
+        # Other surfaces may pass through the apex without ending there.
         at &= np.isin(np.arange(count), mesh.triangles[mesh.patch == patch])
         start = at[mesh.triangles]
         rows, slot = np.nonzero(start)
         tip, b, c = (mesh.triangles[rows, (slot + i) % 3] for i in range(3))
+        # One point of the rim for each edge that leaves the apex, shared by the triangles on both
+        # sides.
         key = np.concatenate([tip * count + b, tip * count + c])
         ends, place = np.unique(key, return_inverse=True)
         new = count + place.reshape(2, -1)
         way = mesh.points[ends % count] - apex
         rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
+        # What is left of a triangle without its tip has four corners, and is two triangles.
         made = np.stack([new[0], b, c], axis=1), np.stack([new[0], c, new[1]], axis=1)
         kept = ~start.any(axis=1)
         owner = mesh.patch[rows]
@@ -407,6 +427,7 @@ def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
     clusters, points = np.arange(len(bands.points)), bands.points
     for _, apex in mesh.surfaces.apexes:
         gap = points - apex
+        # Contours may have put more points on the rim since, and close to it.
         near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
         clusters[near] = near[:1]
         points[near[:1]] = apex

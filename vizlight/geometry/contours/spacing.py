@@ -125,11 +125,13 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
     """
     check(levels)
     span, error = high - low, allowed(levels)
+    # A surface of one luminance, or without points, is a single band without contours.
     if not span > 0:
         edges = np.array([low])
     elif isinstance(levels, numbers.Integral):
         edges = np.linspace(low, high, int(levels) + 1)
     elif error is not None:
+        # The middle of a step of twice the error is nowhere farther off than the error.
         ratio = span / (2 * error)
         if ratio > MOST * (1 if exact else 1 - CHORDS):
             expected = f"an error that at most {MOST} steps keep"

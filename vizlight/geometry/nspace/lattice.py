@@ -68,9 +68,12 @@ def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False
     """
     index = np.arange(int(np.prod(shape)), dtype=np.intp).reshape(tuple(shape))
     if twisted:
+        # Index -j modulo the count: reversed, and turned by one, so that 0 stays where it is.
         back = np.roll(index[0, ::-1], 1, axis=0)
         index = np.concatenate([index, back[np.newaxis]])
         closed = (False, *closed[1:])
+    # Behind the last sample comes the first one itself, no copy of it: a closed direction has no
+    # seam.
     index = np.pad(index, [(0, int(wraps)) for wraps in closed], mode="wrap")
     parts = [
         index[tuple(slice(c, n - 1 + c) for c, n in zip(corner, index.shape, strict=True))]
@@ -97,12 +100,14 @@ def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Ind
         Coordinates from ``-size`` to ``size`` in steps of 2.
     cells : ndarray of int, shape (M, 2^(dimension - 1))
     """
+    # Twice the coordinates, which are whole numbers about 0 for odd numbers of cells, too.
     steps = 2 * np.arange(size + 1) - size
     within = np.stack(np.meshgrid(*[steps] * (dimension - 1), indexing="ij"), axis=-1)
     within = within.reshape(-1, dimension - 1)
     local = cells([size + 1] * (dimension - 1), [False] * (dimension - 1))
     places: list[Indices] = []
     faces: list[Indices] = []
+    # Of opposite faces one is enough where opposite points are one.
     for axis, side in itertools.product(range(dimension), (1,) if opposite else (1, -1)):
         faces.append(local + len(places) * len(within))
         places.append(np.insert(within, axis, side * size, axis=1))
@@ -111,5 +116,6 @@ def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Ind
         # The sign of the first non-zero coordinate decides which of both points is kept.
         first = np.argmax(corner != 0, axis=1)
         corner = corner * np.sign(corner[np.arange(len(corner)), first])[:, np.newaxis]
+    # Faces share the points of their edges, which are found by equal coordinates.
     points, number = np.unique(corner, axis=0, return_inverse=True)
     return points, np.asarray(number, dtype=np.intp).reshape(-1)[np.concatenate(faces)]

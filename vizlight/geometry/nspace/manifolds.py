@@ -111,6 +111,7 @@ def clifford_torus(*, radius: float = 1.0, resolution: int | Sequence[int] = 64)
     TypeError, ValueError
         As :func:`torus`.
     """
+    # Two circles of the radius r / sqrt(2) are at the distance r from the origin.
     half = radius_of("radius", radius) / np.sqrt(2)
     return torus(half, half, resolution=resolution)
 
@@ -171,11 +172,13 @@ def torus_curve(
     (count,) = lattice.resolution(resolution, 1, [closed])
     part = np.arange(count) / (count if closed else count - 1)
     t = TURN * turns * part
+    # From a whole number of turns the curve ends where it began; a rounded ratio would miss it.
     f = TURN * whole * part if closed else number * t
     zero = np.zeros_like(t)
     points = np.stack([r1 * np.cos(t), r1 * np.sin(t), r2 * np.cos(f), r2 * np.sin(f)], axis=1)
     along = np.stack([-r1 * np.sin(t), r1 * np.cos(t), zero, zero], axis=1)
     around = np.stack([zero, zero, -r2 * np.sin(f), r2 * np.cos(f)], axis=1)
+    # Of any length: the frame is normalised below.
     rows = (along + number * around)[:, np.newaxis]
     return manifold(points, rows, lattice.cells((count,), [closed]))
 
@@ -231,6 +234,7 @@ def hopf_fibres(
     if not np.all((largest > 0) & np.isfinite(largest)):
         expected = "points of the sphere, finite and not at its centre"
         raise ValueError(_check.message("base", expected, places))
+    # By the largest component first, so that no square overflows.
     places = places / largest
     a, b, c = (places / np.linalg.norm(places, axis=1, keepdims=True)).T
     across = np.hypot(a, b)
@@ -242,6 +246,7 @@ def hopf_fibres(
     turning = np.exp(1j * circle(count))
     pairs = np.stack([np.outer(z1, turning).ravel(), np.outer(z2, turning).ravel()], axis=1)
     cells = lattice.cells((count,), [True]) + count * np.arange(len(a))[:, np.newaxis, np.newaxis]
+    # The real and imaginary parts of both numbers, one after the other, are the four coordinates.
     points = radius * pairs.view(np.float64)
     return manifold(points, (1j * pairs).view(np.float64)[:, np.newaxis], cells.reshape(-1, 2))
 
@@ -259,6 +264,7 @@ def radius_of(name: str, value: object) -> float:
 def _spread(count: int) -> Array:
     """Return points on the unit sphere along a spiral of golden angles."""
     i = np.arange(count) + 0.5
+    # Each point is turned from the one before by 2 pi times the golden ratio.
     height, angle = 1 - 2 * i / count, np.pi * (1 + np.sqrt(5)) * i
     width = np.sqrt(1 - height**2)
     return np.stack([width * np.cos(angle), width * np.sin(angle), height], axis=1)
@@ -306,6 +312,7 @@ def klein_bottle(
     out, up = major + minor * np.cos(v), minor * np.sin(v)
     inward, lift = -minor * np.sin(v), minor * np.cos(v)
     points = np.stack([out * x, out * y, up * z, up * w], axis=1)
+    # The zw plane turns half as fast, which is the half in the derivative by u.
     along = np.stack([-out * y, out * x, -up * w / 2, up * z / 2], axis=1)
     across = np.stack([inward * x, inward * y, lift * z, lift * w], axis=1)
     cells = lattice.cells(shape, [True, True], twisted=True)
@@ -352,6 +359,7 @@ def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
     # axis farthest from the point, and the cross product with that.
     first = np.cross(place, np.eye(3)[np.argmin(np.abs(place), axis=1)])
     across = np.stack([first, np.cross(place, first)], axis=1)
+    # The product keeps the digits that x^2 - y^2 loses where both are nearly equal.
     points = radius**2 * np.stack([x * y, x * z, y * z, (x - y) * (x + y) / 2], axis=1)
     return manifold(points, np.einsum("ijb,bkj->bki", derivative, across), cells)
 
@@ -462,8 +470,10 @@ def _slope(value: Function, z: Complex, side: float) -> Complex:
     with np.errstate(all="ignore"):
         part = np.fft.fft(around, axis=-1) / 8
         size = np.abs(part)
+        # Terms 5 and 6 are hardly there where f is analytic, and show what noise the others have.
         high = size[..., 5] + size[..., 6]
         floor = ROUNDING * (np.median(high) + eps * (np.abs(w) + np.abs(z) * size[..., 1] / h))
+        # Little more of the conjugate than of those, and those small beside the first ones.
         good = (size[..., 7] <= 8 * high + floor) & (high <= size[..., 1:5].sum(-1) / 99 + floor)
     if not np.all(good):
         got = f"one that depends on the conjugate of z or jumps, at {_first(z, ~good)}"
@@ -482,11 +492,14 @@ def _check_sheets(value: Function, shape: Manifold) -> None:
     ends = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
     z, w = shape.points.view(np.complex128).T
     with np.errstate(all="ignore"):
+        # The first row is (1, 0, Re f', Im f') but for its length, which its first component tells.
         slope = shape.frame[:, 0, 2:].copy().view(np.complex128)[:, 0] / shape.frame[:, 0, 0]
         a, b = z[ends].T
         at_a, at_b = w[ends].T
+        # By the trapezoidal rule the step is the mean of both slopes times the way.
         step, rises = np.abs(at_b - at_a), (b - a) * slope[ends].T
         rise = np.abs(rises).sum(axis=0) / 2
+        # Negated, since NaN, of which no comparison holds, is odd as well.
         odd = ~(np.abs(at_b - at_a - rises.sum(axis=0) / 2) <= 0.1 * (step + rise))
         a, b, at_a, at_b, whole = (x[odd] for x in (a, b, at_a, at_b, step + rise))
         if not len(a):
@@ -494,6 +507,7 @@ def _check_sheets(value: Function, shape: Manifold) -> None:
         for _ in range(HALVINGS):
             middle = (a + b) / 2
             at = value(middle)
+            # The half with the larger step holds the jump, if there is one.
             first = np.abs(at - at_a) >= np.abs(at_b - at)
             a, b = np.where(first, a, middle), np.where(first, middle, b)
             at_a, at_b = np.where(first, at_a, at), np.where(first, at, at_b)
@@ -546,6 +560,8 @@ def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
 
 def _round(corners: Indices, size: int) -> Array:
     """Return unit vectors through the lattice points of a cube, spread at equal angles."""
+    # Cells of equal size on the cube would be several times larger on the sphere in the middle of a
+    # face than at its corners.
     place = np.tan(np.pi / 4 * (corners / size))
     unit: Array = place / np.linalg.norm(place, axis=1, keepdims=True)
     return unit

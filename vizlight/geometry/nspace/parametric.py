@@ -192,6 +192,7 @@ def parametric(
         wraps = tuple(_is_closed(sample, ends, axis, eps, same) for axis in range(k))
     shape = lattice.resolution(resolution, k, wraps)
     axes = [
+        # The end of a closed direction is its start, which is sampled already.
         np.linspace(low, high, count, endpoint=not wrap)
         for (low, high), count, wrap in zip(ends, shape, wraps, strict=True)
     ]
@@ -247,14 +248,17 @@ def _slopes(
         return lambda u, _: _central(function, u, n, steps, ends)
     coarse = _central_steps(None, ends, eps)
     fine = (step or COMPLEX_STEP) * (ends[:, 1] - ends[:, 0])
+    # The complex step subtracts nothing, and only has to be a normal number.
     if not np.all(fine >= np.finfo(np.float64).tiny):
         raise ValueError(_lost_step(step, fine, ends))
 
     def checked(u: Sequence[Array], points: Array) -> Array:
         """Return ``Im f(u + i h) / h`` after a comparison with central differences."""
         found = _complex_step(function, u, n, fine)
+        # The difference of the two estimates the error of central differences themselves.
         near, far = (_central(function, u, n, s * coarse, ends) for s in (1, 2))
         place = np.abs(np.stack(u, axis=1))[..., np.newaxis]
+        # The function rounds its values, and the parameters' rounding moves them by the slope.
         rounding = np.abs(points)[:, np.newaxis] + place * np.abs(near)
         allowed = NOT_ANALYTIC * np.abs(near) + np.abs(far - near)
         allowed += ROUNDING * eps * rounding / coarse[:, np.newaxis]
@@ -271,6 +275,7 @@ def _slopes(
 def _central_steps(step: float | None, ends: Array, eps: float) -> Array:
     """Return the step in each direction, if it is large compared to the parameters' rounding."""
     steps: Array = (central_step(eps) if step is None else step) * (ends[:, 1] - ends[:, 0])
+    # A step of few units in the last place of a parameter would be rounding for the most part.
     if not np.all(steps >= 8 * np.spacing(np.abs(ends).max(axis=1))):
         raise ValueError(_lost_step(step, steps, ends))
     return steps
@@ -312,11 +317,13 @@ def _rows(
         returned = function(*u)
     expected = f"one that returns {n} coordinates of the parameters' shape, or numbers"
     try:
+        # Constant coordinates may be given as numbers.
         rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in returned]
     except (TypeError, ValueError) as error:
         raise TypeError(_check.message(name, expected, _check.describe(returned))) from error
     if len(rows) != n:
         raise ValueError(_check.message(name, expected, len(rows)))
+    # A complex result is right only where a parameter is complex: its kind then joins the others.
     if any(row.dtype.kind not in "iubf" + np.result_type(*u).kind for row in rows):
         kinds = ", ".join(sorted({str(row.dtype) for row in rows}))
         raise TypeError(_check.message(name, "one that returns real numbers", kinds))
@@ -341,6 +348,7 @@ def _central(function: Function, u: Sequence[Array], n: int, steps: Array, ends:
     rows = []
     for axis, h in enumerate(steps):
         low, high = ends[axis]
+        # At the ends of the domain all three points move inside it.
         middle = np.clip(u[axis], low + h, high - h)
         ahead, behind = list(u), list(u)
         ahead[axis], behind[axis] = np.minimum(middle + h, high), np.maximum(middle - h, low)
@@ -354,6 +362,7 @@ def _central(function: Function, u: Sequence[Array], n: int, steps: Array, ends:
             at[axis] = middle[at_ends]
             half = width[at_ends] / 2
             bend = (right[at_ends] - 2 * _values(function, at, n) + left[at_ends]) / half
+            # The parabola's second derivative, times the way from its middle to the point.
             slope[at_ends] += bend * (u[axis] - middle)[at_ends, np.newaxis] / half
         rows.append(slope)
     return np.stack(rows, axis=1)
@@ -377,6 +386,7 @@ def _is_closed(
     sample: Samples, ends: Array, axis: int, eps: float, same: float | None = None
 ) -> bool:
     """Return whether the points, and to ``same`` the tangent spaces, at both ends coincide."""
+    # Nine places across the seam tell whether all of it closes, and not one point by chance.
     across = [np.linspace(low, high, 9) for low, high in ends]
 
     def on(axes: Sequence[ArrayLike]) -> tuple[Array, Array]:
@@ -385,6 +395,7 @@ def _is_closed(
     (p, rows_p), (q, rows_q) = (
         on([*across[:axis], [end], *across[axis + 1 :]]) for end in ends[axis]
     )
+    # The extent of the whole shape: at its seam alone it may have none.
     extent = np.ptp(on(across)[0], axis=0).max()
     if not extent or np.abs(p - q).max() > max(CLOSED, 16 * eps) * extent:
         return False

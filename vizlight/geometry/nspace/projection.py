@@ -148,6 +148,7 @@ def _special_orthogonal(n: int, value: object) -> Array:
 def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
     expected = f"two different axes of {n}-space, as 'xy' or (0, 1)"
     if isinstance(plane, str):
+        # A letter that is none gives -1, which is no axis.
         axes = tuple(AXES.find(letter) for letter in plane)
     else:
         try:
@@ -416,6 +417,7 @@ def _rounding(points: Array, distance: float) -> Array:
 
 def _significant(image: Array, tolerance: float) -> tuple[Array, Indices]:
     """Return frames and ranks of images, where singular values up to a tolerance count as 0."""
+    # The decomposition raises an error for numbers that are not finite.
     image = np.where(np.all(np.isfinite(image), axis=(-2, -1), keepdims=True), image, 0)
     # Of a nearly dependent image Gram-Schmidt would make a direction from rounding; singular
     # values tell how many directions there are.

@@ -31,6 +31,7 @@ def _cases(corners: int) -> dict[int, tuple[tuple[int, ...], ...]]:
     cases: dict[int, tuple[tuple[int, ...], ...]] = {}
     # All patterns but the two without a cut: every corner above, or every corner below.
     for pattern in range(1, 2**corners - 1):
+        # Bit i of a pattern is corner i, and an edge is cut where its corners differ.
         cut = [i for i, (a, b) in enumerate(edges) if (pattern >> a & 1) != (pattern >> b & 1)]
         if len(cut) < 4:
             cases[pattern] = (tuple(cut),)
@@ -101,6 +102,8 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     ordered = np.sort(cells, axis=1)
     # Where the cut passes through a corner, cells shrink to fewer points and are left out.
     whole = np.all(ordered[:, 1:] != ordered[:, :-1], axis=1)
+    # A face in the hyperplane is a cell of both its simplices where both are below: it is kept
+    # once.
     _, first = np.unique(ordered[whole], axis=0, return_index=True)
     cells = cells[whole][np.sort(first)]
     used, cells_of = np.unique(cells, return_inverse=True)
@@ -226,6 +229,7 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     # Householder's vector, with the sign that does not cancel.
     mirror[..., 0] += np.where(mirror[..., 0] < 0, -1, 1)
     square = np.sum(mirror**2, axis=-1)
+    # Householder's reflection, 1 - 2 m m^T / |m|^2, on the rows as coefficients of the frame.
     along = np.einsum("...k,...kn->...n", mirror, rows)
     factor = 2 * mirror[..., 1:] / np.where(good, square, 1)[..., np.newaxis]
     result: Array = rows[..., 1:, :] - factor[..., np.newaxis] * along[..., np.newaxis, :]

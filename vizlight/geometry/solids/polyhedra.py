@@ -67,12 +67,16 @@ class HalfSpace(Primitive):
     def block(self) -> Block:
         """Return a large block about the origin, one of whose faces is in the plane."""
         away = float(self.point @ self.normal)
+        # The deeper, the farther its plane is from the origin: the other faces stay clear of the
+        # other solids, which are scaled to about the unit ball.
         size = self.REACH + 2 * abs(away)
         axes = np.stack([self.normal, *axial.frame(self.normal)])
         return Block((away - size / 2) * self.normal, (size, size, size), axes=axes)
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the plane, and the other faces of the block in place of the half-space."""
+        # The first face of a block is outward along its first axis, which is the normal here: the
+        # plane.
         return (Plane(self.point, self.normal), *self.block().surfaces()[1:])
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> HalfSpace:
@@ -124,16 +128,22 @@ class Polyhedron(Primitive):
         if places.ndim != 2:
             raise ValueError(_check.message("points", "shape (P, 3)", places))
         corners = _check.cells("triangles", triangles, len(places), (3,))
+        # Many files, as STL, hold a point for each corner of a face, and none of their edges meet
+        # before equal points are one.
         unique, which = np.unique(places, axis=0, return_inverse=True)
         found = which.ravel()[corners].astype(np.intp)
+        # Triangles that lost their area by the merging go; the edges beside them then meet.
         found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
         after = np.roll(found, -1, axis=1)
+        # An edge in its direction, and in the other one, as one number each.
         edges, back = found * len(unique) + after, after * len(unique) + found
+        # Closed and oriented: each directed edge is there once, and once in the other direction.
         if not np.array_equal(np.unique(edges), np.sort(back, axis=None)):
             remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
             expected = "a closed surface with consistently oriented triangles"
             raise ValueError(_check.message("triangles", expected, "another", remedy))
         self.points, self.triangles = unique, found
+        # All triangles are clockwise seen from outside.
         if self.volume < 0:
             self.triangles = np.ascontiguousarray(found[:, ::-1])
 
@@ -148,6 +158,7 @@ class Polyhedron(Primitive):
     @property
     def volume(self) -> float:
         """The volume."""
+        # Tetrahedra from the middle: from an origin far away, huge volumes would cancel.
         corners = self.points[self.triangles] - self.box()[0]
         return float(np.linalg.det(corners).sum()) / 6
 
@@ -159,9 +170,11 @@ class Polyhedron(Primitive):
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         area = np.linalg.norm(across, axis=1)
         normal = across / np.where(area > 0, area, 1)[:, np.newaxis]
+        # In units of the size, as the normal is, so that one threshold serves both.
         offset = np.einsum("ij,ij->i", corners[:, 0] - middle, normal) / (size or 1.0)
         keys = np.round(np.column_stack([normal, offset]) / SAME_PLANE)
         _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        # Any triangle of a plane gives the point on it.
         planes = tuple(Plane(corners[i, 0], normal[i]) for i in first)
         return planes, which.ravel().astype(np.intp)
 
@@ -176,6 +189,7 @@ class Polyhedron(Primitive):
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
+        # Without the checks: a solid that is moved is as closed and as oriented as it was.
         found = Polyhedron.__new__(Polyhedron)
         found.points, found.triangles = place(self.points, shift, scale, turn), self.triangles
         return found
@@ -194,13 +208,18 @@ class Polyhedron(Primitive):
         through an edge crosses one of its two triangles.
         """
         up = np.array([0.0, 0.0, 1.0])
+        # Without a limit of pairs there is no point at which the search gives up.
         hits = parallel_rays.hits(self.points, self.triangles, points, up, np.inf)
         assert hits is not None
         ray, cell = hits
         a, b, c = self.points[self.triangles[cell]].transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)
         with np.errstate(divide="ignore", invalid="ignore"):
+            # Height above the point at which the upward ray meets the plane of the triangle. One
+            # that is vertical has none, and counts as 0 below.
             above = np.einsum("ij,ij->i", a - points[ray], normal) / normal[:, 2] > 0
+        # A ray leaves through a face that looks up and enters through one that looks down: the sum
+        # is the number of times that the point is enclosed.
         turns = np.bincount(ray[above], np.sign(normal[above, 2]), len(points))
         return np.asarray(turns > 0)
 
@@ -240,10 +259,12 @@ class Prism(Polyhedron):
         count = len(corners)
         low, after = np.arange(count), np.roll(np.arange(count), -1)
         sides = [
+            # Each wall is two triangles.
             np.stack([low, after, after + count], 1),
             np.stack([low, after + count, low + count], 1),
         ]
         points = np.column_stack([np.tile(corners, (2, 1)), np.repeat([0.0, height], count)])
+        # The lower cap is seen from below, and runs the other way.
         super().__init__(points, np.concatenate([cap[:, ::-1], cap + count, *sides]))
 
 
@@ -252,6 +273,7 @@ def _crosses(corners: Array) -> bool:
     after = np.roll(corners, -1, axis=0)
     side = [np.array([np.sign(_left(a, b, p)) for a, b in zip(corners, after, strict=True)])
             for p in (corners, after)]  # fmt: skip
+    # Row i, column j: whether the ends of edge j are on different sides of the line of edge i.
     apart = side[0] * side[1] < 0
     repeated = len(np.unique(corners, axis=0)) < len(corners)
     return repeated or bool(np.any(apart & apart.T))
@@ -265,9 +287,11 @@ def _ears(corners: Array) -> Indices:
         for i, b in enumerate(ring):
             a, c = ring[i - 1], ring[(i + 1) % len(ring)]
             others = corners[[j for j in ring if j not in (a, b, c)]]
+            # At a corner that bends inward, or not at all, there is no ear to cut off.
             if _left(corners[a], corners[b], corners[c][np.newaxis])[0] <= 0:
                 continue
             inside = np.ones(len(others), np.bool_)
+            # An ear that holds another corner, also on its edge, would cut through the polygon.
             for p, q in ((a, b), (b, c), (c, a)):
                 inside &= _left(corners[p], corners[q], others) >= 0
             if not inside.any():

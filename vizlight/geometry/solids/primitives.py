@@ -63,6 +63,7 @@ class Solid:
         xyz : vector of 3 components
             Displacement, in the unit of the solid.
         """
+        # The frame of `moved` goes the other way than the solid.
         return self.moved(-axial.triple("xyz", xyz), 1.0)
 
     def scale(self, factor: float, /, *, point: VectorLike = (0.0, 0.0, 0.0)) -> Solid:
@@ -78,6 +79,7 @@ class Solid:
         factor = _check.positive("factor", factor, high=_check.FARTHEST)
         factor = _check.number("factor", factor, low=1 / _check.FARTHEST)
         middle = _check.coordinates("point", axial.triple("point", point))
+        # The point becomes the origin, about which the solid is scaled, and is then put back.
         return self.moved(middle, 1 / factor).moved(-middle, 1.0)
 
     def rotate_vector(
@@ -96,6 +98,7 @@ class Solid:
         """
         axis = _check.unit("vector", vector)
         angle = math.radians(_check.number("angle", angle))
+        # Rodrigues' formula; 2 sin^2(a/2) is 1 - cos(a) without the cancellation at small angles.
         cross = np.cross(np.eye(3), axis)
         turn = np.eye(3) + math.sin(angle) * cross + 2 * math.sin(angle / 2) ** 2 * cross @ cross
         middle = _check.coordinates("point", axial.triple("point", point))
@@ -164,6 +167,7 @@ class Primitive(Solid):
         """Return which points are inside all surfaces, as for a convex solid."""
         if self.empty:
             return np.zeros(len(points), np.bool_)
+        # Surfaces go on beyond their faces: the planes of its ends bound the cone of a frustum.
         return np.asarray(np.all([s.distance(points) < 0 for s in self.surfaces()], axis=0))
 
 
@@ -333,6 +337,7 @@ class Frustum(Primitive):
         side: Surface = Cone(self.center, self.axis, self.height, self.radii)
         if self.height == 0:
             # The side is a flat ring, or empty.
+            # The ring faces the way of its smaller end, as the side did before it was flat.
             up = 1.0 if self.radii[1] > self.radii[0] else -1.0
             side = Plane(self.center, up * self.axis)
         ends = (
@@ -382,6 +387,7 @@ class Block(Primitive):
         if np.any(self.size < 0):
             raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
         rows = np.asarray(_check.vectors("axes", np.eye(3) if axes is None else axes, n=3), float)
+        # Rows that were computed in float32 pass.
         if rows.shape != (3, 3) or not np.allclose(rows @ rows.T, np.eye(3), atol=1e-6):
             expected, remedy = "3 orthonormal rows", "orthonormalise them"
             raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
@@ -451,6 +457,7 @@ class Torus(Primitive):
         self.axis = _check.unit("axis", axis)
         self.ring_radius = _check.number("ring_radius", ring_radius, low=0.0)
         self.tube_radius = _check.number("tube_radius", tube_radius, low=0.0)
+        # A tube as wide as its ring would meet itself on the axis.
         if self.tube_radius >= self.ring_radius:
             expected = f"a radius below ring_radius={self.ring_radius:g}"
             raise ValueError(_check.message("tube_radius", expected, self.tube_radius))

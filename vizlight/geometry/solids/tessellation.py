@@ -140,6 +140,7 @@ class _Tree:
     def __post_init__(self) -> None:
         given = list(self.solid.primitives())
         self.shift, self.scale = _frame(given)
+        # Empty parts keep their places, so that the numbers of surfaces agree; they get no mesh.
         self.parts = [part if part.empty else part.moved(self.shift, self.scale) for part in given]
         self.surfaces = Surfaces(s for part in self.parts for s in part.surfaces())
         owned = [len(part.surfaces()) for part in self.parts]
@@ -155,6 +156,7 @@ class _Tree:
     def segments(self, tolerance: float) -> list[int]:
         """Return the number of segments of a circle of each primitive, a multiple of 4."""
         return [
+            # The inverse of the sagitta r (1 - cos(pi / n)), for a quarter of the tolerance.
             4 * math.ceil(max(FEWEST, math.pi / math.acos(max(1 - tolerance / (4 * r), 0))) / 4)
             if r > 0 else FEWEST
             for r in (part.roundness for part in self.parts)
@@ -168,6 +170,7 @@ class _Tree:
         """Return the approximate number of points of all primitives."""
         pairs = zip(self.parts, segments, strict=True)
         return sum(
+            # The spiral of points on a ball of n segments has n^2 / (0.85 pi) of them.
             0.38 * n**2 if isinstance(p, Sphere)
             else len(p.points) if isinstance(p, Polyhedron)
             else n**2 if isinstance(p, Torus) else 2 * n
@@ -184,6 +187,7 @@ class _Tree:
         balls = [(k, p) for k, p in enumerate(self.parts) if isinstance(p, Sphere) and not p.empty]
         for i, part in enumerate(self.parts):
             radius = part.roundness
+            # The facets of planes are exact: none of them cuts into a ball inside.
             if part.empty or radius == 0:
                 continue
             side = part.surfaces()[0]
@@ -191,7 +195,10 @@ class _Tree:
                 gap = -float(side.distance(ball.center[np.newaxis])[0]) - ball.radius
                 alike = isinstance(part, Sphere) and segments[i] == segments[k]
                 sagitta = radius * (1 - math.cos(math.pi / segments[i]))
+                # A facet cuts as deep into the solid as its sagitta. Balls that touch their surface
+                # can be kept clear by no number of facets.
                 if 10 / EQUAL < gap < sagitta and not alike:
+                    # The number with half the gap as its sagitta.
                     fine = math.pi / math.acos(1 - gap / 2 / radius)
                     found[i] = max(found[i], 4 * math.ceil(fine / 4))
         return found
@@ -241,6 +248,7 @@ class _Tree:
     def _check_bounded(self, patch: Indices) -> None:
         """Raise an error if the solid reaches the end of the block in place of a half-space."""
         for part, first in zip(self.parts, self.first, strict=True):
+            # Faces 1 to 5 are the block's own; face 0 is the plane.
             ends = self.equal[first + 1 : first + 6]
             if isinstance(part, HalfSpace) and np.any(np.isin(patch, ends)):
                 expected = "a bounded combination of a half-space with others"
@@ -250,6 +258,7 @@ class _Tree:
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
     """Return the centre of all primitives and the length that becomes the unit."""
+    # A half-space is infinite, and an empty part may be anywhere: neither tells the size.
     boxes = [part.box() for part in parts if not (part.empty or isinstance(part, HalfSpace))]
     if not boxes:
         return np.asarray(parts[0].box()[0]), 1.0
@@ -266,6 +275,7 @@ def _signs(solid: Solid, sign: float) -> list[float]:
     """Return for each primitive 1, or -1 if the solid lies outside of its surfaces."""
     if not isinstance(solid, Boolean):
         return [sign]
+    # What is subtracted turns its surfaces inside out, and a difference within it back.
     second = -sign if solid.operation == "difference" else sign
     return _signs(solid.first, sign) + _signs(solid.second, second)
 
@@ -296,6 +306,7 @@ def _combine(solid: Solid, leaves: Iterator[manifold3d.Manifold]) -> manifold3d.
         return next(leaves)
     first, second = _combine(solid.first, leaves), _combine(solid.second, leaves)
     if solid.operation == "union":
+        # manifold3d writes + for the union, ^ for the intersection and - for the difference.
         return first + second
     return first ^ second if solid.operation == "intersection" else first - second
 
@@ -333,8 +344,10 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)
     moved = points - mesh.points
+    # Surfaces that are nearly parallel meet far from here: such a point stays on one of them.
     far = np.einsum("ij,ij->i", moved, moved) > (REACH * tolerance) ** 2
     points[far] = onto(mesh.surfaces, mesh.points[far], which[far][:, :1], ROUNDS)
+    # The normal of a cone jumps at its apex, so points within rounding of it are put there.
     for _, apex in mesh.surfaces.apexes:
         points[np.abs(points - apex).max(axis=1) < SAME] = apex
     found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
@@ -349,6 +362,7 @@ def _kept(mesh: Mesh, points: Array) -> Mesh:
         moved = corners[np.any(points[corners] != mesh.points[corners], axis=1)]
         if not len(moved):
             return found
+        # What is put back may flip triangles that were right: once more, until none is left.
         points[moved] = mesh.points[moved]
 
 
@@ -356,6 +370,7 @@ def flipped(mesh: Mesh) -> Bools:
     """Return the triangles whose normal points into the solid."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # At the middle of a triangle, where the surface is most nearly parallel to it.
     normal = triangle_mesh.normals_of(mesh, corners.mean(axis=1), mesh.patch)
     return np.asarray(np.einsum("ij,ij->i", across, normal) < -FLAT)
 
@@ -364,10 +379,12 @@ def _meeting(mesh: Mesh) -> Indices:
     """Return up to three independent surfaces of each point; fewer are repeated."""
     count = len(mesh.points)
     sides = len(mesh.surfaces)
+    # Each pair of a point and a surface that has a triangle there, once, sorted by points.
     codes = np.unique(mesh.triangles * sides + mesh.patch[:, np.newaxis])
     pairs = np.stack(np.divmod(codes, sides), axis=1)
     start = np.searchsorted(pairs[:, 0], np.arange(count + 1))
     several = np.diff(start)
+    # A surface that is repeated counts once in Newton's method.
     which = np.repeat(pairs[start[:-1], 1][:, np.newaxis], 3, axis=1)
     found = np.zeros(count, np.intp)
     basis = np.zeros((count, 3, 3))
@@ -375,6 +392,7 @@ def _meeting(mesh: Mesh) -> Indices:
         rows = np.flatnonzero((several > k) & (found < 3))
         patch = pairs[start[rows] + k, 1]
         normal = triangle_mesh.normals_of(mesh, mesh.points[rows], patch)
+        # Gram and Schmidt: what is left of a normal without its parts along those taken before.
         along = np.einsum("nij,nj->ni", basis[rows], normal)
         rest = normal - np.einsum("ni,nij->nj", along, basis[rows])
         size = np.sqrt(np.einsum("ij,ij->i", rest, rest))
@@ -399,9 +417,11 @@ def _merge(mesh: Mesh) -> Mesh:
     # Of each group of points the first stays.
     number = np.unique(group, return_index=True)[1][group]
     triangles = number[mesh.triangles]
+    # Triangles between merged points have become edges.
     kept = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
     triangles = triangles[kept]
     edges = triangles * count + np.roll(triangles, -1, axis=1)
+    # Merging would have made two sheets meet in one edge: it is left undone.
     if len(np.unique(edges)) < edges.size:
         return mesh
     used, triangles = np.unique(triangles, return_inverse=True)

@@ -65,6 +65,8 @@ class Mesh:
     def volume(self) -> float:
         """The volume inside the triangles, in normalised lengths."""
         corners = self.points[self.triangles]
+        # The determinant of three corners is six times the volume of their tetrahedron with the
+        # origin.
         return float(np.linalg.det(corners).sum()) / 6
 
     @property
@@ -79,6 +81,8 @@ class Mesh:
         height = np.zeros(len(across))
         for j in range(3):
             middle = (corners[:, j] + corners[:, (j + 1) % 3]) / 2
+            # The distance of a point inside is negative, and so the surface above it is at a
+            # positive height.
             height -= self.signs[self.patch] * self.surfaces.distance(middle, self.patch) / 3
         area = np.sqrt(np.einsum("ij,ij->i", across, across)) / 2
         return abs(float(area @ height))
@@ -96,6 +100,7 @@ def mesh(solid: Primitive, segments: int) -> Mesh:
     if isinstance(solid, HalfSpace):
         solid = solid.block()
     shift, scale = solid.box()
+    # A shape without any extent would be divided by 0.
     scale = scale or 1.0
     unit = solid.moved(shift, scale)
     if isinstance(unit, Sphere) and not unit.empty:
@@ -121,13 +126,18 @@ def missed(unit: Primitive, segments: int, volume: float) -> float:
     The facets of a torus are inside and outside of it, within a shell about its surface.
     """
     if isinstance(unit, Torus):
+        # Twice the area 4 pi^2 R r, times the distance, is the volume of the shell within it on
+        # both sides.
         area = 4 * math.pi**2 * unit.ring_radius
         return 2 * area * unit.tube_radius * ring_error(unit, segments)
+    # What planes bound is exact; the number left covers the rounding of sums.
     return 1e-14 if isinstance(unit, Polyhedron | HalfSpace) else abs(unit.volume - volume) + 1e-14
 
 
 def _across_segments(unit: Torus, segments: int) -> int:
     """Return the number of segments of a torus's cross-section."""
+    # The sagitta is r / n^2 but for a factor: it becomes the same around the tube as around the
+    # ring.
     return max(12, math.ceil(segments * math.sqrt(unit.tube_radius / unit.roundness)))
 
 
@@ -151,6 +161,7 @@ def _torus(unit: Torus, segments: int) -> tuple[Array, Indices, Indices]:
     up = np.broadcast_to(unit.tube_radius * np.sin(v), (segments, rows))
     points = sum((x[..., np.newaxis] * way for x, way in parts), up[..., np.newaxis] * unit.axis)
     number = np.arange(segments * rows).reshape(segments, rows)
+    # Both ways around are closed: the last row meets the first.
     right, above = np.roll(number, -1, axis=0), np.roll(number, -1, axis=1)
     both = np.roll(right, -1, axis=1)
     cells = [
@@ -164,14 +175,18 @@ def _ball(unit: Sphere, segments: int) -> tuple[Array, Indices, Indices]:
     from scipy.spatial import ConvexHull
 
     # The points are spread evenly along a spiral of the golden angle.
+    # The area 4 pi by the area per point: 0.85 of the square of a segment's angle.
     count = max(int(4 * np.pi / (0.85 * (2 * np.pi / segments) ** 2)), 12)
     i = np.arange(count) + 0.5
+    # Equal steps of the height are equal areas of a sphere; half steps leave the poles free.
     z = 1 - 2 * i / count
     angle = i * np.pi * (3 - math.sqrt(5))
     r = np.sqrt(1 - z * z)
     points = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+    # The hull of points on a sphere is their Delaunay triangulation.
     faces = ConvexHull(points).simplices.astype(np.intp)
     a, b, c = (points[faces[:, i]] for i in range(3))
+    # Qhull gives the corners of its triangles in any order.
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
     faces[inward] = faces[inward][:, ::-1]
     return unit.center + unit.radius * points, faces, np.zeros(len(faces), np.intp)
@@ -185,6 +200,7 @@ def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
         middle = unit.center + sign * half
         there = middle + radius * ring if radius > 0 else middle[np.newaxis]
         parts += [there, middle[np.newaxis]]
+        # With one point for the whole end, all its segments have the same corner.
         indices.append((start + np.arange(segments) % len(there), start + len(there)))
         start += len(there) + 1
     (top, top_middle), (bottom, bottom_middle) = indices
@@ -194,6 +210,7 @@ def _frustum(unit: Frustum, segments: int) -> tuple[Array, Indices, Indices]:
     after, below = np.roll(top, -1), np.roll(bottom, -1)
     first, second = (radius > 0 for radius in unit.radii)
     side = unit.height > 0 or unit.radii[0] != unit.radii[1]
+    # At an apex one of the two triangles of each segment has no area. The number is of the surface.
     faces = [
         (side and second, 0, (top, bottom, below)),
         (side and first, 0, (top, below, after)),
@@ -210,6 +227,7 @@ def _block(unit: Block) -> tuple[Array, Indices, Indices]:
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     points = unit.center + (signs * unit.size / 2) @ unit.axes
     faces = np.array(_FACES, np.intp)
+    # Left-handed axes are a mirror image, which turns all faces inward.
     if np.linalg.det(unit.axes) < 0:
         faces = faces[:, ::-1]
     cells = faces[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
@@ -232,6 +250,7 @@ def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
     turn = (first[:, np.newaxis] + np.arange(3)) % 3
     a, b, c = triangles[rows[:, np.newaxis], turn].T
     p, q, r = middles[rows[:, np.newaxis], turn].T
+    # By the number of halved edges: whole, in two, in three and in four.
     parts = [
         (0, (a, b, c)),
         (1, (a, p, c)), (1, (p, b, c)),
