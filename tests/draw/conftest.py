@@ -6,6 +6,8 @@ import pytest
 
 @pytest.fixture(scope="module")
 def chromium():
+    if lacking := browsers.missing("playwright"):
+        pytest.skip(f"needs {', '.join(lacking)}")
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as play:

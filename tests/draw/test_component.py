@@ -421,24 +421,19 @@ def test_camera_at_the_centre_and_tiny_windows():
 def test_bad_arguments(plotter):
     mesh = ball()
     add = plotter.vizlight.add_mesh
-    for options, text in (
-        ({"light": "pixels"}, "light: expected 'auto', 'points' or 'fragments'"),
-        ({"scalars": "hight"}, "scalars: expected a point array"),
-        ({"ambient": 0.2}, "ambient: expected the material of the scene, or no scene"),
-        ({"tangents": "height"}, "tangents: expected vectors"),
+    flat = Scene(lights=Light(direction=(1, 0, 0, 0)))
+    for given, options, text in (
+        (mesh, {"light": "pixels"}, "light: expected 'auto', 'points' or 'fragments'"),
+        (mesh, {"scalars": "hight"}, "scalars: expected a point array"),
+        (mesh, {"ambient": 0.2}, "ambient: expected the material of the scene, or no scene"),
+        (mesh, {"tangents": "height"}, "tangents: expected vectors"),
+        (mesh, {"linewidth": 3}, "linewidth"),
+        (mesh, {"scene": "day"}, "scene: expected a vizlight.Scene"),
+        (mesh, {"scene": flat}, "scene: expected vectors of 3 components"),
+        ("ball.vtp", {}, "mesh: expected a PyVista mesh"),
     ):
         with pytest.raises((TypeError, ValueError), match=text):
-            add(mesh, scene=SCENE, **options)
-    with pytest.raises(TypeError, match="linewidth"):
-        add(mesh, scene=SCENE, linewidth=3)
-    with pytest.raises(TypeError, match=r"tangent: .* did you mean tangents=\?"):
-        plotter.vizlight.add_mesh(ball(), tangent="around")
-    with pytest.raises(TypeError, match="scene: expected a vizlight.Scene"):
-        add(mesh, scene="day")
-    with pytest.raises(ValueError, match="scene: expected vectors of 3 components"):
-        add(mesh, scene=Scene(lights=Light(direction=(1, 0, 0, 0)), material=SHINY))
-    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
-        add("ball.vtp")
+            add(given, **{"scene": SCENE} | options)
     assert not plotter.actors
     changed = vizlight.illuminate(mesh, SCENE.replace(view=View(direction=(1, 1, 1))))
     changed["Normals"][:] = np.array(changed["Normals"])[:, ::-1]
@@ -466,7 +461,6 @@ def two_frames(plotter):
 @pytest.mark.parametrize("light", ["points", "fragments"])
 def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, light):
     mesh = ball()
-    mesh["height"] = np.array(mesh.points[:, 2])
     plotter.vizlight.add_mesh(
         mesh, scene=SCENE, light=light, scalars="height", show_scalar_bar=False
     )
@@ -487,6 +481,14 @@ def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, ligh
     np.testing.assert_array_equal(picture(plotter), before)
 
 
+FEW = vizlight.Bundle(grid=16)
+
+
+def tangle():
+    points = np.random.default_rng(1).normal(size=(60, 3))
+    return pv.MultipleLines(points).compute_arc_length()
+
+
 def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, monkeypatch):
     asked = []
     dimmed = bundle.Medium.dimmed
@@ -496,10 +498,8 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
         return dimmed(self, *args, **options)
 
     monkeypatch.setattr(bundle.Medium, "dimmed", counted)
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16)
-    plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    lines = tangle()
+    plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=FEW)
     picture(plotter)
     first = np.array(plotter.camera.position)
     plotter.camera.azimuth = 60
@@ -533,15 +533,13 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
     for lamp in given[: {"one": 1, "two": 2}.get(lights, 0)]:
         plotter.add_light(lamp)
     given[1].positional, given[1].position, given[1].cone_angle = True, (5, 3, 4), 90
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16)
-    actor = plotter.vizlight.add_mesh(lines, model=model, bundle=few, **DRAWN[drawn])
+    lines = tangle()
+    actor = plotter.vizlight.add_mesh(lines, model=model, bundle=FEW, **DRAWN[drawn])
 
     def check():
         picture(plotter)
         scene = scene_of(plotter.renderer, actor, model)
-        lit = vizlight.illuminate(lines, scene, model=model, bundle=few)
+        lit = vizlight.illuminate(lines, scene, model=model, bundle=FEW)
         light = lit["rgb"] if "rgb" in lit.point_data else lit["luminance"][:, np.newaxis]
         shown = np.asarray(actor.mapper.dataset.point_data[COLORS])
         np.testing.assert_allclose(shown, displayable(light * np.ones(3)), atol=1e-6)
@@ -559,17 +557,13 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
 
 
 def test_a_bundle_dims_the_lights_of_another_scene(plotter):
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points)
-    few = vizlight.Bundle(grid=16)
-    actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    lines = tangle()
+    actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=FEW)
     two = SCENE.replace(lights=[Light(direction=(1, 0, 1)), Light(direction=(0, 1, 1))])
     plotter.vizlight.set_scene(actor, two)
     picture(plotter)
-    scene = two.replace(view=vizlight.View.from_camera(plotter.camera))
-    lit = vizlight.illuminate(lines, scene, bundle=few)["luminance"]
-    name = COLORS if two.colored else LUMINANCE
-    shown = np.asarray(actor.mapper.dataset.point_data[name])
+    lit = vizlight.illuminate(lines, seen_by(plotter, two), bundle=FEW)["luminance"]
+    shown = np.asarray(actor.mapper.dataset.point_data[LUMINANCE])
     np.testing.assert_allclose(shown, lit, atol=1e-6)
 
 

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from lamps import far
+from lamps import NEAR, far
 from vectors import unit
 
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -18,7 +18,6 @@ from vizlight.shading.engine import plan
 
 EYE = View(position=(0.3, -0.2, 6.0), direction=(0.1, 0.2, 1.0))
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.6)
-NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 CUE = DepthCue(front=3, back=9, back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 SCENES = {
     "far": Scene(lights=FAR, material=Material(specular=0.4), view=EYE),
