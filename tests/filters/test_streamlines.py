@@ -23,6 +23,10 @@ def ball(resolution=60, radius=0.5):
     return sphere
 
 
+def channel(start=-1):
+    return pv.ImageData(dimensions=(21, 5, 5), origin=(start, 0, 0), spacing=(0.1, 0.1, 0.1))
+
+
 def vortex():
     grid = pv.ImageData(dimensions=(21, 21, 5), origin=(-1, -1, 0), spacing=(0.1, 0.1, 0.1))
     x, y, _ = grid.points.T
@@ -74,13 +78,12 @@ def test_a_surface_conditions_the_lines():
     shadowed = streamlines(sphere, dark, vectors="V", seeds=20)
     np.testing.assert_allclose(free.points, shadowed.points)
     outward = np.asarray(shadowed.points) / 0.5
-    toward = np.array([1, -1, 0.8]) / np.linalg.norm([1, -1, 0.8])
-    facing = np.maximum(outward @ toward, 0)
-    np.testing.assert_allclose(
-        shadowed["luminance"] - 0.1, facing * (free["luminance"] - 0.1), atol=0.02
-    )
-    np.testing.assert_allclose(shadowed["luminance"][outward @ toward < -0.05], 0.1, rtol=1e-6)
-    assert free["luminance"][outward @ toward < -0.05].max() > 0.2
+    cosine = outward @ unit([1, -1, 0.8])
+    expected = 0.1 + np.maximum(cosine, 0) * (free["luminance"] - 0.1)
+    np.testing.assert_allclose(shadowed["luminance"], expected, atol=0.02)
+    dark = cosine < -0.05
+    np.testing.assert_allclose(shadowed["luminance"][dark], 0.1, rtol=1e-6)
+    assert free["luminance"][dark].max() > 0.2
 
 
 def test_lines_of_a_volume_on_an_isosurface():
@@ -90,11 +93,6 @@ def test_lines_of_a_volume_on_an_isosurface():
         flow, SCENE, vectors="V", surface=iso, confined=True, seeds=40, max_length=10.0
     )
     assert lines.field_data["drift"][0] < 1e-5
-    del iso.point_data["V"]
-    sampled = streamlines(
-        flow, SCENE, vectors="V", surface=iso, confined=True, seeds=40, max_length=10.0
-    )
-    assert sampled.n_points > 0
 
 
 def test_free_lines_near_a_surface_get_its_nearest_normals():
@@ -213,7 +211,7 @@ def test_one_large_vector_does_not_stop_the_lines():
 
 def test_a_line_ends_where_it_turns_back():
     """Where the flow meets itself a line would jump from one side to the other for ever."""
-    grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
+    grid = channel()
     x = grid.points[:, 0]
     grid["V"] = np.stack([-np.sign(x), 0 * x, 0 * x], axis=1)
     lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.52, 0.2, 0.2], [-0.71, 0.2, 0.2]])
@@ -298,7 +296,7 @@ def test_what_points_out_of_a_surface_does_not_count():
 
 
 def test_lines_run_from_their_seeds_both_ways():
-    grid = pv.ImageData(dimensions=(21, 5, 5), origin=(-1, 0, 0), spacing=(0.1, 0.1, 0.1))
+    grid = channel()
     grid["V"] = np.tile([2.0, 0, 0], (grid.n_points, 1))
     lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.3, 0.2, 0.2]], max_length=0.5)
     x = np.asarray(lines.points)[:, 0]
@@ -384,7 +382,7 @@ def test_four_components_on_a_surface_are_refused():
     surface = ball(12)
     surface["V"] = np.ones((surface.n_points, 4), np.float32)
     with pytest.raises(ValueError, match="vectors: expected 3 components, got 'V' with 4"):
-        vizlight.streamlines(vortex(), vectors="V", surface=surface, confined=True, seeds=3)
+        streamlines(vortex(), vectors="V", surface=surface, confined=True, seeds=3)
 
 
 @pytest.mark.parametrize("on_surface", [False, True])
@@ -416,7 +414,7 @@ def test_tensors_give_their_first_eigenvector(on_surface):
 
 
 def test_lines_end_where_a_tensor_is_isotropic():
-    grid = pv.ImageData(dimensions=(21, 5, 5), spacing=(0.1, 0.1, 0.1))
+    grid = channel(0)
     tensors = np.tile(np.eye(3).ravel(), (grid.n_points, 1))
     tensors[grid.points[:, 0] < 1.05, 0] = 4.0
     grid["D"] = tensors
@@ -567,25 +565,23 @@ def test_a_cross_field_in_a_volume():
     np.testing.assert_allclose(ends, [[0.15, 0, 0], [1, 1, 0]], atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("options", "error", "words"),
-    [
-        ({"vectors": ("u", "v")}, ValueError, "line_field: expected True .* pass line_field=True"),
-        ({"vectors": ("u", "v", "u")}, ValueError, "vectors: expected one name .*, got 3 names"),
-        ({"vectors": ("u", "w")}, ValueError, "vectors: expected the name .*'u', 'v'.*got 'w'"),
-        ({"vectors": ("u", "u")}, ValueError, "vectors: expected two different arrays, got 'u'"),
-        ({"vectors": ("u", 3)}, TypeError, "vectors: expected the names of two point arrays"),
-        ({"vectors": ("u", "D")}, ValueError, "vectors: expected .*3 components"),
-        (
-            {"vectors": ("u", "v"), "surface": pv.Sphere(), "confined": True},
-            ValueError,
-            "vectors: expected two point arrays of the surface, got 'u'; attach both",
-        ),
-    ],
-)
-def test_bad_cross_fields(options, error, words):
+def bad_cross_fields(vectors, options):
     mesh = wheel(9)
     mesh["D"] = np.ones((mesh.n_points, 6))
-    signless = {} if "pass" in words else {"line_field": True}
-    with pytest.raises(error, match=words):
-        streamlines(mesh, SCENE, **signless, **options)
+    streamlines(mesh, SCENE, vectors=vectors, **{"line_field": True} | options)
+
+
+test_bad_cross_fields = refusals(
+    bad_cross_fields,
+    (("u", "v"), {"line_field": False}, "line_field: expected True .* pass line_field=True"),
+    (("u", "v", "u"), {}, "vectors: expected one name .*, got 3 names"),
+    (("u", "w"), {}, "vectors: expected the name .*'u', 'v'.*got 'w'"),
+    (("u", "u"), {}, "vectors: expected two different arrays, got 'u'"),
+    (("u", 3), {}, "vectors: expected the names of two point arrays", TypeError),
+    (("u", "D"), {}, "vectors: expected .*3 components"),
+    (
+        ("u", "v"),
+        {"surface": pv.Sphere(), "confined": True},
+        "vectors: expected two point arrays of the surface, got 'u'; attach both",
+    ),
+)
