@@ -40,13 +40,8 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
 
 @pytest.mark.opengl
 def test_light_writes_mesh_and_picture(volume, tmp_path, done):
-    out = done(
-        "light",
-        volume,
-        "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3",
-        "--size 120x90",
-    )
-    assert "points lit in" in out
+    words = "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3"
+    assert "points lit in" in done("light", volume, words, "--size 120x90")
     assert {p.name for p in tmp_path.iterdir()} == {"flow.vti", "flow-lit.vtp", "flow-lit.png"}
     lit = pv.read("flow-lit.vtp")
     told = vizlight.provenance(lit)

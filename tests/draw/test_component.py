@@ -9,6 +9,7 @@ import pytest
 import pyvista as pv
 from fields import half_known
 from lamps import SHINY
+from shapes import ball
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -26,22 +27,13 @@ SCENE = Scene(lights=LAMP, material=SHINY)
 
 @pytest.fixture
 def plotter():
-    made = plotter_of()
-    yield made
-    made.close()
+    return plotter_of()
 
 
 def plotter_of(**options):
     made = pv.Plotter(off_screen=True, window_size=(160, 120), **options)
     made.background_color = "black"
     return made
-
-
-def ball(size=24):
-    mesh = pv.Sphere(theta_resolution=size, phi_resolution=size)
-    mesh["height"] = np.array(mesh.points[:, 2])
-    mesh["around"] = np.cross(mesh.points, (0.3, 0.2, 1.0)).astype(np.float32)
-    return mesh
 
 
 def picture(plotter):
@@ -58,10 +50,7 @@ def baked(lit, camera, scalars="luminance", **options):
         options |= {"rgb": True}
     other.add_mesh(lit, scalars=scalars, lighting=False, show_scalar_bar=False, **options)
     other.camera = camera.copy()
-    try:
-        return picture(other)
-    finally:
-        other.close()
+    return picture(other)
 
 
 def seen_by(plotter, scene=SCENE):
@@ -313,7 +302,6 @@ def test_views_side_by_side_and_linked():
     inner = slice(4, 76)
     # Viewports at different places may round the same triangle differently.
     assert np.abs(linked[4:-4, inner] - linked[4:-4, 80:][:, inner]).max() <= 1
-    plotter.close()
 
 
 def observers(plotter):
@@ -346,7 +334,6 @@ def test_nothing_stays_behind(how, light):
     plotter.mesh = plotter.mapper = None
     gc.collect()
     assert [ref() for ref in left] == [None] * 3
-    plotter.close()
 
 
 def test_plotter_itself_is_released():
@@ -415,7 +402,6 @@ def test_camera_at_the_centre_and_tiny_windows():
     plotter.view_xy()
     plotter.window_size = [1, 1]
     assert picture(plotter).shape == (1, 1, 3)
-    plotter.close()
 
 
 def test_bad_arguments(plotter):
@@ -553,7 +539,6 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
     check()
     plotter.add_light(pv.Light(position=(0, -3, 4), light_type="scene light"))
     check()
-    plotter.close()
 
 
 def test_a_bundle_dims_the_lights_of_another_scene(plotter):
@@ -590,7 +575,6 @@ def test_what_is_not_data_is_grey_and_the_bar_names_it(light, scalars):
         missing, known = picture[20:80, 20:90].astype(int), picture[120:140, 20:90].astype(int)
         assert np.ptp(missing, axis=2).max() == 0
         assert np.ptp(known, axis=2).min() > 10
-    plotter.close()
 
 
 def test_colours_of_a_solid_have_the_range_of_all_its_values():
@@ -603,7 +587,6 @@ def test_colours_of_a_solid_have_the_range_of_all_its_values():
         plotter = pv.Plotter(off_screen=True)
         actor = plotter.vizlight.add_mesh(mesh, scalars="distance", **options)
         ranges.append(actor.mapper.scalar_range)
-        plotter.close()
     expected = [[f(m["distance"]) for f in (np.min, np.max)] for m in (ball, box)] + [(1, 2)]
     np.testing.assert_allclose(ranges, expected, rtol=1e-6)
 

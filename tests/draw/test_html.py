@@ -74,36 +74,17 @@ def fox():
     made.close()
 
 
-#: Leaves the picture alone in the window.
-BARE = "body { grid-template: minmax(0, 1fr) 0 / minmax(0, 1fr) 0 !important }"
-BARE += " #panel, h1, #legend, #triad, #frames, #notice { display: none !important }"
-
-
 @pytest.fixture
-def opened(request):
-    """Return what opens a page, by default without its panel, and closes it in the end.
+def shown(opened, tmp_path):
+    """Return what writes a page, black behind, and opens it: alone or beside its panel."""
 
-    It returns the page, and what that has asked for and complained of.
-    """
-    browser, pages = request.getfixturevalue(getattr(request, "param", "browser")), []
+    def call(mesh, scene, *, wide=False, **options):
+        options = {"background": "black"} | options
+        path = vizlight.live_html(mesh, scene, tmp_path / "a.html", **options)
+        page, _ = opened(path, bare=False, **WIDE) if wide else opened(path)
+        return page
 
-    def call(path, *, bare=True, **options):
-        page, seen = browsers.opened(browser, path, **({"viewport": SIZE} | options))
-        pages.append(page)
-        if bare:
-            page.evaluate(
-                """(text) => {
-                const sheet = new CSSStyleSheet();
-                sheet.replaceSync(text);
-                document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
-                }""",
-                BARE,
-            )
-        return page, seen
-
-    yield call
-    for page in pages:
-        page.close()
+    return call
 
 
 def shot(page):
@@ -202,27 +183,23 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, opened,
     assert np.abs(pictures[1] - pictures[0]).mean() > 1
 
 
-def test_colours_of_data_in_bright_light_are_those_of_tint(opened, tmp_path):
+def test_colours_of_data_in_bright_light_are_those_of_tint(shown):
     mesh = swatches()
     camera = vizlight.render.camera_on(mesh, (0, 0, 1))
     camera.parallel_projection = True
     bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
     scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
-    path = vizlight.live_html(
-        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
-        scalars="value", cmap="turbo",
-    )  # fmt: skip
-    page, _ = opened(path)
-    shown = np.unique(shot(page).reshape(-1, 3), axis=0)
+    page = shown(mesh, scene, camera=camera, panel=False, scalars="value", cmap="turbo")
+    colors = np.unique(shot(page).reshape(-1, 3), axis=0)
     seen = scene.replace(view=View.from_camera(camera))
     lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
     expected = lit["rgb"][::4].astype(int)
-    apart = np.abs(shown[:, None] - expected).max(axis=-1)
+    apart = np.abs(colors[:, None] - expected).max(axis=-1)
     assert len(np.unique(expected, axis=0)) > 40
     assert apart.min(axis=0).max() <= 1
 
 
-def test_the_page_reads_the_numbers_that_were_packed(opened, tmp_path):
+def test_the_page_reads_the_numbers_that_were_packed(shown):
     """Places to the rounding of float32, cells to the bit, and no place for what is not finite."""
     mesh = pv.Sphere(theta_resolution=20, phi_resolution=20)
     mesh["n"] = 2 * np.asarray(mesh.points)
@@ -230,10 +207,7 @@ def test_the_page_reads_the_numbers_that_were_packed(opened, tmp_path):
     mesh.points[7] = (np.nan, 1, 2)
     mesh.points[9] = (0, np.inf, 2)
     camera = first_camera((3.0, -2.0, 1.0))
-    path = vizlight.live_html(
-        mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", normals="n", camera=camera
-    )
-    page, _ = opened(path)
+    page = shown(mesh, Scene(lights=FAR), normals="n", camera=camera)
     read = """async () => {
         const { gl, places, batches: [{ order, buffers, count }], given } = vizlight.meshes[0];
         const normals = new Int16Array(places.length);
@@ -377,32 +351,22 @@ def test_lamps_are_dragged_over_the_ball_and_past_its_rim(opened, tmp_path):
 
 
 @pytest.mark.parametrize("question", ["direction", "slope", "heading", "shape"])
-def test_light_by_question_is_that_of_the_preset(question, opened, tmp_path):
+def test_light_by_question_is_that_of_the_preset(question, shown):
     mesh, camera = torus(), first_camera()
     how = {"tangents": "around"} | ({"conditioned": True} if question == "shape" else {})
-    preset = getattr(presets, question)()
-    own = vizlight.live_html(
-        mesh, preset, tmp_path / "own.html", camera=camera, background="black", **how
-    )
-    other = vizlight.live_html(
-        mesh, Scene(lights=FAR), tmp_path / "other.html", camera=camera, background="black",
-        tangents="around", conditioned=True,
-    )  # fmt: skip
-    expected, _ = opened(own)
-    page, _ = opened(other)
+    expected = shown(mesh, getattr(presets, question)(), camera=camera, **how)
+    how["conditioned"] = True
+    page = shown(mesh, Scene(lights=FAR), camera=camera, **how)
     page.evaluate("(name) => vizlight.look(name)", question)
     np.testing.assert_allclose(shot(page), shot(expected), atol=1)
     assert page.evaluate("vizlight.page.looks")[question]["key"] == list(key.TEXTS[question])
 
 
-def test_arrays_colour_the_mesh_as_in_the_plotter(opened, tmp_path):
-    mesh, camera, scene = torus(), first_camera(), presets.value()
-    options = {"camera": camera, "background": "black", "normals": "n"}
-    colored = vizlight.live_html(
-        mesh, scene, tmp_path / "a.html", scalars="height", cmap="viridis", **options
-    )
-    page, _ = opened(vizlight.live_html(mesh, scene, tmp_path / "b.html", **options))
-    expected, _ = opened(colored)
+def test_arrays_colour_the_mesh_as_in_the_plotter(shown):
+    mesh, scene = torus(), presets.value()
+    options = {"camera": first_camera(), "normals": "n"}
+    expected = shown(mesh, scene, scalars="height", cmap="viridis", **options)
+    page = shown(mesh, scene, **options)
     page.evaluate("() => vizlight.change({ color: 'height', cmap: 'viridis' })")
     error = np.abs(shot(page) - shot(expected))
     assert error.mean() < 0.5
@@ -411,13 +375,10 @@ def test_arrays_colour_the_mesh_as_in_the_plotter(opened, tmp_path):
     assert np.abs(shot(page) - shot(expected)).max() > 40
 
 
-def test_a_slider_shows_one_of_the_frames(opened, tmp_path):
+def test_a_slider_shows_one_of_the_frames(shown):
     frames = {level: pv.Sphere(radius=level) for level in (0.5, 1.0, 2.0)}
     scene = Scene(lights=FAR, view=View(direction=(1, 0, 0)))
-    path = vizlight.live_html(
-        frames, scene, tmp_path / "a.html", frames="level in m", background="black"
-    )
-    page, _ = opened(path, bare=False, **WIDE)
+    page = shown(frames, scene, frames="level in m", wide=True)
     counts = []
     for i in range(3):
         slide(page, "level in m", i)
@@ -490,12 +451,9 @@ def test_keys_and_fingers_turn_the_page(opened, tmp_path):
     assert page.evaluate(where)[1] < 0.8 * far
 
 
-def test_several_meshes_can_be_switched_off_each(opened, tmp_path):
+def test_several_meshes_can_be_switched_off_each(shown):
     both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
-    path = vizlight.live_html(
-        both, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
-    )
-    page, _ = opened(path, bare=False, **WIDE)
+    page = shown(both, Scene(lights=FAR, material=SHINY), wide=True)
     every = shot(page)[60:880, :840]
     for name in ("ball", "ring"):
         page.get_by_role("checkbox", name=name).uncheck()
@@ -504,12 +462,9 @@ def test_several_meshes_can_be_switched_off_each(opened, tmp_path):
     assert seen.max() == 0
 
 
-def test_many_meshes_stand_in_a_closed_list_after_the_sliders(opened, tmp_path):
+def test_many_meshes_stand_in_a_closed_list_after_the_sliders(shown):
     many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(12)})
-    path = vizlight.live_html(
-        many, Scene(lights=FAR, material=SHINY), tmp_path / "a.html", background="black"
-    )
-    page, _ = opened(path, bare=False, **WIDE)
+    page = shown(many, Scene(lights=FAR, material=SHINY), wide=True)
     meshes = page.locator("details", has_text="Meshes (12)")
     assert not meshes.evaluate("(list) => list.open")
     meshes.locator("summary").focus()
@@ -624,7 +579,6 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter.add_mesh(pv.Cube())
     with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
         path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
-    plotter.close()
     _, _, content = scene_in(path)
     assert [mesh["name"] for mesh in content["meshes"]] == ["mesh 1", "coil"]
     assert [light["eye"] for (light,) in content["lights"]] == [False, True]

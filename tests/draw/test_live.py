@@ -57,7 +57,6 @@ def pictures(mesh, scene, **options):
         plotter.vizlight.add_mesh(mesh, scene=scene, light=light, **options)
         found.append(shot(plotter, camera))
         camera = plotter.camera.copy()
-        plotter.close()
     return found
 
 
@@ -86,7 +85,6 @@ def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighti
         plotter = pv.Plotter(off_screen=True, window_size=(120, 90), lighting=lighting)
         plotter.vizlight.add_mesh(torus(), scene=given, color="white", light=light)
         seen.append(np.asarray(plotter.screenshot(return_img=True)).astype(int))
-        plotter.close()
     assert np.abs(seen[0] - seen[1]).max() <= 1
     drawn = (seen[0] != seen[0][0, 0]).any(axis=2)
     assert seen[0][drawn].min() >= 0.29 * 255
@@ -138,7 +136,6 @@ def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_p
             mesh, scene=scene, light=light, scalars="value", cmap=cmap, show_scalar_bar=False
         )
         found.append(shot(plotter, camera))
-        plotter.close()
     path = vizlight.render.save_png(
         lit, tmp_path / "lit.png", camera=camera, size=(320, 240), anti_aliasing=None,
         background="black",
@@ -195,7 +192,6 @@ def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
         colors.append(len(np.unique(seen.reshape(-1, 3), axis=0)))
         if angle is None:
             assert actor.mapper.dataset.n_points == len(box.extract_surface(algorithm=None).points)
-        plotter.close()
     # Three flat faces, their edges, and the background; and shades from edge to edge.
     assert colors[0] < 40 < 60 < colors[1]
     ball = torus()
@@ -203,7 +199,6 @@ def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.vizlight.add_mesh(ball)
     assert actor.mapper.dataset.n_points == ball.n_points
-    plotter.close()
 
 
 def test_volumes_are_lit_by_the_normals_of_their_surface():
@@ -275,9 +270,7 @@ def test_camera_light_and_moved_actor_are_followed():
         other = plotter_of(240, 200)
         other.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
         expected = shot(other, plotter.camera)
-        other.close()
         assert np.quantile(np.abs(got - expected), 0.9995) <= 4
-    plotter.close()
 
 
 def test_lights_of_the_plotter_may_come_and_go():
@@ -290,7 +283,6 @@ def test_lights_of_the_plotter_may_come_and_go():
     assert set(np.unique(dark)) == {0, 51}
     plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light", positional=True))
     assert shot(plotter, plotter.camera).max() > 100
-    plotter.close()
 
 
 @pytest.mark.parametrize("open_", [False, True])
@@ -301,7 +293,6 @@ def test_lights_of_a_scene_do_not_need_those_of_the_plotter(open_):
     lit = shot(plotter)
     plotter.remove_all_lights()
     without = shot(plotter, plotter.camera)
-    plotter.close()
     assert lit.max() > 40
     np.testing.assert_array_equal(without, lit)
 
@@ -345,4 +336,3 @@ def test_what_fragments_cannot_do_is_done_at_points_with_the_reason(reason):
     assert reason in plotter.vizlight.explain(actor).splitlines()[0]
     with pytest.warns(UserWarning, match=f"computed at the points, because .*{reason}"):
         plotter.vizlight.add_mesh(mesh(), light="fragments", **options)
-    plotter.close()

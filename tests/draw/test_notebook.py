@@ -69,10 +69,7 @@ def baked(camera, view):
         lit, scalars="luminance", cmap="gray", clim=(0, 1), lighting=False, show_scalar_bar=False
     )
     plotter.camera = camera
-    try:
-        return np.array(plotter.screenshot(None, return_img=True))
-    finally:
-        plotter.close()
+    return np.array(plotter.screenshot(None, return_img=True))
 
 
 def answer(process, word):
@@ -150,7 +147,6 @@ def test_browser_is_not_left_to_draw_live_light():
         shown(plotter)
     plotter.clear_actors()
     assert shown(plotter, screenshot=None) == {"screenshot": None}
-    plotter.close()
 
 
 def test_default_backend_draws_live_light_on_the_server():
@@ -159,7 +155,6 @@ def test_default_backend_draws_live_light_on_the_server():
     assert shown(plotter) == {"mode": "server"}
     with pytest.raises(ValueError, match="got 'client'"):
         shown(plotter, mode="client")
-    plotter.close()
 
 
 @pytest.mark.parametrize("registered", [True, False])
@@ -178,11 +173,9 @@ def test_the_page_is_a_frame_of_the_notebook(registered, monkeypatch):
     assert frame.text.count("<script>") == 1
 
 
-@browsers.needed()
 def test_an_exported_notebook_stays_interactive(browser, tmp_path):
     plotter = live_plotter()
     shown = notebook.Guarded("html", lambda plotter, **options: options)(plotter)
-    plotter.close()
     path = tmp_path / "notebook.html"
     path.write_text(f"<html><body>{shown._repr_html_()}{shown._repr_html_()}</body></html>")
     page = browser.new_page(viewport={"width": 800, "height": 900})
@@ -214,7 +207,6 @@ def test_exported_scenes_are_refused_while_there_is_live_light(light, tmp_path):
     plotter.add_mesh(pv.Sphere())
     plotter.export_obj(tmp_path / "ball.obj")
     assert (tmp_path / "ball.obj").stat().st_size > 1000
-    plotter.close()
 
 
 @pytest.mark.skipif("trame_pyvista" in MISSING, reason="needs trame_pyvista")
@@ -226,4 +218,3 @@ def test_gallery_of_pyvista_keeps_the_picture_of_live_light(monkeypatch):
     plotter.show(auto_close=False)
     assert plotter.last_vtksz is None
     assert plotter.last_image.max() > 50
-    plotter.close()

@@ -22,6 +22,7 @@ from vizlight import Light, Material, Scene, View
 
 BASH = shutil.which("bash")
 pytestmark = [pytest.mark.opengl, browsers.needed(bash=BASH)]
+PANEL = {"bare": False, "viewport": {"width": 900, "height": 600}}
 
 #: Texts that would run as HTML, as script, as Python or in a shell where one is not escaped.
 PAYLOADS = (
@@ -58,10 +59,6 @@ PAYLOADS = (
 )  # fmt: skip
 
 
-def opened(browser, path):
-    return browsers.opened(browser, path, viewport={"width": 900, "height": 600})
-
-
 def hostile(text, path):
     """Write a page with a text in every place that takes one."""
     mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
@@ -80,10 +77,10 @@ def hostile(text, path):
     # A page takes two seconds: the others are those of slow tests.
     [pytest.param(i, marks=[] if i % 6 == 0 else pytest.mark.slow) for i in range(len(PAYLOADS))],
 )
-def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
+def test_no_text_is_read_as_anything_else(number, opened, tmp_path):
     text = PAYLOADS[number]
     path, words = hostile(text, tmp_path / "page.html")
-    page, seen = opened(browser, path)
+    page, seen = opened(path, **PANEL)
     title = page.evaluate("document.querySelector('h1').textContent")
     assert title == text
     copied = page.evaluate("vizlight.texts()")
@@ -96,7 +93,6 @@ def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
     assert page.evaluate(f"document.querySelectorAll({json.dumps(strange)}).length") == 0
     assert page.evaluate("window.hit") is None
     assert seen == [path.as_uri()]
-    page.close()
     for python in (copied["python"], again["python"]):
         strings = {node.value for node in ast.walk(ast.parse(python)) if _is_string(node)}
         assert text in strings
@@ -132,7 +128,7 @@ ACTS = {
 
 
 @pytest.mark.parametrize("act", ACTS)
-def test_what_is_copied_draws_the_picture(act, browser, tmp_path, monkeypatch):
+def test_what_is_copied_draws_the_picture(act, opened, tmp_path, monkeypatch):
     """The command, run by a shell as it was copied, and the program draw what the page shows."""
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
     monkeypatch.chdir(tmp_path)
@@ -147,11 +143,10 @@ def test_what_is_copied_draws_the_picture(act, browser, tmp_path, monkeypatch):
     path = vizlight.live_html(
         pv.read("ring.vtp"), scene, tmp_path / "a.html", background="black", source=["ring.vtp"]
     )
-    page, _ = opened(browser, path)
+    page, _ = opened(path, **PANEL)
     page.evaluate(f"() => {{ const app = vizlight; {ACTS[act]}; app.moving = false; app.draw(); }}")
     data = page.evaluate("vizlight.canvas.toDataURL().split(',')[1]")
     texts = page.evaluate("vizlight.texts()")
-    page.close()
     seen = np.array(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB"))
     shell = f'vizlight() {{ {sys.executable} -m vizlight "$@"; }}\n{texts["command"]}'
     program = texts["python"].replace("clim=", "show_scalar_bar=False, clim=")

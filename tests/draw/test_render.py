@@ -84,15 +84,13 @@ def test_the_highlight_is_where_the_mirror_says(drawn):
 
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("size", [(300, 100), (100, 300), (150, 150)])
-def test_a_mesh_fills_the_picture(size, parallel):
+def test_a_mesh_fills_the_picture(size, parallel, drawn):
     """To within a twentieth on one pair of sides; a point that is nowhere has no say."""
     mesh = pv.ParametricEllipsoid(3, 1, 0.5).rotate_z(30, inplace=False)
     mesh.points[3] = np.nan
     mesh["luminance"] = np.zeros(mesh.n_points)
     camera = render.camera_on(mesh, (0.5, -1, 0.7), parallel=parallel, aspect=size[0] / size[1])
-    plotter = render.make_plotter(mesh, camera=camera, size=size)
-    dark = np.asarray(plotter.screenshot(return_img=True))[..., 0] < 128
-    plotter.close()
+    dark = drawn(mesh, camera=camera, size=size)[..., 0] < 128
     filled = [np.ptp(np.flatnonzero(dark.any(axis=i))) / n for i, n in enumerate(size)]
     assert 0.85 < max(filled) < 0.97
     border = np.concatenate([dark[0], dark[-1], dark[:, 0], dark[:, -1]])
@@ -290,23 +288,20 @@ def test_picture_of_the_flow(verify_image_cache):
 
 @pytest.mark.parametrize("anti_aliasing", ["ssaa", "msaa", None])
 @pytest.mark.parametrize("width", [2, 5, 11])
-def test_lines_are_as_wide_as_asked_in_pixels_of_the_picture(width, anti_aliasing):
+def test_lines_are_as_wide_as_asked_in_pixels_of_the_picture(width, anti_aliasing, drawn):
     """Drivers round the widths of lines to whole pixels of what they draw: half a pixel."""
     line = pv.Line((-1, 0, 0), (1, 0, 0))
     line["luminance"] = np.ones(2)
     camera = pv.Camera()
     camera.position, camera.focal_point, camera.up = (0, 0, 5), (0, 0.003, 0), (0, 1, 0)
     camera.view_angle = 10.0
-    plotter = render.make_plotter(
-        line, camera=camera, size=(80, 60), line_width=width, anti_aliasing=anti_aliasing
-    )
-    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-    plotter.close()
+    look = {"camera": camera, "size": (80, 60), "anti_aliasing": anti_aliasing}
+    picture = drawn(line, line_width=width, **look)
     assert picture[:, :, 0].sum() / 255 / 80 == pytest.approx(width, abs=0.55)
 
 
 @pytest.mark.parametrize("parallel", [False, True])
-def test_a_surface_does_not_hide_the_lines_on_it(parallel):
+def test_a_surface_does_not_hide_the_lines_on_it(parallel, drawn):
     """As much of them is seen as of the lines of the near side without the surface."""
     ball = pv.Sphere(radius=1, theta_resolution=40, phi_resolution=40)
     ball["luminance"] = np.ones(ball.n_points)
@@ -325,9 +320,7 @@ def test_a_surface_does_not_hide_the_lines_on_it(parallel):
         pv.CellArray.from_regular_cells(ends[np.sum((eye - middle) * middle, axis=1) > 0])
     )
     for mesh in (near, pv.MultiBlock([ball, lines])):
-        plotter = render.make_plotter(mesh, camera=camera, size=(300, 240), background="white")
-        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-        plotter.close()
+        picture = drawn(mesh, camera=camera, size=(300, 240), background="white")
         ink.append((255 - picture[:, :, 0]).sum())
     assert ink[1] == pytest.approx(ink[0], rel=0.1)
     np.testing.assert_array_equal(lines.points, before)
@@ -371,7 +364,6 @@ def test_lines_are_supersampled_and_surfaces_multisampled():
         supersampled = drawn is not None and drawn.IsA("vtkSSAAPass")
         together = isinstance(panels, list) and pv.vtk_version_info < (9, 7)
         assert bool(supersampled) is (expected and not together)
-        plotter.close()
 
 
 def test_what_draws_is_found_out_once_for_each_setting(monkeypatch, tmp_path):

@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
 from refusals import refusals
-from vectors import unit
+from shapes import straws as lines
 
 import vizlight
 from vizlight import _compiled, _pool
@@ -24,19 +24,6 @@ SCENE = vizlight.Scene(
     lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)), material=SHINY
 )
 QUICK = vizlight.Bundle(grid=24)
-
-
-def lines(count=300, points=12, seed=1):
-    """Return straight lines at random in a ball."""
-    random = np.random.default_rng(seed)
-    way = unit(random.normal(size=(count, 3)))
-    middle = random.uniform(-0.7, 0.7, (count, 3))
-    places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
-    mesh = pv.PolyData()
-    mesh.points = places.reshape(-1, 3)
-    ids = np.arange(count * points).reshape(count, points)
-    mesh.lines = np.insert(ids, 0, points, axis=1).ravel()
-    return mesh
 
 
 def test_the_shares_multiply_each_light_and_the_ambient_term():

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
+from refusals import refusals
 
 import vizlight
 from vizlight import Light, Scene, View
@@ -16,11 +18,7 @@ from vizlight.geometry import manifolds
         (manifolds.torus(1.0, resolution=9), pv.PolyData, {pv.CellType.LINE: 9}),
         (manifolds.klein_bottle(resolution=(6, 5)), pv.PolyData, {pv.CellType.QUAD: 30}),
         (manifolds.veronese(resolution=3), pv.PolyData, {pv.CellType.QUAD: 27}),
-        (
-            manifolds.sphere3(resolution=2),
-            pv.UnstructuredGrid,
-            {pv.CellType.HEXAHEDRON: 64},
-        ),
+        (manifolds.sphere3(resolution=2), pv.UnstructuredGrid, {pv.CellType.HEXAHEDRON: 64}),
     ],
 )
 def test_cells_and_arrays(shape, kind, cells):
@@ -70,24 +68,23 @@ def test_every_shape_is_lit_in_its_own_space():
 
 def test_order_2_in_the_size_of_cells():
     """Light in the middle of a cell, by the mean of its corners, against the exact light there."""
-    errors, sizes = [], np.array([32, 64, 128, 256])
-    scene = Scene(
-        lights=Light(direction=(0.7, 0.6, 0.38, 0.2)), view=View(direction=(0, 0.2, 1, 0))
-    )
+    errors, sizes = [], [32, 64, 128, 256]
+    scene = far((0.7, 0.6, 0.38, 0.2), (0, 0.2, 1, 0))
     for size in sizes:
-        mesh = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=int(size)), scene=scene)
-        between = mesh["luminance"][mesh.regular_faces].mean(axis=1)
-        middle = vizlight.manifold(
-            manifolds.torus(1.5, 0.75, resolution=2 * int(size)), scene=scene
+        mesh, fine = (
+            vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=n), scene=scene)
+            for n in (size, 2 * size)
         )
-        exact = middle["luminance"].reshape(2 * size, 2 * size)[1::2, 1::2].ravel()
+        between = mesh["luminance"][mesh.regular_faces].mean(axis=1)
+        exact = fine["luminance"].reshape(2 * size, 2 * size)[1::2, 1::2].ravel()
         errors.append(np.abs(between - exact).max())
     order = -np.polyfit(np.log(sizes), np.log(errors), 1)[0]
     assert abs(order - 2) < 0.2
 
 
-def test_not_a_shape():
-    with pytest.raises(TypeError, match="shape: expected a vizlight.geometry.manifolds.Manifold"):
-        vizlight.manifold(pv.Sphere())
-    with pytest.raises(TypeError, match=r"got a function; sample it by manifolds\.parametric\("):
-        vizlight.manifold(lambda u, v: (u, v, u * v, 0))
+test_not_a_shape = refusals(
+    vizlight.manifold,
+    (pv.Sphere(), "shape: expected a vizlight.geometry.manifolds.Manifold"),
+    (lambda u, v: (u, v, u * v, 0), r"got a function; sample it by manifolds\.parametric\("),
+    kind=TypeError,
+)

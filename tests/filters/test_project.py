@@ -225,12 +225,6 @@ def test_no_tangents_named_are_the_frame(torus):
         np.testing.assert_array_equal(one["luminance"], other["luminance"])
 
 
-def test_what_is_not_changed_is_copied(torus):
-    np.testing.assert_array_equal(project(torus)["frame"], torus["frame"])
-    assert not np.shares_memory(project(torus)["frame"], torus["frame"])
-    assert not np.shares_memory(project(torus, rotation=TURN)["frame"], torus["frame"])
-
-
 def test_sheets_that_fall_on_each_other_stay_apart_in_a_cut():
     """Both halves of the 3-sphere project to one ball: places in 3-space must join nothing."""
     shape = manifolds.sphere3(resolution=4)

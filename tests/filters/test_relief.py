@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
-from fields import X, Y, Z, grids, level
+from fields import X, Y, Z, grids, level, step
 from lamps import DEFAULT, SHINY, shiny
 from refusals import refusals
 
@@ -366,13 +366,11 @@ def test_the_shadow_does_not_replace_the_light(name, options):
 
 
 def test_shadows_that_end_within_large_triangles_are_told():
-    corners = [[0, 0, 0], [20, 0, 0], [20, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
-    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
-    step = section.triangulate().extrude((0, 0, 3), capping=True).triangulate().clean()
+    part = step(20)
     scene = Scene(lights=Light(direction=(-2, 1, 0.2)))
     with pytest.warns(UserWarning, match=r"shadows end within triangles .*subdivide\(3"):
-        relief_shadow(step, scene, feature_angle=30)
-    fine = relief_shadow(step.subdivide(3, "linear"), scene, feature_angle=30)
+        relief_shadow(part, scene, feature_angle=30)
+    fine = relief_shadow(part.subdivide(3, "linear"), scene, feature_angle=30)
     assert 0 < fine["t"].mean() < 1
     # A shadow ends on the long triangles beside a ridge, whose own are as small as the raster.
     x = np.array([0, 1, 1.1, 1.2, 1.3, 8])

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import step
 from lamps import far
 from refusals import refusals
 from vectors import unit
@@ -130,13 +131,6 @@ def test_points_without_a_sky_are_marked_and_have_that_of_the_nearest():
         found = vizlight.sky(hole, error=0.05)
     assert np.isfinite(found["sky"]).all()
     assert np.flatnonzero(~found["sky_valid"]).tolist() == [30, 31, 32]
-
-
-def step(length=4):
-    """Return a step of a length: a prism whose section is an L."""
-    corners = [[0, 0, 0], [length, 0, 0], [length, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
-    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
-    return section.triangulate().extrude((0, 0, 3), capping=True).clean()
 
 
 def test_points_of_creases_see_the_sky_of_each_side():

@@ -23,6 +23,10 @@ def ball(resolution=60, radius=0.5):
     return sphere
 
 
+def lengths(lines):
+    return np.array([np.linalg.norm(np.diff(p, axis=0), axis=1).sum() for p in parts(lines)])
+
+
 def channel(start=-1):
     return pv.ImageData(dimensions=(21, 5, 5), origin=(start, 0, 0), spacing=(0.1, 0.1, 0.1))
 
@@ -52,8 +56,7 @@ def test_confined_lines_stay_on_the_surface_and_follow_meridians():
     assert lines.field_data["drift"][0] < 1e-6
     distance = np.abs(lines.compute_implicit_distance(sphere)["implicit_distance"])
     assert distance.max() < 1e-6
-    for cell in range(lines.n_cells):
-        x, y, _ = np.asarray(lines.get_cell(cell).points, dtype=float).T
+    for x, y, _ in (points.T for points in parts(lines)):
         away = np.hypot(x, y) > 0.1
         if away.sum() > 2:
             turn = np.exp(1j * np.arctan2(y[away], x[away]))
@@ -193,12 +196,7 @@ def test_lines_do_not_depend_on_the_unit(scale):
     other["V"] = sphere["V"] / scale**5
     found = streamlines(other, SCENE, vectors="V", seeds=places * scale, max_length=0.3 * scale)
     assert found.n_lines == expected.n_lines
-    lengths = [
-        np.linalg.norm(np.diff(lines.get_cell(i).points / unit, axis=0), axis=1).sum()
-        for lines, unit in ((expected, 1.0), (found, scale))
-        for i in range(lines.n_lines)
-    ]
-    np.testing.assert_allclose(*np.reshape(lengths, (2, -1)), atol=1e-3)
+    np.testing.assert_allclose(lengths(found) / scale, lengths(expected), atol=1e-3)
     np.testing.assert_allclose(found.field_data["drift"] / scale, 0, atol=1e-6)
 
 
@@ -216,8 +214,8 @@ def test_a_line_ends_where_it_turns_back():
     grid["V"] = np.stack([-np.sign(x), 0 * x, 0 * x], axis=1)
     lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.52, 0.2, 0.2], [-0.71, 0.2, 0.2]])
     assert lines.n_points < 200
-    for i in range(lines.n_lines):
-        along = np.diff(lines.get_cell(i).points[:, 0])
+    for points in parts(lines):
+        along = np.diff(points[:, 0])
         assert np.all(along > 0) or np.all(along < 0)
 
 
@@ -405,11 +403,8 @@ def test_tensors_give_their_first_eigenvector(on_surface):
         told = on_surface and name != "e"
         with pytest.warns(UserWarning, match="^2 of 842 tensors") if told else nullcontext():
             found.append(streamlines(mesh, SCENE, vectors=name, line_field=name == "e", **options))
-    for lines in found[1:]:
-        np.testing.assert_allclose(
-            lines["luminance"].mean(), found[0]["luminance"].mean(), rtol=1e-3
-        )
-        np.testing.assert_allclose(lines.length, found[0].length, rtol=1e-3)
+    for measure in (lambda lines: lines["luminance"].mean(), lambda lines: lines.length):
+        np.testing.assert_allclose([*map(measure, found)], measure(found[0]), rtol=1e-3)
     assert found[0].n_points > 40
 
 
@@ -451,9 +446,8 @@ def test_the_own_array_of_a_line_field_does_not_depend_on_signs(kind, on_surface
     for given in (vectors, signs * vectors):
         mesh["e"] = given
         seeds = np.asarray(mesh.points, float)[[200, 333, 470]] * 0.97
-        found.append(
-            streamlines(mesh, SCENE, vectors="e", line_field=True, seeds=seeds, max_length=0.5)
-        )
+        options = {"line_field": True, "seeds": seeds, "max_length": 0.5}
+        found.append(streamlines(mesh, SCENE, vectors="e", **options))
     assert found[0].n_points == found[1].n_points > 20
     for lines in found:
         along = np.einsum("ij,ij->i", np.asarray(lines["e"]), np.asarray(lines["Tangents"]))
@@ -461,24 +455,23 @@ def test_the_own_array_of_a_line_field_does_not_depend_on_signs(kind, on_surface
         assert along.min() >= -1e-6
         np.testing.assert_allclose(along, size, atol=2e-2 * size.max())
     for one, other in zip(found[0].cell, found[1].cell, strict=True):
-        a, b = (
-            np.asarray(lines["e"])[cell.point_ids]
-            for lines, cell in zip(found, (one, other), strict=True)
-        )
+        a, b = found[0]["e"][one.point_ids], found[1]["e"][other.point_ids]
         # From its other end a line has the other sign.
         if np.linalg.norm(one.points[0] - other.points[0]) > 1e-5:
             b = -b[::-1]
         np.testing.assert_allclose(a, b, atol=1e-5)
 
 
-def test_a_line_field_sampled_on_a_surface_keeps_its_length():
-    """Vectors of a volume with random signs, on a surface that lacks them."""
+@pytest.mark.parametrize("line_field", [True, False])
+def test_vectors_sampled_on_a_surface_keep_their_length(line_field):
+    """Vectors of a volume, of random signs or of one, on a surface that lacks them."""
     grid = pv.ImageData(dimensions=(9, 9, 9), origin=(-1, -1, -1), spacing=(0.25, 0.25, 0.25))
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(grid.n_points, 1))
+    signs = [-1.0, 1.0] if line_field else [1.0]
+    signs = np.random.default_rng(0).choice(signs, size=(grid.n_points, 1))
     grid["e"] = signs * np.array([[0, 0, 3.0]])
     surface = pv.Sphere(radius=0.7)
     lines = streamlines(
-        grid, SCENE, vectors="e", line_field=True, surface=surface, confined=True, seeds=9
+        grid, SCENE, vectors="e", line_field=line_field, surface=surface, confined=True, seeds=9
     )
     np.testing.assert_allclose(np.abs(np.asarray(lines["e"])[:, 2]), 3.0, rtol=1e-5)
 
@@ -518,11 +511,10 @@ def families(lines):
     """Return lengths of lines of a torus, whether they are parallels, and their largest error."""
     found = []
     for p in parts(lines):
-        length = np.linalg.norm(np.diff(p, axis=0), axis=1).sum()
         phi, theta = np.arctan2(p[:, 1], p[:, 0]), np.arctan2(p[:, 2], np.hypot(*p[:, :2].T) - 1)
         across, along = (np.abs(np.angle(np.exp(1j * (a - a[0])))).max() for a in (phi, theta))
-        found.append((length, 0.4 * along < across, min(across, 0.4 * along)))
-    return np.array(found).T
+        found.append((0.4 * along < across, min(across, 0.4 * along)))
+    return lengths(lines), *np.array(found).T
 
 
 def test_both_families_of_a_cross_field_are_evenly_spaced():

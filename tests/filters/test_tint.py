@@ -4,6 +4,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import pyvista as pv
+import shapes
 from lamps import SHINY, shiny
 from refusals import refusals
 
@@ -21,9 +22,8 @@ WHITE = Scene(
 )
 
 
-def ball(count=24):
-    mesh = pv.Sphere(theta_resolution=count, phi_resolution=count)
-    mesh["height"] = np.array(mesh.points[:, 2])
+def ball():
+    mesh = shapes.ball()
     mesh["flow"] = np.array(mesh.points) * (1, 2, 3)
     mesh["zone"] = np.digitize(mesh["height"], [-0.3, 0, 0.2])
     return mesh
