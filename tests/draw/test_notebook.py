@@ -81,7 +81,7 @@ def answer(process, word):
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
-def test_highlight_follows_a_drag_in_the_browser(tmp_path):
+def test_highlight_follows_a_drag_in_the_browser():
     from playwright.sync_api import sync_playwright
 
     process = subprocess.Popen(
@@ -99,9 +99,7 @@ def test_highlight_follows_a_drag_in_the_browser(tmp_path):
                 picture, still = None, 0
                 for _ in range(300):
                     page.wait_for_timeout(100)
-                    page.screenshot(path=tmp_path / "page.png")
-                    last = picture
-                    picture = np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:]
+                    last, picture = picture, shot(page)[70:]
                     # The page fades in; a ball has its highlight and, once turned, another one.
                     good = picture.max() > 200 and (not turn or np.any(picture != shots[0]))
                     still = still + 1 if good and np.array_equal(picture, last) else 0
@@ -173,6 +171,10 @@ def test_the_page_is_a_frame_of_the_notebook(registered, monkeypatch):
     assert frame.text.count("<script>") == 1
 
 
+def shot(page):
+    return np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
 def test_an_exported_notebook_stays_interactive(browser, tmp_path):
     plotter = live_plotter()
     shown = notebook.Guarded("html", lambda plotter, **options: options)(plotter)
@@ -182,14 +184,13 @@ def test_an_exported_notebook_stays_interactive(browser, tmp_path):
     page.goto(path.as_uri())
     for frame in page.frames[1:]:
         frame.wait_for_selector("body[data-ready]")
-    seen = [np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)]
+    first = shot(page)
     page.mouse.move(300, 200)
     page.mouse.down()
     page.mouse.move(450, 260, steps=5)
     page.mouse.up()
     page.wait_for_timeout(400)
-    seen.append(np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int))
-    assert np.abs(seen[1] - seen[0])[:420].max() > 30
+    assert np.abs(shot(page) - first)[:420].max() > 30
     page.close()
 
 
