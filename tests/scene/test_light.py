@@ -6,7 +6,7 @@ import pyvista as pv
 from refusals import refusals
 from vectors import unit
 
-from vizlight import Light, Scene, View
+from vizlight import Light, View
 from vizlight.scene.conversion import lights_of
 
 
@@ -152,9 +152,3 @@ def test_a_spotlight_warns():
     with pytest.warns(UserWarning, match="spotlight of cone angle 20 degrees"):
         (read,) = lights_of([spot], camera())
     assert read.position == (1.0, 2.0, 3.0)
-
-
-@pytest.mark.parametrize("value", [3.0, Light(direction=(0, 0, 1))])
-def test_an_array_without_axes_is_no_sequence_of_lights(value):
-    with pytest.raises(TypeError, match=r"lights: expected a vizlight\.Light"):
-        Scene(lights=np.array(value))

@@ -225,6 +225,8 @@ test_bad_values = refusals(
         r"lights: expected a vizlight.Light, got 1; Light\(direction=\(1, 1, 1\)\) makes one",
         TypeError,
     ),
+    (Scene, {"lights": np.array(3.0)}, r"lights: expected a vizlight\.Light", TypeError),
+    (Scene, {"lights": np.array(Light.headlight())}, "lights: expected a vizlight.L", TypeError),
     (Scene, {"lights": ["sun"]}, "lights: expected a vizlight.Light, got 'sun'", TypeError),
     (
         Scene,
