@@ -60,10 +60,11 @@ def pictures(mesh, scene, **options):
     return found
 
 
-SURFACE = {
-    "surface": {},
-    "tangents": {"tangents": "around"},
-    "conditioned": {"tangents": "around", "conditioned": True},
+SHAPES = {
+    "surface": (torus, {}),
+    "tangents": (torus, {"tangents": "around"}),
+    "conditioned": (torus, {"tangents": "around", "conditioned": True}),
+    "lines": (helix, {"line_width": 3}),
 }
 SCENES = {
     "far": Scene(lights=FAR, material=SHINY),
@@ -92,24 +93,19 @@ def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighti
 
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("model", ["phong", "blinn"])
-@pytest.mark.parametrize("shape", [*SURFACE, "lines"])
+@pytest.mark.parametrize("shape", SHAPES)
 def test_within_four_of_the_light_at_points(shape, model, scene):
-    lines = shape == "lines"
-    mesh = helix() if lines else torus()
-    options = {"line_width": 3} if lines else SURFACE[shape]
-    fragments, points = pictures(mesh, SCENES[scene], model=model, **options)
+    make, options = SHAPES[shape]
+    fragments, points = pictures(make(), SCENES[scene], model=model, **options)
     assert points.std() > 5
     assert np.abs(fragments - points).max() <= 4
 
 
 @pytest.mark.parametrize("shape", ["surface", "conditioned", "lines"])
 def test_colours_of_data_within_four(shape):
-    lines = shape == "lines"
-    mesh = helix() if lines else torus()
-    options = {"line_width": 3} if lines else SURFACE[shape]
-    fragments, points = pictures(
-        mesh, SCENES["two in fog"], scalars="height", cmap="viridis", **options
-    )
+    make, options = SHAPES[shape]
+    options = {"scalars": "height", "cmap": "viridis", **options}
+    fragments, points = pictures(make(), SCENES["two in fog"], **options)
     error = np.abs(fragments - points)
     # Colours are mapped in each fragment too, which is another rounding.
     assert error.max() <= 5

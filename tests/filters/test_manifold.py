@@ -35,17 +35,17 @@ def test_cells_and_arrays(shape, kind, cells):
     np.testing.assert_array_equal(mesh.points[:, :width], shape.points[:, :width])
 
 
-def test_every_array_survives_a_file(tmp_path):
-    for shape, name in (
-        (manifolds.klein_bottle(resolution=8), "a.vtp"),
-        (manifolds.sphere3(resolution=2), "a.vtu"),
-    ):
-        mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
-        mesh.save(tmp_path / name)
-        again = pv.read(tmp_path / name)
-        for key in mesh.point_data:
-            np.testing.assert_array_equal(again[key], mesh[key])
-        assert vizlight.provenance(again, "projection") == vizlight.provenance(mesh, "projection")
+@pytest.mark.parametrize(
+    ("shape", "name"),
+    [(manifolds.klein_bottle(resolution=8), "a.vtp"), (manifolds.sphere3(resolution=2), "a.vtu")],
+)
+def test_every_array_survives_a_file(shape, name, tmp_path):
+    mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
+    mesh.save(tmp_path / name)
+    again = pv.read(tmp_path / name)
+    for key in mesh.point_data:
+        np.testing.assert_array_equal(again[key], mesh[key])
+    assert vizlight.provenance(again, "projection") == vizlight.provenance(mesh, "projection")
 
 
 def test_every_shape_is_lit_in_its_own_space():
