@@ -114,6 +114,13 @@ def half_known():
     return mesh
 
 
+def step(length=4):
+    """Return a step of a length: a prism whose section is an L."""
+    corners = [[0, 0, 0], [length, 0, 0], [length, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
+    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
+    return section.triangulate().extrude((0, 0, 3), capping=True).triangulate().clean()
+
+
 def several_kinds(fine=8):
     """Return faces, a line that starts on them and vertices in one mesh, and each by itself."""
     ball = pv.Sphere(theta_resolution=fine, phi_resolution=fine)

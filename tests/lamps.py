@@ -22,15 +22,15 @@ SHOULDER = (
     + 0.579228 * np.array((-1, -1, 2)) / 6**0.5
     + 0.707107 * np.array((1, 1, 1)) / 3**0.5
 )
+#: The lamps of the default scene there.
+DEFAULT = [
+    Light(direction=SHOULDER, intensity=8 / 11), Light(direction=(1, 1, 1), intensity=3 / 11)
+]  # fmt: skip
 #: A material with every term, and one lamp at the eye with it.
 SHINY = shiny()
 HEADLIT = {"lights": Light.headlight(), "material": SHINY}
-
-
-#: The lamps of a plotter, as an eye along (1, 1, 1) has them.
-KIT = (
-    Light(direction=SHOULDER, intensity=8 / 11), Light(direction=(1, 1, 1), intensity=3 / 11)
-)  # fmt: skip
+#: A coloured lamp whose light falls off.
+NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 
 
 def far(light: Any, eye: Any, material: Material = SHINY) -> Scene:

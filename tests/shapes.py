@@ -1,7 +1,26 @@
-"""A ring with its normals and a field of tangents, and lines on it: what pictures are made of."""
+"""Balls, a ring with its normals and tangents, and lines: what pictures are made of."""
 
 import numpy as np
 import pyvista as pv
+from vectors import unit
+
+
+def ball(fine=24):
+    """Return a sphere with heights and tangents."""
+    mesh = pv.Sphere(theta_resolution=fine, phi_resolution=fine)
+    mesh["height"] = np.array(mesh.points[:, 2])
+    mesh["around"] = np.cross(mesh.points, (0.3, 0.2, 1.0)).astype(np.float32)
+    return mesh
+
+
+def straws(count=300, points=12, seed=1):
+    """Return straight lines at random in a ball."""
+    random = np.random.default_rng(seed)
+    way = unit(random.normal(size=(count, 3)))
+    middle = random.uniform(-0.7, 0.7, (count, 3))
+    places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
+    ids = np.arange(count * points).reshape(count, points)
+    return pv.PolyData(places.reshape(-1, 3), lines=np.insert(ids, 0, points, axis=1).ravel())
 
 
 def torus(count=151, centre=(0.0, 0.0, 0.0)):

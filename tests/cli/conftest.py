@@ -9,6 +9,12 @@ from vizlight import cli
 from vizlight.geometry import manifolds
 
 
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    """Work in a new folder."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def run(capfd):
     """Return what runs words, of which a string may have several: exit code, output, errors."""
@@ -16,6 +22,30 @@ def run(capfd):
     def call(*arguments):
         code = cli.main([word for each in arguments for word in str(each).split()])
         return (code, *capfd.readouterr())
+
+    return call
+
+
+@pytest.fixture
+def done(run):
+    """Return what runs words that end well without a word of complaint: the output."""
+
+    def call(*words):
+        code, out, err = run(*words)
+        assert (code, err) == (0, "")
+        return out
+
+    return call
+
+
+@pytest.fixture
+def refused(run):
+    """Return what runs words that are refused: the errors."""
+
+    def call(*words):
+        code, out, err = run(*words)
+        assert (code, out) == (2, ""), err
+        return err
 
     return call
 
@@ -32,9 +62,8 @@ def flow():
 
 
 @pytest.fixture
-def volume(tmp_path, monkeypatch):
-    """Return the name of the one file of a folder, made the current one: a volume."""
-    monkeypatch.chdir(tmp_path)
+def volume():
+    """Return the name of the one file of the current folder: a volume."""
     flow().save("flow.vti")
     return "flow.vti"
 

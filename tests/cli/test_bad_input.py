@@ -29,8 +29,8 @@ import pyvista as pv
         ("light flow.vti -o x.gif", "output: expected a name that ends in"),
         ("light flow.vti -o none/x.vtp", "output: expected a folder that exists"),
         ("light flow.vti -o x.vti", "output: expected a name that ends in .vtp"),
-        ("light flow.vti --light 1", "--light: expected three numbers x,y,z"),
         ("light flow.vti --light 0,0,0", "--light: expected a direction x,y,z, not all zero"),
+        ("light flow.vti --light 1", "--light: expected three numbers x,y,z"),
         ("light flow.vti --color nothing", "color: expected a colour's name"),
         ("light flow.vti --size big", "--size: expected WIDTHxHEIGHT"),
         ("light flow.vti --size 0x5", "size: expected an integer of at least 1"),
@@ -48,20 +48,17 @@ import pyvista as pv
         ("streamlines flow.vti --vectors V -o a.vti", "ends in .vtp, .vtk, .vtu, .stl for PolyDat"),
         ("relief flow.vti --contour r --exaggeration 3", "--exaggeration: expected --warp"),
         ("relief torus.vtp --depth -1", "depth: expected"),
-        ("relief terrain.vti --elevation none", "expected"),
         ("relief terrain.vti -o a.vtp", "ends in .vti, .vtk, .stl for ImageData"),
         ("fur flow.vti --contour r --density 0.1 --absorption 0.2", "absorption, density: exp"),
         ("fur flow.vti --contour r --density 2", "density: expected a number from 0 to 1"),
         ("fur flow.vti --contour r --density 0.1 --toward up --bend 1", "toward: expected"),
         ("contours flow.vti --levels much", "--levels: expected a number"),
         ("contours flow.vti --levels 0", "levels: expected"),
-        ("project flow.vti", "expected"),
         ("project torus.vtp --rotation xw", "--rotation: expected PLANE:ANGLE"),
         ("project torus.vtp --rotation xq:1", "expected"),
         ("project torus.vtp --hyperplane 1,2", "--hyperplane: expected NORMAL:OFFSET"),
         ("project torus.vtp --light 1,2,3,4,5", "--light: expected three numbers x,y,z or 4"),
         ("project torus.vtp --view 1,2,3,4,5", "--view: expected three numbers x,y,z or 4"),
-        ("project torus.vtp --distance 0.1", "expected"),
         ("light flow.vti --light 10,95", "altitude: expected degrees from -90 to 90"),
         ("light flow.vti --light nan,1,2", "--light: expected three numbers"),
         ("light flow.vti --slice 1,2", "--slice: expected NORMAL:OFFSET"),
@@ -119,14 +116,13 @@ import pyvista as pv
         ("light flow.vti -o a.pvtp --up 1,1,1", "up: expected a direction across the view"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, run, monkeypatch):
+def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, monkeypatch, refused):
     monkeypatch.setattr("tempfile.tempdir", str(folder))
     Path("list.json").write_text("[1, 2]")
     Path("bad.vtp").write_text("garbage")
     pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
     before = sorted(folder.iterdir())
-    code, out, err = run(line)
-    assert (code, out) == (2, ""), err
+    err = refused(line)
     assert err.startswith("vizlight: ")
     assert words in err
     assert err.count("\n") == 1

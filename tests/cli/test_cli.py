@@ -39,15 +39,9 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
 
 
 @pytest.mark.opengl
-def test_light_writes_mesh_and_picture(volume, tmp_path, run):
-    code, out, err = run(
-        "light",
-        volume,
-        "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3",
-        "--size 120x90",
-    )
-    assert (code, err) == (0, "")
-    assert "points lit in" in out
+def test_light_writes_mesh_and_picture(volume, tmp_path, done):
+    words = "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3"
+    assert "points lit in" in done("light", volume, words, "--size 120x90")
     assert {p.name for p in tmp_path.iterdir()} == {"flow.vti", "flow-lit.vtp", "flow-lit.png"}
     lit = pv.read("flow-lit.vtp")
     told = vizlight.provenance(lit)
@@ -58,15 +52,13 @@ def test_light_writes_mesh_and_picture(volume, tmp_path, run):
     np.testing.assert_array_equal(again["luminance"], lit["luminance"])
 
 
-def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, run):
+def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, done):
     grid = pv.read(volume)
     grid["height"] = grid.points[:, 2]
     grid.save(volume)
     options = ("--contour", "r", "--light", "1,2,3")
     for name, extra in (("a.glb", ()), ("B.GLB", ("--scalars", "height"))):
-        code, out, err = run("light", volume, *options, *extra, "-o", name)
-        assert (code, err) == (0, "")
-        assert f"mesh     {name}" in out
+        assert f"mesh     {name}" in done("light", volume, *options, *extra, "-o", name)
     plain, colored = ((tmp_path / name).read_bytes() for name in ("a.glb", "B.GLB"))
     assert plain[:4] == b"glTF"
     assert b"KHR_materials_unlit" in plain
@@ -74,51 +66,43 @@ def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, run):
     assert plain != colored
 
 
-def test_script_for_paraview(volume, tmp_path, run):
+def test_script_for_paraview(volume, tmp_path, done, refused, run):
     options = ("light", volume, "--contour", "r", "--tangents", "V", "--paraview")
-    code, out, err = run(*options, "a.py")
-    assert (code, err) == (0, "")
-    assert "mesh     a.py" in out
+    assert "mesh     a.py" in done(*options, "a.py")
     assert sorted(path.name for path in tmp_path.glob("a*")) == ["a-paraview.vtp", "a.py"]
     assert not list(tmp_path.glob("*.png"))
     assert str(tmp_path / "a-paraview.vtp") in (tmp_path / "a.py").read_text()
-    code, out, _ = run(*options, "a.py", "--script")
-    assert code == 0
-    assert 'paraview.save(lit, None, "a.py")' in out
+    assert 'paraview.save(lit, None, "a.py")' in done(*options, "a.py", "--script")
     # The light of a cylinder is no program of fragments, and a script is named as one.
     for more, words in ((("b.py", "--model", "cylinder"), "integral"), (("b.txt",), ".py")):
         code, _, err = run(*options, *more)
-        assert code == 2
-        assert words in err
+        assert (code, words in err) == (2, True)
     again = ("light", tmp_path / "a-paraview.vtp", "--paraview", "a.py")
-    assert "another file than the input" in run(*again)[2]
+    assert "another file than the input" in refused(*again)
     assert not list(tmp_path.glob("b*"))
 
 
 @pytest.mark.opengl
-def test_a_direction_is_the_name_of_an_axis(volume, tmp_path, run):
+def test_a_direction_is_the_name_of_an_axis(volume, done):
     pictures = []
     for up, view in (("y", "x"), ("0,1,0", "1,0,0"), ("z", "x")):
         options = ("--contour", "r", "--up", up, "--view", view, "-o", "a.png")
-        assert run("light", volume, *options)[0] == 0
+        done("light", volume, *options)
         pictures.append(pv.read("a.png")["PNGImage"])
     np.testing.assert_array_equal(pictures[0], pictures[1])
     assert np.any(pictures[0] != pictures[2])
 
 
-def test_colours_of_a_file_are_no_light(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
+def test_colours_of_a_file_are_no_light(run, done):
     ball = pv.Sphere()
     ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
     ball.save("ball.vtp")
-    assert run("light", "ball.vtp", "-o", "a.png")[::2] == (0, "")
-    assert "white in the picture" in run("light", "ball.vtp", "--diffuse", "9", "-o", "a.png")[2]
+    done("light ball.vtp -o a.png")
+    assert "white in the picture" in run("light ball.vtp --diffuse 9 -o a.png")[2]
 
 
-def test_paths_of_the_plugin_for_paraview(run):
-    code, out, _ = run("paraview")
-    assert code == 0
-    *files, start = (line.split(maxsplit=1)[1] for line in out.splitlines())
+def test_paths_of_the_plugin_for_paraview(done):
+    *files, start = (line.split(maxsplit=1)[1] for line in done("paraview").splitlines())
     paths = [Path(file) for file in files]
     names = ["vizlight_plugin.py", "sitecustomize.py", "vizlight_eye.py"]
     assert [path.name for path in paths] == names
@@ -169,7 +153,7 @@ def counted(folder, *words):
     return int(reads), set(modules)
 
 
-def test_help_reads_the_arguments_of_its_command_once(monkeypatch, run):
+def test_help_reads_the_arguments_of_its_command_once(monkeypatch, done):
     asked = []
     assemble = App.assemble_argument_collection
 
@@ -178,16 +162,14 @@ def test_help_reads_the_arguments_of_its_command_once(monkeypatch, run):
         return assemble(app, **options)
 
     monkeypatch.setattr(App, "assemble_argument_collection", counted)
-    code, out, _ = run("fur --help")
-    assert (code, "--density" in out) == (0, True)
+    assert "--density" in done("fur --help")
     assert asked == [("fur",)]
 
 
 @pytest.mark.parametrize("name", ["x.vtp", "X.VTU", "x.vtk", "x.vti"])
-def test_outputs_by_ending(name, volume, tmp_path, run):
+def test_outputs_by_ending(name, volume, tmp_path, done):
     more = "--no-surface --tangents V" if name == "x.vti" else "--view 0,-1,0 --headlight"
-    code, _, err = run("light", volume, "-o", name, more)
-    assert (code, err) == (0, "")
+    done("light", volume, "-o", name, more)
     lit = pv.read(name)
     assert "luminance" in lit.point_data
     assert (lit.n_points == 12**3) == (name == "x.vti")
@@ -215,7 +197,7 @@ def flat(**arrays):
     return grid
 
 
-def test_what_may_have_been_meant_is_told(volume, run):
+def test_what_may_have_been_meant_is_told(volume, done, run):
     number, rising = np.arange(20), np.arange(20.0)
     flat().save("bare.vti")
     flat(NodeId=rising, constant=np.ones(20), number=number, height=rising).save("flat.vti")
@@ -239,30 +221,27 @@ def test_what_may_have_been_meant_is_told(volume, run):
         code, out, _ = run("light", words, "-o", "a.vtk")
         assert code == 0
         assert told in out if told else "note" not in out
-    run("light flat.vti --warp height --exaggeration 2 -o a.vtp")
+    done("light flat.vti --warp height --exaggeration 2 -o a.vtp")
     assert pv.read("a.vtp").bounds.z_max == 38
 
 
-def test_values_over_a_surface_that_no_picture_shows_are_told(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
+def test_values_over_a_surface_that_no_picture_shows_are_told(done):
     nibabel = pytest.importorskip("nibabel")
     ball = pv.Sphere()
     ball.save("ball.ply")
     nibabel.freesurfer.write_morph_data("lh.curv", ball.points[:, 2])
     for more, told in (("", True), ("--scalars lh.curv", False)):
-        code, out, _ = run("light ball.ply --overlay lh.curv -o a.vtp", more)
-        assert code == 0
+        out = done("light ball.ply --overlay lh.curv -o a.vtp", more)
         assert ("note     --scalars lh.curv shows the values over the surface" in out) == told
 
 
-def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run):
+def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run, refused):
     grid = pv.read(volume)
     grid["V"][:3] = 0
     grid["luminance"] = np.arange(grid.n_points)
     grid.save("flow.vti")
     asked = "light flow.vti --no-surface --tangents V -o x.vti"
-    code, _, err = run(asked)
-    assert (code, "--name" in err) == (2, True)
+    assert "--name" in refused(asked)
     code, _, err = run(asked, "--name light")
     assert code == 0
     assert err.startswith("vizlight: 3 of 1728 points could not be lit")
@@ -270,8 +249,7 @@ def test_points_that_cannot_be_lit_are_told_and_no_error(volume, run):
 
 
 @pytest.fixture
-def ball(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def ball(tmp_path):
     made = pv.Sphere()
     made["v"] = np.cross([0.2, 0, 1], made.points)
     made["height"] = made.points[:, 2]
@@ -288,34 +266,31 @@ def test_a_mesh_is_read_once_and_what_draws_is_loaded_for_a_picture(name, ball):
     assert not modules & {"vizlight.pieces.run", "numba", "scipy.optimize", "scipy.spatial"}
 
 
-def test_a_mesh_is_refined_and_the_script_does_the_same(ball, run):
+def test_a_mesh_is_refined_and_the_script_does_the_same(ball, done):
     for more in ("", "--no-surface"):
-        code, out, _ = run("light ball.vtp -o fine.vtp --refine 1/255 --report", more)
-        assert (code, "error between points" in out, "would do" in out) == (0, True, False)
+        out = done("light ball.vtp -o fine.vtp --refine 1/255 --report", more)
+        assert ("error between points" in out, "would do" in out) == (True, False)
         fine = pv.read("fine.vtp")
         assert fine.n_points > 842
         assert fine.field_data["luminance_error"][0] <= 1 / 255
-    _, script, _ = run("light ball.vtp -o again.vtp --refine 1/255 --script")
-    exec(compile(script, "script", "exec"), {})
+    exec(done("light ball.vtp -o again.vtp --refine 1/255 --script"), {})
     assert pv.read("again.vtp").n_points == fine.n_points
 
 
-def test_lines_are_lit_as_a_bundle(tmp_path, monkeypatch, run):
-    monkeypatch.chdir(tmp_path)
+def test_lines_are_lit_as_a_bundle(done):
     pv.Sphere(theta_resolution=12, phi_resolution=12).extract_all_edges().save("edges.vtp")
-    code, out, _ = run("light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
-    assert (code, "transmittance: a share of each light" in out) == (0, True)
+    out = done("light edges.vtp -o lit.vtp --no-surface --bundle --explain --sky")
+    assert "transmittance: a share of each light" in out
     assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
 
 
 @pytest.mark.opengl
-def test_legibility_is_printed_and_the_script_does_the_same(ball, capfd, run):
+def test_legibility_is_printed_and_the_script_does_the_same(ball, capfd, done):
     asked = "light ball.vtp -o lit.vtp --tangents v --scalars height --legibility"
-    code, out, _ = run(asked)
-    assert code == 0
+    out = done(asked)
     for text in ("within 10 degrees", "median error of the normal", "nearest colour"):
         assert text in out
-    exec(compile(run(asked, "--script")[1], "script", "exec"), {})
+    exec(done(asked, "--script"), {})
     table = capfd.readouterr().out.strip()
     assert table.startswith("question")
     assert table in out

@@ -68,7 +68,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_option_of_a_filter_is_one_of_its_command(name, run, monkeypatch):
+def test_every_option_of_a_filter_is_one_of_its_command(name, monkeypatch, done):
     """Its default is the filter's, and the help, which fits a screen, has it."""
     filter_, in_scripts = COMMANDS[name]
     parameters = inspect.signature(getattr(vizlight, filter_)).parameters
@@ -78,8 +78,7 @@ def test_every_option_of_a_filter_is_one_of_its_command(name, run, monkeypatch):
     assert own - {*options.NOT_OPTIONS} - found.keys() <= in_scripts
     # The command line keeps its console, whatever the terminal of the first test was.
     monkeypatch.setattr(cli.app, "console", Console(width=100))
-    code, out, _ = run(name, "--help")
-    assert code == 0
+    out = done(name, "--help")
     renamed = {"project": {"light": "when"}, "sky": {"up": "sky_up"}}.get(name, {})
     for option in found.keys() - in_scripts - {"exaggeration", "lit"}:
         assert f"--{renamed.get(option, option).replace('_', '-')} " in out

@@ -9,6 +9,7 @@ import pytest
 import pyvista as pv
 from fields import half_known
 from lamps import SHINY
+from shapes import ball
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -26,22 +27,13 @@ SCENE = Scene(lights=LAMP, material=SHINY)
 
 @pytest.fixture
 def plotter():
-    made = plotter_of()
-    yield made
-    made.close()
+    return plotter_of()
 
 
 def plotter_of(**options):
     made = pv.Plotter(off_screen=True, window_size=(160, 120), **options)
     made.background_color = "black"
     return made
-
-
-def ball(size=24):
-    mesh = pv.Sphere(theta_resolution=size, phi_resolution=size)
-    mesh["height"] = np.array(mesh.points[:, 2])
-    mesh["around"] = np.cross(mesh.points, (0.3, 0.2, 1.0)).astype(np.float32)
-    return mesh
 
 
 def picture(plotter):
@@ -58,10 +50,7 @@ def baked(lit, camera, scalars="luminance", **options):
         options |= {"rgb": True}
     other.add_mesh(lit, scalars=scalars, lighting=False, show_scalar_bar=False, **options)
     other.camera = camera.copy()
-    try:
-        return picture(other)
-    finally:
-        other.close()
+    return picture(other)
 
 
 def seen_by(plotter, scene=SCENE):
@@ -313,7 +302,6 @@ def test_views_side_by_side_and_linked():
     inner = slice(4, 76)
     # Viewports at different places may round the same triangle differently.
     assert np.abs(linked[4:-4, inner] - linked[4:-4, 80:][:, inner]).max() <= 1
-    plotter.close()
 
 
 def observers(plotter):
@@ -346,7 +334,6 @@ def test_nothing_stays_behind(how, light):
     plotter.mesh = plotter.mapper = None
     gc.collect()
     assert [ref() for ref in left] == [None] * 3
-    plotter.close()
 
 
 def test_plotter_itself_is_released():
@@ -415,30 +402,24 @@ def test_camera_at_the_centre_and_tiny_windows():
     plotter.view_xy()
     plotter.window_size = [1, 1]
     assert picture(plotter).shape == (1, 1, 3)
-    plotter.close()
 
 
 def test_bad_arguments(plotter):
     mesh = ball()
     add = plotter.vizlight.add_mesh
-    for options, text in (
-        ({"light": "pixels"}, "light: expected 'auto', 'points' or 'fragments'"),
-        ({"scalars": "hight"}, "scalars: expected a point array"),
-        ({"ambient": 0.2}, "ambient: expected the material of the scene, or no scene"),
-        ({"tangents": "height"}, "tangents: expected vectors"),
+    flat = Scene(lights=Light(direction=(1, 0, 0, 0)))
+    for given, options, text in (
+        (mesh, {"light": "pixels"}, "light: expected 'auto', 'points' or 'fragments'"),
+        (mesh, {"scalars": "hight"}, "scalars: expected a point array"),
+        (mesh, {"ambient": 0.2}, "ambient: expected the material of the scene, or no scene"),
+        (mesh, {"tangents": "height"}, "tangents: expected vectors"),
+        (mesh, {"linewidth": 3}, "linewidth"),
+        (mesh, {"scene": "day"}, "scene: expected a vizlight.Scene"),
+        (mesh, {"scene": flat}, "scene: expected vectors of 3 components"),
+        ("ball.vtp", {}, "mesh: expected a PyVista mesh"),
     ):
         with pytest.raises((TypeError, ValueError), match=text):
-            add(mesh, scene=SCENE, **options)
-    with pytest.raises(TypeError, match="linewidth"):
-        add(mesh, scene=SCENE, linewidth=3)
-    with pytest.raises(TypeError, match=r"tangent: .* did you mean tangents=\?"):
-        plotter.vizlight.add_mesh(ball(), tangent="around")
-    with pytest.raises(TypeError, match="scene: expected a vizlight.Scene"):
-        add(mesh, scene="day")
-    with pytest.raises(ValueError, match="scene: expected vectors of 3 components"):
-        add(mesh, scene=Scene(lights=Light(direction=(1, 0, 0, 0)), material=SHINY))
-    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
-        add("ball.vtp")
+            add(given, **{"scene": SCENE} | options)
     assert not plotter.actors
     changed = vizlight.illuminate(mesh, SCENE.replace(view=View(direction=(1, 1, 1))))
     changed["Normals"][:] = np.array(changed["Normals"])[:, ::-1]
@@ -466,7 +447,6 @@ def two_frames(plotter):
 @pytest.mark.parametrize("light", ["points", "fragments"])
 def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, light):
     mesh = ball()
-    mesh["height"] = np.array(mesh.points[:, 2])
     plotter.vizlight.add_mesh(
         mesh, scene=SCENE, light=light, scalars="height", show_scalar_bar=False
     )
@@ -487,6 +467,14 @@ def test_mesh_that_loses_its_colours_or_its_points_stays_as_it_was(plotter, ligh
     np.testing.assert_array_equal(picture(plotter), before)
 
 
+FEW = vizlight.Bundle(grid=16)
+
+
+def tangle():
+    points = np.random.default_rng(1).normal(size=(60, 3))
+    return pv.MultipleLines(points).compute_arc_length()
+
+
 def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, monkeypatch):
     asked = []
     dimmed = bundle.Medium.dimmed
@@ -496,10 +484,8 @@ def test_shares_of_light_inside_a_bundle_are_kept_when_the_eye_moves(plotter, mo
         return dimmed(self, *args, **options)
 
     monkeypatch.setattr(bundle.Medium, "dimmed", counted)
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16)
-    plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    lines = tangle()
+    plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=FEW)
     picture(plotter)
     first = np.array(plotter.camera.position)
     plotter.camera.azimuth = 60
@@ -533,15 +519,13 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
     for lamp in given[: {"one": 1, "two": 2}.get(lights, 0)]:
         plotter.add_light(lamp)
     given[1].positional, given[1].position, given[1].cone_angle = True, (5, 3, 4), 90
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points).compute_arc_length()
-    few = vizlight.Bundle(grid=16)
-    actor = plotter.vizlight.add_mesh(lines, model=model, bundle=few, **DRAWN[drawn])
+    lines = tangle()
+    actor = plotter.vizlight.add_mesh(lines, model=model, bundle=FEW, **DRAWN[drawn])
 
     def check():
         picture(plotter)
         scene = scene_of(plotter.renderer, actor, model)
-        lit = vizlight.illuminate(lines, scene, model=model, bundle=few)
+        lit = vizlight.illuminate(lines, scene, model=model, bundle=FEW)
         light = lit["rgb"] if "rgb" in lit.point_data else lit["luminance"][:, np.newaxis]
         shown = np.asarray(actor.mapper.dataset.point_data[COLORS])
         np.testing.assert_allclose(shown, displayable(light * np.ones(3)), atol=1e-6)
@@ -555,21 +539,16 @@ def test_a_bundle_dims_the_lights_of_the_plotter_where_they_are_now(drawn, light
     check()
     plotter.add_light(pv.Light(position=(0, -3, 4), light_type="scene light"))
     check()
-    plotter.close()
 
 
 def test_a_bundle_dims_the_lights_of_another_scene(plotter):
-    points = np.random.default_rng(1).normal(size=(60, 3))
-    lines = pv.MultipleLines(points)
-    few = vizlight.Bundle(grid=16)
-    actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=few)
+    lines = tangle()
+    actor = plotter.vizlight.add_mesh(lines, scene=SCENE, bundle=FEW)
     two = SCENE.replace(lights=[Light(direction=(1, 0, 1)), Light(direction=(0, 1, 1))])
     plotter.vizlight.set_scene(actor, two)
     picture(plotter)
-    scene = two.replace(view=vizlight.View.from_camera(plotter.camera))
-    lit = vizlight.illuminate(lines, scene, bundle=few)["luminance"]
-    name = COLORS if two.colored else LUMINANCE
-    shown = np.asarray(actor.mapper.dataset.point_data[name])
+    lit = vizlight.illuminate(lines, seen_by(plotter, two), bundle=FEW)["luminance"]
+    shown = np.asarray(actor.mapper.dataset.point_data[LUMINANCE])
     np.testing.assert_allclose(shown, lit, atol=1e-6)
 
 
@@ -596,7 +575,6 @@ def test_what_is_not_data_is_grey_and_the_bar_names_it(light, scalars):
         missing, known = picture[20:80, 20:90].astype(int), picture[120:140, 20:90].astype(int)
         assert np.ptp(missing, axis=2).max() == 0
         assert np.ptp(known, axis=2).min() > 10
-    plotter.close()
 
 
 def test_colours_of_a_solid_have_the_range_of_all_its_values():
@@ -609,7 +587,6 @@ def test_colours_of_a_solid_have_the_range_of_all_its_values():
         plotter = pv.Plotter(off_screen=True)
         actor = plotter.vizlight.add_mesh(mesh, scalars="distance", **options)
         ranges.append(actor.mapper.scalar_range)
-        plotter.close()
     expected = [[f(m["distance"]) for f in (np.min, np.max)] for m in (ball, box)] + [(1, 2)]
     np.testing.assert_allclose(ranges, expected, rtol=1e-6)
 

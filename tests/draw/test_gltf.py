@@ -42,9 +42,11 @@ def content(path):
     return text, arrays
 
 
-def seen(colors):
-    """Return linear colours of 16 bits as a screen shows them, from 0 to 1."""
-    linear = colors[:, :3] / 65535
+def shown(text, arrays):
+    """Return the colours of the first mesh as a screen shows them, from 0 to 1."""
+    attributes = text["meshes"][0]["primitives"][0]["attributes"]
+    # They are linear, of 16 bits.
+    linear = arrays[attributes["COLOR_0"]][:, :3] / 65535
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
@@ -56,11 +58,12 @@ def test_colours_are_ambient_and_diffuse_light(tmp_path):
     text, arrays = content(path)
     assert "ambient and diffuse light only" in text["asset"]["extras"]["light"]
     (primitive,) = text["meshes"][0]["primitives"]
-    places, colors = (arrays[primitive["attributes"][key]] for key in ("POSITION", "COLOR_0"))
     bare = Scene(lights=FAR, material=shiny(color="tan", specular=0))
     expected = vizlight.illuminate(ball, bare)["rgb"]
-    np.testing.assert_allclose(seen(colors), np.clip(expected, 0, 1), atol=0.6 / 255)
-    moved = places + np.asarray(text["nodes"][1]["translation"])
+    np.testing.assert_allclose(shown(text, arrays), np.clip(expected, 0, 1), atol=0.6 / 255)
+    moved = arrays[primitive["attributes"]["POSITION"]] + np.asarray(
+        text["nodes"][1]["translation"]
+    )
     np.testing.assert_allclose(moved, ball.points, atol=1e-6)
     assert np.ptp(arrays[primitive["indices"]]) == ball.n_points - 1
 
@@ -72,11 +75,9 @@ def test_colours_of_data_are_those_of_tint(tmp_path):
     lamp = Light(direction=(0.3, 0.2, 1))
     scene = Scene(lights=lamp, material=material, view=View(direction=(0, 0, 1)))
     path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="value", cmap="turbo")
-    text, arrays = content(path)
-    colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
     lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap="turbo")
     assert len(np.unique(lit["rgb"], axis=0)) > 40
-    np.testing.assert_allclose(255 * seen(colors), lit["rgb"], atol=1.01)
+    np.testing.assert_allclose(255 * shown(*content(path)), lit["rgb"], atol=1.01)
 
 
 @pytest.mark.parametrize("as_grid", [False, True])
@@ -89,38 +90,30 @@ def test_a_cell_has_one_colour_and_light_stays_smooth(as_grid, tmp_path):
     path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="kind", cmap="tab10")
     text, arrays = content(path)
     primitive = text["meshes"][0]["primitives"][0]
-    colors, places = (arrays[primitive["attributes"][key]] for key in ("COLOR_0", "POSITION"))
     corners = arrays[primitive["indices"]].reshape(-1, 3)
-    shown = seen(colors)
-    hue = shown / np.maximum(shown.max(axis=1, keepdims=True), 1e-9)
+    colors = shown(text, arrays)
+    bright = colors.max(axis=1)
+    hue = colors / np.maximum(bright, 1e-9)[:, np.newaxis]
     assert np.ptp(hue[corners], axis=1).max() < 0.03
     assert len(np.unique(np.round(hue[corners[:, 0]], 1), axis=0)) == 5
     # The light of a point is the same in all of its colours, and that of the sphere.
     light = vizlight.illuminate(ball, scene)["luminance"]
-    bright = shown.max(axis=1)
-    nearest = [ball.find_closest_point(x + text["nodes"][1]["translation"]) for x in places]
-    full = {k: np.max(bright[corners[ball["kind"] == k]] / light[np.asarray(nearest)[
-        corners[ball["kind"] == k]]]) for k in range(5)}  # fmt: skip
-    for k, most in full.items():
-        at = corners[ball["kind"] == k]
-        np.testing.assert_allclose(bright[at], most * light[np.asarray(nearest)[at]], atol=0.02)
+    places = arrays[primitive["attributes"]["POSITION"]] + text["nodes"][1]["translation"]
+    expected = light[[ball.find_closest_point(place) for place in places]]
+    for kind in range(5):
+        at = corners[ball["kind"] == kind]
+        most = np.max(bright[at] / expected[at])
+        np.testing.assert_allclose(bright[at], most * expected[at], atol=0.02)
 
 
 def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path):
     lines = vizlight.load_example("fibre_bundle.vtp")
     lines["x"] = np.asarray(lines.points[:, 0], dtype=np.float64)
-    lit = vizlight.tint(
-        vizlight.illuminate(
-            lines, Scene(lights=FAR, view=View(direction=(1, 0, 0)), material=SHINY)
-        ),
-        "x",
-    )
+    scene = Scene(lights=FAR, material=SHINY)
+    seen = scene.replace(view=View(direction=(1, 0, 0)))
+    lit = vizlight.tint(vizlight.illuminate(lines, seen), "x")
     by_record = content(vizlight.save_gltf(lit, None, tmp_path / "a.glb"))
-    by_hand = content(
-        vizlight.save_gltf(
-            lines, Scene(lights=FAR, material=SHINY), tmp_path / "b.glb", scalars="x"
-        )
-    )
+    by_hand = content(vizlight.save_gltf(lines, scene, tmp_path / "b.glb", scalars="x"))
     for ours, others in zip(by_record[1], by_hand[1], strict=True):
         np.testing.assert_array_equal(ours, others)
     assert by_record[0]["meshes"][0]["primitives"][0]["mode"] == 1
@@ -144,7 +137,7 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
         path = vizlight.save_gltf(hills, scene, tmp_path / "lit.glb")
     normals = surface_normals(hills)
     expected = 0.1 + 0.5 * np.abs(normals[:, 2])
-    np.testing.assert_allclose(seen(content(path)[1][1])[:, 0], expected, atol=1 / 255)
+    np.testing.assert_allclose(shown(*content(path))[:, 0], expected, atol=1 / 255)
 
 
 @pytest.mark.parametrize(
@@ -159,13 +152,10 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
     ],
 )
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
-    mesh, scene = (
-        options.pop("mesh", pv.Sphere()),
-        options.pop("scene", Scene(lights=FAR, material=SHINY)),
-    )
-    path = tmp_path / options.pop("path", "lit.glb")
+    given = {"mesh": pv.Sphere(), "scene": Scene(lights=FAR), "path": "lit.glb"} | options
+    mesh, scene, name = (given.pop(key) for key in ("mesh", "scene", "path"))
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.save_gltf(mesh, scene, path, **options)
+        vizlight.save_gltf(mesh, scene, tmp_path / name, **given)
     assert not list(tmp_path.iterdir())
 
 
@@ -195,14 +185,12 @@ def test_what_is_not_data_is_grey(tmp_path, scalars):
     mesh = half_known()
     scene = Scene(lights=FAR, material=SHINY)
     vizlight.save_gltf(mesh, scene, tmp_path / "a.glb", tangents="V", scalars=scalars)
-    text, arrays = content(tmp_path / "a.glb")
-    colors = arrays[text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
-    shown = np.rint(255 * seen(colors))
+    seen = np.rint(255 * shown(*content(tmp_path / "a.glb")))
     lost = ~np.any(mesh["V"], axis=1)
-    np.testing.assert_array_equal(shown[lost], 128)
-    assert not np.any(np.all(shown[~lost] == 128, axis=1))
+    np.testing.assert_array_equal(seen[lost], 128)
+    assert not np.any(np.all(seen[~lost] == 128, axis=1))
     if scalars:
         # Light dims that grey where there is light.
-        missing = shown[~lost & np.isnan(mesh["height"])]
+        missing = seen[~lost & np.isnan(mesh["height"])]
         assert np.ptp(missing, axis=1).max() == 0
-        assert np.ptp(shown[~lost & np.isfinite(mesh["height"])], axis=1).min() > 10
+        assert np.ptp(seen[~lost & np.isfinite(mesh["height"])], axis=1).min() > 10

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from fields import half_known, several_kinds, swatches
-from lamps import HEADLIT, SHINY, shiny
+from lamps import HEADLIT, NEAR, SHINY, shiny
 from PIL import Image
 from shapes import torus, winding
 
@@ -29,7 +29,6 @@ from vizlight.filters import key
 
 pytestmark = pytest.mark.opengl
 
-needs_browser = browsers.needed()
 #: The checker of the npm package axe-core, of the viewer's recipe or of a variable.
 AXE = Path(vizlight.__file__).parent / "draw/web/node_modules/axe-core/axe.min.js"
 AXE = Path(os.environ.get("VIZLIGHT_AXE", AXE))
@@ -37,27 +36,31 @@ SIZE = {"width": 300, "height": 250}
 #: A window with its panel beside the picture.
 WIDE = {"viewport": {"width": 1200, "height": 1000}}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
-NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
-LIT = Scene(lights=FAR, material=SHINY)
+
+
 AWAY = (5e6, -5e6, 2e6)
 CASES = {
-    "lines": (winding, LIT, {}),
-    "conditioned lines": (winding, LIT, {"conditioned": True, "normals": "n"}),
-    "surface with a field": (
-        torus, LIT, {"tangents": "around", "conditioned": True, "normals": "n"}
+    "lines": (winding, Scene(lights=FAR, material=SHINY), {}),
+    "conditioned lines": (
+        winding, Scene(lights=FAR, material=SHINY), {"conditioned": True, "normals": "n"}
     ),
-    "compensated with colours": (torus, LIT, {"tangents": "around"}),
+    "surface with a field": (
+        torus, Scene(lights=FAR, material=SHINY),
+        {"tangents": "around", "conditioned": True, "normals": "n"},
+    ),
+    "compensated with colours": (torus, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
     "two lights, one near, in fog": (
-        torus, LIT.replace(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1)),
+        torus,
+        Scene(lights=[FAR, NEAR], depth_cue=CUE, ambient_color=(0.7, 0.8, 1), material=SHINY),
         {"normals": "n", "model": "blinn"},
     ),
     "faces, lines and vertices": (
-        lambda: several_kinds(120)[0], LIT.replace(lights=[FAR, NEAR]), {}
+        lambda: several_kinds(120)[0], Scene(lights=[FAR, NEAR], material=SHINY), {}
     ),
     "far from the origin": (
         lambda: torus(centre=AWAY),
-        LIT.replace(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)]),
+        Scene(lights=[FAR, Light(position=np.add(AWAY, (3, 4, 5)), intensity=0.2)], material=SHINY),
         {"normals": "n"},
     ),
 }  # fmt: skip
@@ -71,24 +74,17 @@ def fox():
     made.close()
 
 
-#: Leaves the picture alone in the window.
-BARE = "body { grid-template: minmax(0, 1fr) 0 / minmax(0, 1fr) 0 !important }"
-BARE += " #panel, h1, #legend, #triad, #frames, #notice { display: none !important }"
+@pytest.fixture
+def shown(opened, tmp_path):
+    """Return what writes a page, black behind, and opens it: alone or beside its panel."""
 
+    def call(mesh, scene, *, wide=False, **options):
+        options = {"background": "black"} | options
+        path = vizlight.live_html(mesh, scene, tmp_path / "a.html", **options)
+        page, _ = opened(path, bare=False, **WIDE) if wide else opened(path)
+        return page
 
-def opened(browser, path, *, bare=True, **options):
-    """Return a page, without its panel, and what it has asked for and complained of."""
-    page, seen = browsers.opened(browser, path, **({"viewport": SIZE} | options))
-    if bare:
-        page.evaluate(
-            """(text) => {
-            const sheet = new CSSStyleSheet();
-            sheet.replaceSync(text);
-            document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
-            }""",
-            BARE,
-        )
-    return page, seen
+    return call
 
 
 def shot(page):
@@ -144,9 +140,19 @@ def engine_colors(mesh, scene, camera, options, colored):
     return np.insert(np.clip(rgb, 0, 1) * 255 + 0.5, 3, 255, axis=1).astype(np.uint8)
 
 
-@needs_browser
+#: Firefox takes minutes.
+FOX = pytest.param(
+    "fox",
+    marks=[
+        pytest.mark.slow,
+        pytest.mark.skipif(bool(firefox.MISSING), reason=f"needs {', '.join(firefox.MISSING)}"),
+    ],
+)
+
+
+@pytest.mark.parametrize("opened", ["browser", FOX], indirect=True)
 @pytest.mark.parametrize("case", CASES)
-def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser, tmp_path):
+def test_page_has_the_light_of_the_engine_before_and_after_turning(case, opened, tmp_path):
     """The browser draws both: the light that follows, and the numbers of the filters as colours.
 
     Another renderer's lines have other edges, whatever their light.
@@ -159,8 +165,8 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser
         mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
         line_width=2, **options, **colored,
     )  # fmt: skip
-    live, seen = opened(browser, path)
-    other, _ = opened(browser, baked(path, engine_colors(mesh, scene, camera, options, colored)))
+    live, seen = opened(path)
+    other, _ = opened(baked(path, engine_colors(mesh, scene, camera, options, colored)))
     pictures = []
     for degrees in (0, 60):
         camera.azimuth += degrees
@@ -175,41 +181,25 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, browser
         assert np.quantile(error.max(axis=-1)[expected.max(axis=-1) > 0], 0.99) <= 4
     assert not seen or seen == [path.as_uri()]
     assert np.abs(pictures[1] - pictures[0]).mean() > 1
-    live.close()
-    other.close()
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(bool(firefox.MISSING), reason=f"needs {', '.join(firefox.MISSING)}")
-@pytest.mark.parametrize("case", CASES)
-def test_page_has_the_light_of_the_engine_in_firefox(case, fox, tmp_path):
-    test_page_has_the_light_of_the_engine_before_and_after_turning(case, fox, tmp_path)
-
-
-@needs_browser
-def test_colours_of_data_in_bright_light_are_those_of_tint(browser, tmp_path):
+def test_colours_of_data_in_bright_light_are_those_of_tint(shown):
     mesh = swatches()
     camera = vizlight.render.camera_on(mesh, (0, 0, 1))
     camera.parallel_projection = True
     bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
     scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
-    path = vizlight.live_html(
-        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
-        scalars="value", cmap="turbo",
-    )  # fmt: skip
-    page, _ = opened(browser, path)
-    shown = np.unique(shot(page).reshape(-1, 3), axis=0)
-    page.close()
+    page = shown(mesh, scene, camera=camera, panel=False, scalars="value", cmap="turbo")
+    colors = np.unique(shot(page).reshape(-1, 3), axis=0)
     seen = scene.replace(view=View.from_camera(camera))
     lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
     expected = lit["rgb"][::4].astype(int)
-    apart = np.abs(shown[:, None] - expected).max(axis=-1)
+    apart = np.abs(colors[:, None] - expected).max(axis=-1)
     assert len(np.unique(expected, axis=0)) > 40
     assert apart.min(axis=0).max() <= 1
 
 
-@needs_browser
-def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
+def test_the_page_reads_the_numbers_that_were_packed(shown):
     """Places to the rounding of float32, cells to the bit, and no place for what is not finite."""
     mesh = pv.Sphere(theta_resolution=20, phi_resolution=20)
     mesh["n"] = 2 * np.asarray(mesh.points)
@@ -217,8 +207,7 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
     mesh.points[7] = (np.nan, 1, 2)
     mesh.points[9] = (0, np.inf, 2)
     camera = first_camera((3.0, -2.0, 1.0))
-    path = vizlight.live_html(mesh, LIT, tmp_path / "a.html", normals="n", camera=camera)
-    page, _ = opened(browser, path)
+    page = shown(mesh, Scene(lights=FAR), normals="n", camera=camera)
     read = """async () => {
         const { gl, places, batches: [{ order, buffers, count }], given } = vizlight.meshes[0];
         const normals = new Int16Array(places.length);
@@ -228,7 +217,6 @@ def test_the_page_reads_the_numbers_that_were_packed(browser, tmp_path):
         return [places, order, normals.map((x) => x)].map(numbers);
     }"""
     points, cells, normals = page.evaluate(read)
-    page.close()
     places = np.array(points, dtype=float).reshape(-1, 3)
     expected = np.asarray(mesh.points, dtype=float) - camera.focal_point
     lost = ~np.all(np.isfinite(expected), axis=1)
@@ -258,9 +246,8 @@ def slide(page, label, value):
     )
 
 
-@needs_browser
-def test_panel_moves_light_and_material_and_back(browser, tmp_path):
-    page, seen = opened(browser, plain_page(tmp_path, title="A <ball> & more"), bare=False, **WIDE)
+def test_panel_moves_light_and_material_and_back(opened, tmp_path):
+    page, seen = opened(plain_page(tmp_path, title="A <ball> & more"), bare=False, **WIDE)
     assert page.title() == "A <ball> & more"
     first = shot(page)
     for label, value in (
@@ -290,11 +277,9 @@ def test_panel_moves_light_and_material_and_back(browser, tmp_path):
     assert picture.shape[0] == WIDE["viewport"]["height"]
     assert np.abs(picture[:, :400] - shot(page)[:, :400]).mean() < 5
     assert seen == [(tmp_path / "ball.html").as_uri()]
-    page.close()
 
 
-@needs_browser
-def test_the_light_of_the_sky_is_switched_off_and_on(browser, tmp_path):
+def test_the_light_of_the_sky_is_switched_off_and_on(opened, tmp_path):
     ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
     ball["sky"] = np.linspace(0.1, 0.7, ball.n_points)
     scene = Scene(lights=FAR, material=shiny(ambient=0.5))
@@ -302,7 +287,7 @@ def test_the_light_of_the_sky_is_switched_off_and_on(browser, tmp_path):
     for name, options in (("sky", {"occlusion": "sky"}), ("open", {})):
         command = ["a.vtp", "--sky"] if options else ["a.vtp"]
         path = vizlight.live_html(ball, scene, tmp_path / f"{name}.html", source=command, **options)
-        pages[name], _ = opened(browser, path, bare=False, **WIDE)
+        pages[name], _ = opened(path, bare=False, **WIDE)
     page, switch = pages["sky"], pages["sky"].get_by_label("Light of the sky in hollows")
     assert pages["open"].get_by_label("Light of the sky in hollows").count() == 0
     first, free = (shot(pages[name])[:, :840].astype(int) for name in ("sky", "open"))
@@ -314,14 +299,11 @@ def test_the_light_of_the_sky_is_switched_off_and_on(browser, tmp_path):
     assert page.evaluate(read).count("sky") == page.evaluate(read).count("sky.")
     page.keyboard.press("Control+z")
     np.testing.assert_array_equal(shot(page)[:, :840], first)
-    for page in pages.values():
-        page.close()
 
 
-@needs_browser
 @pytest.mark.skipif(not AXE.exists(), reason="npm's axe-core is not installed")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing(scheme, browser, tmp_path):
+def test_axe_finds_nothing(scheme, opened, tmp_path):
     mesh = torus()
     mesh["sky"] = np.ones(mesh.n_points)
     scene = presets.shape()
@@ -330,7 +312,7 @@ def test_axe_finds_nothing(scheme, browser, tmp_path):
         options = {} if frames else {"scalars": "height", "occlusion": "sky"}
         path = vizlight.live_html(meshes, scene, tmp_path / "a.html", title=title, **options)
         look = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
-        page, _ = opened(browser, path, bare=False, bypass_csp=True, **look)
+        page, _ = opened(path, bare=False, bypass_csp=True, **look)
         page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
         page.get_by_role("button", name="Copy as Python").click()
         for asked in ("dialog", "document"):
@@ -338,12 +320,10 @@ def test_axe_finds_nothing(scheme, browser, tmp_path):
             run = "axe.run().then((made) => made.violations.map((one) => one.id))"
             assert page.evaluate(run) == [], asked
             page.evaluate("document.querySelectorAll('dialog').forEach((one) => one.close())")
-        page.close()
 
 
-@needs_browser
-def test_lamps_are_dragged_over_the_ball_and_past_its_rim(browser, tmp_path):
-    page, _ = opened(browser, plain_page(tmp_path), bare=False, **WIDE)
+def test_lamps_are_dragged_over_the_ball_and_past_its_rim(opened, tmp_path):
+    page, _ = opened(plain_page(tmp_path), bare=False, **WIDE)
     box = page.locator(".pad").bounding_box()
     middle = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
     read = "vizlight.seen(vizlight.lamps[0], [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])"
@@ -368,58 +348,37 @@ def test_lamps_are_dragged_over_the_ball_and_past_its_rim(browser, tmp_path):
     page.get_by_label("Remove the lamp").click()
     page.get_by_label("Remove the lamp").click()
     assert shot(page)[:, :400].min() >= 0
-    page.close()
 
 
-@needs_browser
 @pytest.mark.parametrize("question", ["direction", "slope", "heading", "shape"])
-def test_light_by_question_is_that_of_the_preset(question, browser, tmp_path):
+def test_light_by_question_is_that_of_the_preset(question, shown):
     mesh, camera = torus(), first_camera()
     how = {"tangents": "around"} | ({"conditioned": True} if question == "shape" else {})
-    preset = getattr(presets, question)()
-    own = vizlight.live_html(
-        mesh, preset, tmp_path / "own.html", camera=camera, background="black", **how
-    )
-    other = vizlight.live_html(
-        mesh, Scene(lights=FAR), tmp_path / "other.html", camera=camera, background="black",
-        tangents="around", conditioned=True,
-    )  # fmt: skip
-    expected, _ = opened(browser, own)
-    page, _ = opened(browser, other)
+    expected = shown(mesh, getattr(presets, question)(), camera=camera, **how)
+    how["conditioned"] = True
+    page = shown(mesh, Scene(lights=FAR), camera=camera, **how)
     page.evaluate("(name) => vizlight.look(name)", question)
     np.testing.assert_allclose(shot(page), shot(expected), atol=1)
     assert page.evaluate("vizlight.page.looks")[question]["key"] == list(key.TEXTS[question])
-    page.close()
-    expected.close()
 
 
-@needs_browser
-def test_arrays_colour_the_mesh_as_in_the_plotter(browser, tmp_path):
-    mesh, camera, scene = torus(), first_camera(), presets.value()
-    options = {"camera": camera, "background": "black", "normals": "n"}
-    colored = vizlight.live_html(
-        mesh, scene, tmp_path / "a.html", scalars="height", cmap="viridis", **options
-    )
-    page, _ = opened(browser, vizlight.live_html(mesh, scene, tmp_path / "b.html", **options))
-    expected, _ = opened(browser, colored)
+def test_arrays_colour_the_mesh_as_in_the_plotter(shown):
+    mesh, scene = torus(), presets.value()
+    options = {"camera": first_camera(), "normals": "n"}
+    expected = shown(mesh, scene, scalars="height", cmap="viridis", **options)
+    page = shown(mesh, scene, **options)
     page.evaluate("() => vizlight.change({ color: 'height', cmap: 'viridis' })")
     error = np.abs(shot(page) - shot(expected))
     assert error.mean() < 0.5
     assert np.quantile(error, 0.99) <= 3
     page.evaluate("() => vizlight.change({ color: 'height', cmap: 'plasma' })")
     assert np.abs(shot(page) - shot(expected)).max() > 40
-    page.close()
-    expected.close()
 
 
-@needs_browser
-def test_a_slider_shows_one_of_the_frames(browser, tmp_path):
+def test_a_slider_shows_one_of_the_frames(shown):
     frames = {level: pv.Sphere(radius=level) for level in (0.5, 1.0, 2.0)}
     scene = Scene(lights=FAR, view=View(direction=(1, 0, 0)))
-    path = vizlight.live_html(
-        frames, scene, tmp_path / "a.html", frames="level in m", background="black"
-    )
-    page, _ = opened(browser, path, bare=False, **WIDE)
+    page = shown(frames, scene, frames="level in m", wide=True)
     counts = []
     for i in range(3):
         slide(page, "level in m", i)
@@ -429,13 +388,11 @@ def test_a_slider_shows_one_of_the_frames(browser, tmp_path):
     assert counts[2] > 3 * counts[1]
     page.keyboard.press("Control+z")
     assert page.evaluate("vizlight.state.frame") == 1
-    page.close()
 
 
-@needs_browser
-def test_a_cut_leaves_one_side(browser, tmp_path):
+def test_a_cut_leaves_one_side(opened, tmp_path):
     camera = vizlight.render.camera_on(pv.Sphere(), (0, 0, 1), parallel=True)
-    page, _ = opened(browser, plain_page(tmp_path, camera=camera))
+    page, _ = opened(plain_page(tmp_path, camera=camera))
     page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: false } })")
     seen = shot(page).max(axis=2) > 0
     middle = SIZE["width"] // 2
@@ -443,11 +400,9 @@ def test_a_cut_leaves_one_side(browser, tmp_path):
     assert not seen[:, middle + 2 :].any()
     page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: true } })")
     assert not (shot(page).max(axis=2) > 0)[:, : middle - 2].any()
-    page.close()
 
 
-@needs_browser
-def test_a_page_starts_at_the_view_of_its_scene(browser, tmp_path):
+def test_a_page_starts_at_the_view_of_its_scene(tmp_path):
     mesh = torus()
     for view in (View(direction=(0, -1, 0.4)), View(position=(3.0, 2.0, 1.5))):
         scene = Scene(lights=FAR, view=view)
@@ -460,43 +415,8 @@ def test_a_page_starts_at_the_view_of_its_scene(browser, tmp_path):
             assert cosine > 0.9999
 
 
-@needs_browser
-@pytest.mark.parametrize("state", ["first", "own lamp", "question", "colours", "cut", "parallel"])
-def test_the_copied_program_draws_the_picture(state, browser, tmp_path, monkeypatch):
-    """Python, run as it was copied, draws what the page shows."""
-    mesh = torus()
-    del mesh.point_data["n"]
-    mesh.save(tmp_path / "ring.vtp")
-    scene = Scene(lights=[FAR, NEAR], view=View(direction=(1, 0.6, 0.8)))
-    path = vizlight.live_html(
-        pv.read(tmp_path / "ring.vtp"), scene, tmp_path / "a.html", background="black",
-        source=[str(tmp_path / "ring.vtp")],
-    )  # fmt: skip
-    page, _ = opened(browser, path)
-    act = {
-        "own lamp": "app.put(app.lamps[0], [0.6, 0, 0.8]); app.change({ fade: 0.5 })",
-        "question": "app.look('shape')",
-        "colours": "app.change({ color: 'height', cmap: 'plasma' })",
-        "cut": "app.change({ cut: { axis: 2, at: 0.4, far: false } })",
-        "parallel": "app.state.camera.parallel = true; app.orbit(0.3, 0.2); app.change({})",
-    }.get(state, "app.draw()")
-    page.evaluate(f"() => {{ const app = vizlight; {act}; }}")
-    seen, text = shot(page), page.evaluate("vizlight.texts().python")
-    page.close()
-    monkeypatch.setattr(pv, "OFF_SCREEN", True)
-    monkeypatch.chdir(tmp_path)
-    text = text.replace("clim=", "show_scalar_bar=False, clim=")
-    exec(compile(text, "copied", "exec"), {})
-    drawn = np.array(Image.open(tmp_path / "a.png").convert("RGB"), dtype=np.int16)
-    error = np.abs(seen - drawn)
-    assert drawn.std() > 10
-    assert error.mean() <= 1.5
-    assert np.quantile(error.max(axis=-1), 0.97) <= 6
-
-
-@needs_browser
-def test_keys_and_fingers_turn_the_page(browser, tmp_path):
-    page, _ = opened(browser, plain_page(tmp_path), has_touch=True)
+def test_keys_and_fingers_turn_the_page(opened, tmp_path):
+    page, _ = opened(plain_page(tmp_path), has_touch=True)
     where = """() => {
         const { position, focal } = vizlight.state.camera;
         return [position, Math.hypot(...position.map((x, i) => x - focal[i]))];
@@ -529,28 +449,22 @@ def test_keys_and_fingers_turn_the_page(browser, tmp_path):
         touch("touchMove", (150 - 5 * i, 150), (200 + 5 * i, 150))
     touch("touchEnd")
     assert page.evaluate(where)[1] < 0.8 * far
-    page.close()
 
 
-@needs_browser
-def test_several_meshes_can_be_switched_off_each(browser, tmp_path):
+def test_several_meshes_can_be_switched_off_each(shown):
     both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
-    path = vizlight.live_html(both, LIT, tmp_path / "a.html", background="black")
-    page, _ = opened(browser, path, bare=False, **WIDE)
+    page = shown(both, Scene(lights=FAR, material=SHINY), wide=True)
     every = shot(page)[60:880, :840]
     for name in ("ball", "ring"):
         page.get_by_role("checkbox", name=name).uncheck()
         seen = shot(page)[60:880, :840]
         assert np.abs(seen - every).max() > 30
     assert seen.max() == 0
-    page.close()
 
 
-@needs_browser
-def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path):
+def test_many_meshes_stand_in_a_closed_list_after_the_sliders(shown):
     many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(12)})
-    path = vizlight.live_html(many, LIT, tmp_path / "a.html", background="black")
-    page, _ = opened(browser, path, bare=False, **WIDE)
+    page = shown(many, Scene(lights=FAR, material=SHINY), wide=True)
     meshes = page.locator("details", has_text="Meshes (12)")
     assert not meshes.evaluate("(list) => list.open")
     meshes.locator("summary").focus()
@@ -562,10 +476,8 @@ def test_many_meshes_stand_in_a_closed_list_after_the_sliders(browser, tmp_path)
     assert shot(page)[60:880, :840].max() > 30
     every.uncheck()
     assert shot(page)[60:880, :840].max() == 0
-    page.close()
 
 
-@needs_browser
 def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
     path = plain_page(tmp_path)
     bare = chromium.launch(
@@ -580,12 +492,11 @@ def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
     bare.close()
 
 
-@needs_browser
-def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(browser, tmp_path):
+def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(opened, tmp_path):
     scene = Scene(lights=FAR)
     for options, corners in (({}, [22, 255, 255]), ({"background": "white"}, [255, 255, 255])):
         path = vizlight.live_html(pv.Sphere(), scene, tmp_path / "a.html", **options)
-        page, _ = opened(browser, path)
+        page, _ = opened(path)
         seen = []
         for media in (
             {"color_scheme": "dark"}, {"color_scheme": "light"},
@@ -593,11 +504,9 @@ def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(b
         ):  # fmt: skip
             page.emulate_media(**media)
             seen.append(int(shot(page)[3, 3, 0]))
-        page.close()
         assert seen == corners
 
 
-@needs_browser
 def test_two_files_serve_a_strict_policy(browser, tmp_path):
     path = plain_page(tmp_path, files=2)
     assert (tmp_path / "viewer.js").read_text("utf-8") == html.viewer()
@@ -643,14 +552,16 @@ def test_scans_are_points_in_the_page(tmp_path):
 
 
 def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
-    path, options = tmp_path / "a.html", {"tangents": "around", "model": "cylinder"}
+    mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
     with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
-        vizlight.live_html(torus(), LIT, path, **options)
+        path = vizlight.live_html(
+            mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
+        )
     _, _, content = scene_in(path)
     assert "does not follow the eye" in content["notices"][0]
     assert not content["meshes"][0]["live"]
     with pytest.warns(UserWarning, match="does not follow the eye; ambient and diffuse"):
-        vizlight.live_html(pv.Sphere(), LIT, path, light="points")
+        path = vizlight.live_html(pv.Sphere(), scene, path, light="points")
     _, _, content = scene_in(path)
     packed = content["meshes"][0]["colors"]["data"]
     colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
@@ -663,12 +574,11 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
         plotter.vizlight.export_html(tmp_path / "a.html")
-    plotter.vizlight.add_mesh(torus(), scene=LIT, scalars="height")
+    plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
     plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
     plotter.add_mesh(pv.Cube())
     with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
         path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
-    plotter.close()
     _, _, content = scene_in(path)
     assert [mesh["name"] for mesh in content["meshes"]] == ["mesh 1", "coil"]
     assert [light["eye"] for (light,) in content["lights"]] == [False, True]
@@ -692,7 +602,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
     path = tmp_path / options.pop("path", "lit.html")
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.live_html(torus(), LIT, path, **options)
+        vizlight.live_html(torus(), Scene(lights=FAR, material=SHINY), path, **options)
     assert not list(tmp_path.iterdir())
 
 
@@ -705,22 +615,20 @@ def test_the_viewer_is_small_and_asks_for_nothing():
 
 @pytest.mark.parametrize(("mesh", "colour"), [(pv.Line(), "#000000"), (pv.Plane(), "#ffffff")])
 def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
-    path = vizlight.live_html(mesh, LIT, tmp_path / "a.html")
+    path = vizlight.live_html(mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html")
     assert scene_in(path)[2]["background"] == colour
 
 
-@needs_browser
 @pytest.mark.filterwarnings("ignore:.*could not be lit")
-def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
+def test_what_is_not_data_is_grey_and_has_a_name(opened, tmp_path):
     camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)
     camera.parallel_scale = 0.5
     path = vizlight.live_html(
         half_known(), Scene(lights=Light(direction=(1, 0, 1)), material=SHINY), tmp_path / "a.html",
         camera=camera, tangents="V", scalars="height", panel=False,
     )  # fmt: skip
-    page, _ = opened(browser, path)
+    page, _ = opened(path)
     picture = shot(page)
-    page.close()
     np.testing.assert_array_equal(picture[80:170, 165:240], 128)
     missing, known = picture[30:100, 40:140], picture[160:220, 40:140]
     assert np.ptp(missing, axis=2).max() == 0
@@ -728,12 +636,11 @@ def test_what_is_not_data_is_grey_and_has_a_name(browser, tmp_path):
     bars = scene_in(path)[2]["bars"]
     assert [bar["title"] for bar in bars] == ["height", "no data"]
     assert bars[1]["colors"] == ["#808080"] * 2
-    page, _ = opened(browser, path, bare=False, viewport={"width": 400, "height": 300})
+    page, _ = opened(path, bare=False, viewport={"width": 400, "height": 300})
     (_, top, _, _), (_, other, wide, _) = page.evaluate(
         "[...document.querySelectorAll('.bar .strip')].map((one) => one.getBoundingClientRect())"
         ".map(({ left, top, width, height }) => [left, top, width, height])"
     )
-    page.close()
     assert abs(top - other) < 2
     assert wide < 80  # beside the bar also on a telephone
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+import shapes
 
 import vizlight
 from vizlight.draw import keywords
@@ -26,9 +27,8 @@ EVERYDAY = (
 )  # fmt: skip
 
 
-def ball(**options):
-    mesh = pv.Sphere(theta_resolution=12, phi_resolution=12, **options)
-    mesh["height"] = np.asarray(mesh.points)[:, 2]
+def ball():
+    mesh = shapes.ball(12)
     mesh["rgb"] = np.asarray(mesh.points) + 0.5
     mesh["share"] = np.linspace(0, 1, mesh.n_points)
     mesh.cell_data["zone"] = np.arange(mesh.n_cells)
@@ -48,7 +48,6 @@ def picture(mesh, *, live=True, prepare=None, **options):
     if prepare is not None:
         prepare(plotter)
     seen = plotter.screenshot(return_img=True)
-    plotter.close()
     return seen[..., :3].astype(int)
 
 
@@ -58,7 +57,6 @@ def test_keywords_of_pyvista_are_taken(options):
         plotter = pv.Plotter(off_screen=True)
         plotter.vizlight.add_mesh(mesh, **options)
         assert plotter.vizlight.has_live_light
-        plotter.close()
 
 
 @pytest.mark.parametrize("wrong", ["tangent", "colour", "scalers", "smoothshading", "line_widht"])
@@ -111,7 +109,6 @@ def test_points_alone_and_blocks_without_the_array_are_drawn():
     actors = plotter.vizlight.add_mesh(blocks, scalars="height", cmap="viridis")
     assert [actor.mapper.scalar_visibility for actor in actors] == [False, True, True]
     assert [*plotter.scalar_bars.keys()] == ["height"]
-    plotter.close()
     options = {"cmap": "viridis", "scalars": "height", "point_size": 9}
     with pytest.raises(ValueError, match="scalars: expected a point array or a cell array"):
         picture(cloud(), scalars="nope")
@@ -159,7 +156,6 @@ def test_a_volume_costs_its_surface():
     plotter.vizlight.add_mesh(grid, scalars="height")
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    plotter.close()
     assert most < 60 * grid.n_points
 
 
@@ -176,4 +172,3 @@ def test_a_copy_of_an_actor_is_said_to_stay():
     plotter.add_actor(actor.copy(deep=True))
     with pytest.warns(UserWarning, match="a copy of an actor has light that does not follow"):
         plotter.screenshot(return_img=True)
-    plotter.close()

@@ -23,7 +23,6 @@ def inked(size, values, name=NAME, columns=1, **asked):
     actor.SetVisibility(False)
     picture = plotter.screenshot(return_img=True)
     bar = plotter.scalar_bars[name]
-    plotter.close()
     return np.any(picture < 200, axis=2), bar
 
 
@@ -67,7 +66,6 @@ def test_bars_stand_above_one_another():
         plotter.vizlight.add_mesh(ball, scalars=name)
     low, high = (bar.GetPosition()[1] for bar in plotter.scalar_bars.values())
     assert high >= low + plotter.scalar_bars[NAME].GetHeight()
-    plotter.close()
 
 
 def test_a_bar_fits_its_subplot():
@@ -100,7 +98,6 @@ def picture(**options):
     plotter.camera.position, plotter.camera.focal_point = (0.8, 0.9, 5), (0.8, 0.9, 0)
     made = plotter.vizlight.add_key(size=0.3, **options)
     seen = np.asarray(plotter.screenshot(return_img=True))
-    plotter.close()
     return seen, made
 
 
@@ -134,7 +131,6 @@ def test_the_key_of_the_live_light_has_its_exponent():
         plotter.vizlight.add_key()
     plotter.vizlight.add_mesh(line, scene=presets.direction(), exponent=2)
     made = plotter.vizlight.add_key()
-    plotter.close()
     expected = presets.key(presets.direction(View(direction=(1, 1, 1))), exponent=2)
     np.testing.assert_array_equal(made["rgb"], expected["rgb"])
     assert (made["rgb"] != presets.key(presets.direction())["rgb"]).any()
@@ -149,7 +145,6 @@ def test_the_default_light_has_the_key_of_what_it_shows(valued):
     given = {"scalars": "speed", "cmap": "viridis"} if valued else {"color": "white"}
     plotter.vizlight.add_mesh(ball, show_scalar_bar=False, **given)
     made = plotter.vizlight.add_key()
-    plotter.close()
     words = ["2", "speed (grey: no data)", "5"] if valued else ["a ball in this light"]
     assert list(made.field_data["words"]) == words
     if valued:

@@ -104,11 +104,9 @@ def test_scalar_bar_beside_lit_colours_shows_the_unlit_ones():
     shown = np.array(plotter.screenshot(None, return_img=True))
     # The mapper gives the table its own range when it draws.
     assert table.GetRange() == (-1, 1)
-    plotter.close()
     expected = pv.Plotter(off_screen=True, window_size=(200, 160))
     expected.add_mesh(tinted, scalars="rgb", rgb=True, lighting=False)
     direct = np.array(expected.screenshot(None, return_img=True))
-    expected.close()
     # A ball of red and black through white: both have the same darkest and brightest colours.
     assert np.ptp(shown[..., 0].astype(int)) > 150
     assert np.ptp(direct[..., 0].astype(int)) > 150

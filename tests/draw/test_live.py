@@ -5,7 +5,8 @@ import pytest
 import pyvista as pv
 import shapes
 from fields import swatches
-from lamps import SHINY, far, shiny
+from lamps import NEAR, SHINY, far, shiny
+from vectors import parts, unit
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -14,7 +15,6 @@ from vizlight.geometry import manifolds
 pytestmark = pytest.mark.opengl
 
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.6)
-NEAR = Light(position=(3, 4, 5), intensity=0.5, attenuation=(0.5, 0.1, 0.01), color=(1, 0.8, 0.5))
 CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
 
@@ -28,6 +28,14 @@ def torus():
 
 def helix(count=12001):
     return shapes.helix(count, turns=6, rise=0.03)
+
+
+def plotter_of(*size):
+    made = pv.Plotter(off_screen=True, window_size=size)
+    made.background_color = "black"
+    # At the outline samples of a pixel lie outside their triangle, where light is extrapolated.
+    made.render_window.SetMultiSamples(0)
+    return made
 
 
 def shot(plotter, camera=None):
@@ -44,22 +52,19 @@ def pictures(mesh, scene, **options):
     """Return the pictures with light in fragments and at the points."""
     found, camera = [], None
     for light in ("fragments", "points"):
-        plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
-        plotter.background_color = "black"
-        # At the outline samples of a pixel lie outside their triangle, where light is extrapolated.
-        plotter.render_window.SetMultiSamples(0)
+        plotter = plotter_of(240, 200)
         options["show_scalar_bar"] = False
         plotter.vizlight.add_mesh(mesh, scene=scene, light=light, **options)
         found.append(shot(plotter, camera))
         camera = plotter.camera.copy()
-        plotter.close()
     return found
 
 
-SURFACE = {
-    "surface": {},
-    "tangents": {"tangents": "around"},
-    "conditioned": {"tangents": "around", "conditioned": True},
+SHAPES = {
+    "surface": (torus, {}),
+    "tangents": (torus, {"tangents": "around"}),
+    "conditioned": (torus, {"tangents": "around", "conditioned": True}),
+    "lines": (helix, {"line_width": 3}),
 }
 SCENES = {
     "far": Scene(lights=FAR, material=SHINY),
@@ -81,7 +86,6 @@ def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighti
         plotter = pv.Plotter(off_screen=True, window_size=(120, 90), lighting=lighting)
         plotter.vizlight.add_mesh(torus(), scene=given, color="white", light=light)
         seen.append(np.asarray(plotter.screenshot(return_img=True)).astype(int))
-        plotter.close()
     assert np.abs(seen[0] - seen[1]).max() <= 1
     drawn = (seen[0] != seen[0][0, 0]).any(axis=2)
     assert seen[0][drawn].min() >= 0.29 * 255
@@ -89,24 +93,19 @@ def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighti
 
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("model", ["phong", "blinn"])
-@pytest.mark.parametrize("shape", [*SURFACE, "lines"])
+@pytest.mark.parametrize("shape", SHAPES)
 def test_within_four_of_the_light_at_points(shape, model, scene):
-    lines = shape == "lines"
-    mesh = helix() if lines else torus()
-    options = {"line_width": 3} if lines else SURFACE[shape]
-    fragments, points = pictures(mesh, SCENES[scene], model=model, **options)
+    make, options = SHAPES[shape]
+    fragments, points = pictures(make(), SCENES[scene], model=model, **options)
     assert points.std() > 5
     assert np.abs(fragments - points).max() <= 4
 
 
 @pytest.mark.parametrize("shape", ["surface", "conditioned", "lines"])
 def test_colours_of_data_within_four(shape):
-    lines = shape == "lines"
-    mesh = helix() if lines else torus()
-    options = {"line_width": 3} if lines else SURFACE[shape]
-    fragments, points = pictures(
-        mesh, SCENES["two in fog"], scalars="height", cmap="viridis", **options
-    )
+    make, options = SHAPES[shape]
+    options = {"scalars": "height", "cmap": "viridis", **options}
+    fragments, points = pictures(make(), SCENES["two in fog"], **options)
     error = np.abs(fragments - points)
     # Colours are mapped in each fragment too, which is another rounding.
     assert error.max() <= 5
@@ -126,16 +125,14 @@ def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_p
     lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap=cmap)
     found = []
     for light in ("fragments", "points"):
-        plotter = pv.Plotter(off_screen=True, window_size=(320, 240))
-        plotter.render_window.SetMultiSamples(0)
+        plotter = plotter_of(320, 240)
         plotter.vizlight.add_mesh(
             mesh, scene=scene, light=light, scalars="value", cmap=cmap, show_scalar_bar=False
         )
         found.append(shot(plotter, camera))
-        plotter.close()
     path = vizlight.render.save_png(
         lit, tmp_path / "lit.png", camera=camera, size=(320, 240), anti_aliasing=None,
-        background="white",
+        background="black",
     )  # fmt: skip
     found.append(np.array(pv.read(path).active_scalars).reshape(240, 320, -1)[::-1, :, :3])
     expected = lit["rgb"][::4].astype(int)
@@ -189,7 +186,6 @@ def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
         colors.append(len(np.unique(seen.reshape(-1, 3), axis=0)))
         if angle is None:
             assert actor.mapper.dataset.n_points == len(box.extract_surface(algorithm=None).points)
-        plotter.close()
     # Three flat faces, their edges, and the background; and shades from edge to edge.
     assert colors[0] < 40 < 60 < colors[1]
     ball = torus()
@@ -197,7 +193,6 @@ def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.vizlight.add_mesh(ball)
     assert actor.mapper.dataset.n_points == ball.n_points
-    plotter.close()
 
 
 def test_volumes_are_lit_by_the_normals_of_their_surface():
@@ -214,37 +209,25 @@ def test_volumes_are_lit_by_the_normals_of_their_surface():
 
 def test_coarse_data_are_as_if_they_were_split():
     """Light in fragments is that at the points of split segments, which share no code with it."""
-    bundle = vizlight.load_example("fibre_bundle.vtp")
-    points, at = np.asarray(bundle.points, dtype=np.float64), 0
-    rows, tangents, cells = [], [], []
-    coarse_rows, coarse_tangents, coarse_cells = [], [], []
-    count = coarse_count = 0
-    while at < len(bundle.lines):
-        n = bundle.lines[at]
-        line = points[bundle.lines[at + 1 : at + 1 + n]][::4]
-        at += n + 1
-        if len(line) < 3:
+    coarse, split = [], []
+    for points in parts(vizlight.load_example("fibre_bundle.vtp")):
+        line = pv.MultipleLines(points[::4])
+        if line.n_points < 3:
             continue
-        unit = np.gradient(line, axis=0)
-        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
-        coarse_rows.append(line)
-        coarse_tangents.append(unit)
-        coarse_cells.append([len(line), *range(coarse_count, coarse_count + len(line))])
-        coarse_count += len(line)
-        fine = np.linspace(0, len(line) - 1, 24 * (len(line) - 1) + 1)
-        for found, values in ((rows, line), (tangents, unit)):
-            found.append(
-                np.stack([np.interp(fine, np.arange(len(line)), axis) for axis in values.T], axis=1)
-            )
-        cells.append([len(fine), *range(count, count + len(fine))])
-        count += len(fine)
-    coarse = pv.PolyData(np.concatenate(coarse_rows), lines=np.concatenate(coarse_cells))
-    coarse["t"] = np.concatenate(coarse_tangents)
-    split = pv.PolyData(np.concatenate(rows), lines=np.concatenate(cells))
-    split["t"] = np.concatenate(tangents)
+        line["t"] = unit(np.gradient(points[::4], axis=0))
+        at = np.arange(line.n_points)
+        fine = np.linspace(0, at[-1], 24 * at[-1] + 1)
+        places, tangents = (
+            np.stack([np.interp(fine, at, axis) for axis in values.T], axis=1)
+            for values in (points[::4], line["t"])
+        )
+        split.append(pv.MultipleLines(places))
+        split[-1]["t"] = tangents
+        coarse.append(line)
     scene = Scene(lights=FAR, material=shiny(shininess=40))
-    fragments, at_points = pictures(coarse, scene, tangents="t", line_width=2)
-    _, expected = pictures(split, scene, tangents="t", line_width=2)
+    options = {"tangents": "t", "line_width": 2}
+    fragments, at_points = pictures(pv.merge(coarse, merge_points=False), scene, **options)
+    _, expected = pictures(pv.merge(split, merge_points=False), scene, **options)
     covered = np.all([p.max(axis=-1) > 0 for p in (fragments, at_points, expected)], axis=0)
     error, coarse_error = (np.abs(p - expected)[covered] for p in (fragments, at_points))
     assert error.mean() < 0.5 * coarse_error.mean()
@@ -264,8 +247,7 @@ def test_open_surface_faces_the_eye_in_each_fragment():
 
 def test_camera_light_and_moved_actor_are_followed():
     mesh = torus()
-    plotter = pv.Plotter(off_screen=True, window_size=(240, 200))
-    plotter.background_color = "black"
+    plotter = plotter_of(240, 200)
     actor = plotter.vizlight.add_mesh(mesh, scene=SCENES["two in fog"], tangents="around")
     assert plotter.vizlight.explain(actor).startswith("light in each fragment")
     plotter.show(auto_close=False)
@@ -279,19 +261,14 @@ def test_camera_light_and_moved_actor_are_followed():
         scene = SCENES["two in fog"].replace(view=View.from_camera(plotter.camera))
         lit = vizlight.illuminate(moved, scene, tangents="around")
         lit["rgb"] = np.clip(lit["rgb"], 0, 1)
-        other = pv.Plotter(off_screen=True, window_size=(240, 200))
-        other.background_color = "black"
+        other = plotter_of(240, 200)
         other.add_mesh(lit, scalars="rgb", rgb=True, lighting=False)
         expected = shot(other, plotter.camera)
-        other.close()
         assert np.quantile(np.abs(got - expected), 0.9995) <= 4
-    plotter.close()
 
 
 def test_lights_of_the_plotter_may_come_and_go():
-    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
-    plotter.background_color = "black"
-    plotter.render_window.SetMultiSamples(0)
+    plotter = plotter_of(120, 100)
     plotter.vizlight.add_mesh(torus(), light="fragments", color="white", ambient=0.2)
     lit = shot(plotter)
     plotter.remove_all_lights()
@@ -300,19 +277,16 @@ def test_lights_of_the_plotter_may_come_and_go():
     assert set(np.unique(dark)) == {0, 51}
     plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light", positional=True))
     assert shot(plotter, plotter.camera).max() > 100
-    plotter.close()
 
 
 @pytest.mark.parametrize("open_", [False, True])
 def test_lights_of_a_scene_do_not_need_those_of_the_plotter(open_):
     mesh = pv.Plane(i_resolution=9, j_resolution=9) if open_ else torus()
-    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
-    plotter.background_color = "black"
+    plotter = plotter_of(120, 100)
     plotter.vizlight.add_mesh(mesh, scene=SCENES["far"], light="fragments")
     lit = shot(plotter)
     plotter.remove_all_lights()
     without = shot(plotter, plotter.camera)
-    plotter.close()
     assert lit.max() > 40
     np.testing.assert_array_equal(without, lit)
 
@@ -331,38 +305,28 @@ def strands():
     return mesh
 
 
+def manifold():
+    return vizlight.manifold(manifolds.clifford_torus(resolution=12), distance=2.0)
+
+
 FALLBACKS = {
-    "2 tangents per point": (
-        lambda: manifolds_mesh("after"), Scene(lights=FAR, material=SHINY),
-        {"tangents": "projected_frame"},
-    ),
-    "4-space": (
-        lambda: manifolds_mesh("before"), Scene(lights=FAR, material=SHINY),
-        {"tangents": "frame", "positions": "position"},
-    ),
-    "cylinder": (helix, Scene(lights=FAR, material=SHINY), {"model": "cylinder"}),
-    "sign is arbitrary": (reversing, Scene(lights=FAR, material=SHINY), {"tangents": "around"}),
-    "spheres and tubes": (
-        torus, Scene(lights=FAR, material=SHINY), {"render_lines_as_tubes": True}
-    ),
+    "2 tangents per point": (manifold, {"tangents": "projected_frame"}),
+    "4-space": (manifold, {"tangents": "frame", "positions": "position"}),
+    "cylinder": (helix, {"model": "cylinder"}),
+    "sign is arbitrary": (reversing, {"tangents": "around"}),
+    "spheres and tubes": (torus, {"render_lines_as_tubes": True}),
     "alone can be round": (
-        strands, Scene(lights=FAR, material=SHINY),
-        {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True},
+        strands, {"render_lines_as_tubes": True, "line_width": 3, "conditioned": True}
     ),
 }  # fmt: skip
 
 
-def manifolds_mesh(when):
-    shape = manifolds.clifford_torus(resolution=12)
-    return vizlight.manifold(shape, distance=2.0)
-
-
 @pytest.mark.parametrize("reason", FALLBACKS)
 def test_what_fragments_cannot_do_is_done_at_points_with_the_reason(reason):
-    mesh, scene, options = FALLBACKS[reason]
+    mesh, options = FALLBACKS[reason]
+    options = {"scene": SCENES["far"], **options}
     plotter = pv.Plotter(off_screen=True, window_size=(60, 50))
-    actor = plotter.vizlight.add_mesh(mesh(), scene=scene, **options)
+    actor = plotter.vizlight.add_mesh(mesh(), **options)
     assert reason in plotter.vizlight.explain(actor).splitlines()[0]
     with pytest.warns(UserWarning, match=f"computed at the points, because .*{reason}"):
-        plotter.vizlight.add_mesh(mesh(), scene=scene, light="fragments", **options)
-    plotter.close()
+        plotter.vizlight.add_mesh(mesh(), light="fragments", **options)

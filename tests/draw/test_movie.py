@@ -19,6 +19,7 @@ SCENE = far(
     (0.7, 0.6, 0.38, 0.2), (0, -1, 0.5, 0.3), Material(ambient=0.1, diffuse=0.6, specular=0.3)
 )
 SMALL = {"size": (80, 60), "anti_aliasing": None}
+CAMERA = render.camera_on((-3, 3, -3, 3, -1, 1))
 
 
 @pytest.fixture
@@ -26,15 +27,27 @@ def torus():
     return vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=24))
 
 
+@pytest.fixture
+def turned(torus, tmp_path):
+    """Return what writes pictures of the torus that turns and returns their files."""
+
+    def call(name="t.png", **options):
+        return movie.turn(torus, tmp_path / name, **{"scene": SCENE, "picture": SMALL, **options})
+
+    return call
+
+
+def drawn(mesh, **options):
+    return next(render.pictures([mesh], camera=CAMERA, **SMALL, **options))
+
+
 def lit(mesh, angle, **options):
     return project(mesh, rotation=("xw", angle), scene=SCENE, **options)
 
 
 @pytest.mark.opengl
-def test_a_sequence(torus, tmp_path):
-    files = movie.turn(
-        torus, tmp_path / "t.png", scene=SCENE, distance=3.0, frames=4, picture=SMALL
-    )
+def test_a_sequence(turned, tmp_path):
+    files = turned(distance=3.0, frames=4)
     assert [file.name for file in files] == [f"t_{i:04d}.png" for i in range(4)]
     assert sorted(tmp_path.iterdir()) == files
     pictures = [np.asarray(Image.open(file)) for file in files]
@@ -45,95 +58,75 @@ def test_a_sequence(torus, tmp_path):
         assert not ink[[0, -1]].any()
         assert not ink[:, [0, -1]].any()
         assert ink.mean() > 0.05
-    again = movie.turn(
-        torus, tmp_path / "u.png", scene=SCENE, distance=3.0, frames=4, picture=SMALL
-    )
+    again = turned("u.png", distance=3.0, frames=4)
     for one, other in zip(files, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
 
 
 @pytest.mark.opengl
-def test_the_camera_stays(torus, tmp_path):
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
-    options = {"scene": SCENE, "distance": 3.0, "frames": 3, "angle": 1.5}
-    files = movie.turn(torus, tmp_path / "t.png", camera=camera, picture=SMALL, **options)
+def test_the_camera_stays(torus, turned):
+    files = turned(camera=CAMERA, distance=3.0, frames=3, angle=1.5)
     for i, file in enumerate(files):
-        expected = next(
-            render.pictures([lit(torus, 0.5 * i, distance=3.0)], camera=camera, **SMALL)
-        )
+        expected = drawn(lit(torus, 0.5 * i, distance=3.0))
         np.testing.assert_array_equal(np.asarray(Image.open(file)), expected)
 
 
 @pytest.mark.opengl
-def test_a_turn_keeps_the_colour_of_the_material(torus, tmp_path):
+def test_a_turn_keeps_the_colour_of_the_material(turned):
     scene = SCENE.replace(material=Material(ambient=0.3, color="red"))
-    (file,) = movie.turn(
-        torus, tmp_path / "t.png", scene=scene, distance=3.0, frames=1, picture=SMALL
-    )
+    (file,) = turned(scene=scene, distance=3.0, frames=1)
     seen = np.asarray(Image.open(file)).astype(int)
     assert (seen[..., 0] - seen[..., 1]).max() > 60
 
 
 @pytest.mark.opengl
-def test_rotation_comes_before_the_turn(torus, tmp_path):
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+def test_rotation_comes_before_the_turn(torus, turned):
     first = projection.rotation(4, [("yz", 0.4), ("xw", 0.3)])
-    expected = project(torus, rotation=[first, ("zw", 0.5)], scene=SCENE)
-    seen = next(render.pictures([expected], camera=camera, **SMALL))
+    seen = drawn(project(torus, rotation=[first, ("zw", 0.5)], scene=SCENE))
+    options = {"frames": 2, "angle": 1.0, "plane": "zw", "camera": CAMERA}
     for rotation in (first, first.tolist(), [("yz", 0.4), ("xw", 0.3)]):
-        movie.turn(
-            torus, tmp_path / "t.png", scene=SCENE, frames=2, angle=1.0, rotation=rotation,
-            plane="zw", camera=camera, picture=SMALL,
-        )  # fmt: skip
-        difference = np.asarray(Image.open(tmp_path / "t_0001.png"), int) - seen
+        _, file = turned(rotation=rotation, **options)
+        difference = np.asarray(Image.open(file), int) - seen
         assert np.abs(difference).max() <= 1
 
 
 @pytest.mark.opengl
-def test_without_a_scene_the_active_scalars_are_drawn(torus, tmp_path):
+def test_without_a_scene_the_active_scalars_are_drawn(torus, turned):
     torus["temp"] = 300 + 50 * np.asarray(torus["position"])[:, 0]
     torus.cell_data["number"] = np.full(torus.n_cells, 7)
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
 
-    def drawn(name, **options):
-        (file,) = movie.turn(torus, tmp_path / f"{name}.png", frames=1, camera=camera, **options)
+    def first(**picture):
+        (file,) = turned(scene=None, frames=1, camera=CAMERA, picture=SMALL | picture)
         return np.asarray(Image.open(file))
 
     torus.set_active_scalars("temp")
-    found = drawn("a", picture=SMALL)
-    clim = (300 - 75, 300 + 75)
-    expected = next(render.pictures([torus], camera=camera, scalars="temp", clim=clim, **SMALL))
+    found = first()
+    expected = drawn(torus, scalars="temp", clim=(300 - 75, 300 + 75))
     np.testing.assert_array_equal(found, expected)
     assert len(np.unique(found)) > 20
-    np.testing.assert_array_equal(drawn("b", picture={**SMALL, "scalars": "temp"}), expected)
-    assert np.any(drawn("c", picture={**SMALL, "clim": (0, 1)}) != expected)
+    np.testing.assert_array_equal(first(scalars="temp"), expected)
+    assert np.any(first(clim=(0, 1)) != expected)
     torus.set_active_scalars("number", preference="cell")
-    assert len(np.unique(drawn("d", picture=SMALL))) < 20
+    assert len(np.unique(first())) < 20
 
 
 @pytest.mark.opengl
-def test_a_shorter_sequence_leaves_nothing_of_a_longer_one(torus, tmp_path):
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+def test_a_shorter_sequence_leaves_nothing_of_a_longer_one(turned, tmp_path):
     kept = {"t_0004.png", "t_12.png", "u_0002.png"}
     for name in kept:
         (tmp_path / name).write_bytes(b"mine")
     for frames in (3, 2):
-        files = movie.turn(
-            torus, tmp_path / "t.png", scene=SCENE, frames=frames, camera=camera, picture=SMALL
-        )
-        assert len(files) == frames
+        assert len(turned(frames=frames, camera=CAMERA)) == frames
     assert {p.name for p in tmp_path.iterdir()} == {"t_0000.png", "t_0001.png", *kept}
 
 
 @pytest.mark.opengl
-def test_points_behind_the_eye_are_told_of_once(torus, tmp_path):
+def test_points_behind_the_eye_are_told_of_once(turned, tmp_path):
     with pytest.warns(UserWarning, match="in 2 of 2 frames: .* points cannot be projected") as said:
-        movie.turn(
-            torus, tmp_path / "t.png", scene=SCENE, frames=2, picture=SMALL, distance=0.7, cut=True
-        )
+        turned(frames=2, distance=0.7, cut=True)
     assert len(said) == 1
     with pytest.raises(ValueError, match="points before the eye's hyperplane"):
-        movie.turn(torus, tmp_path / "u.png", scene=SCENE, frames=2, distance=0.7)
+        turned("u.png", frames=2, distance=0.7)
     assert not list(tmp_path.glob("u*"))
 
 
@@ -177,8 +170,8 @@ def writers(monkeypatch):
         ("t.mp4", {"mode": "I", "fps": 20.0, "macro_block_size": 2}),
     ],
 )
-def test_what_a_movie_writer_is_told(torus, tmp_path, writers, name, options):
-    files = movie.turn(torus, tmp_path / name, scene=SCENE, frames=3, fps=20, picture=SMALL)
+def test_what_a_movie_writer_is_told(turned, tmp_path, writers, name, options):
+    files = turned(name, frames=3, fps=20)
     assert files == [tmp_path / name]
     assert files[0].read_bytes() == b"movie"
     assert writers[0].options == options
@@ -186,13 +179,9 @@ def test_what_a_movie_writer_is_told(torus, tmp_path, writers, name, options):
 
 
 @pytest.mark.opengl
-def test_a_movie_that_fails_leaves_no_file(torus, tmp_path, writers):
-    camera = render.camera_on((-3, 3, -3, 3, -1, 1))
+def test_a_movie_that_fails_leaves_no_file(turned, tmp_path, writers):
     with pytest.raises(ValueError, match="points before the eye's hyperplane"):
-        movie.turn(
-            torus, tmp_path / "t.gif", scene=SCENE, frames=3, distance=0.7, camera=camera,
-            picture=SMALL,
-        )  # fmt: skip
+        turned("t.gif", frames=3, distance=0.7, camera=CAMERA)
     assert not list(tmp_path.iterdir())
 
 
@@ -201,11 +190,11 @@ def test_a_movie_that_fails_leaves_no_file(torus, tmp_path, writers):
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize(("name", "package"), [("t.gif", "imageio"), ("t.mp4", "imageio_ffmpeg")])
-def test_a_real_movie(torus, tmp_path, name, package):
+def test_a_real_movie(turned, name, package):
     """Runs where the extra is installed."""
     pytest.importorskip(package)
-    movie.turn(torus, tmp_path / name, scene=SCENE, frames=4, distance=3.0, picture=SMALL)
-    frames = importlib.import_module("imageio.v2").mimread(tmp_path / name)
+    (file,) = turned(name, frames=4, distance=3.0)
+    frames = importlib.import_module("imageio.v2").mimread(file)
     assert len(frames) == 4
     assert frames[0].shape[:2] == (60, 80)
 
@@ -218,11 +207,11 @@ def test_a_real_movie(torus, tmp_path, name, package):
     ],
 )
 def test_a_missing_package_is_named_before_anything_is_drawn(
-    torus, tmp_path, monkeypatch, writers, name, missing, words
+    turned, tmp_path, monkeypatch, writers, name, missing, words
 ):
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(movie.MovieError, match=words):
-        movie.turn(torus, tmp_path / name, scene=SCENE)
+        turned(name)
     assert not list(tmp_path.iterdir())
 
 
@@ -244,9 +233,9 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
         ("t.mp4", {"picture": {"size": (81, 60)}}, ValueError, "size: expected an even width"),
     ],
 )
-def test_bad_arguments(torus, tmp_path, writers, name, options, error, words):
+def test_bad_arguments(turned, tmp_path, writers, name, options, error, words):
     with pytest.raises(error, match=words):
-        movie.turn(torus, tmp_path / name, **{"scene": SCENE, **options})
+        turned(name, **options)
     assert not list(tmp_path.iterdir())
 
 

@@ -69,10 +69,7 @@ def baked(camera, view):
         lit, scalars="luminance", cmap="gray", clim=(0, 1), lighting=False, show_scalar_bar=False
     )
     plotter.camera = camera
-    try:
-        return np.array(plotter.screenshot(None, return_img=True))
-    finally:
-        plotter.close()
+    return np.array(plotter.screenshot(None, return_img=True))
 
 
 def answer(process, word):
@@ -84,7 +81,7 @@ def answer(process, word):
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
-def test_highlight_follows_a_drag_in_the_browser(tmp_path):
+def test_highlight_follows_a_drag_in_the_browser():
     from playwright.sync_api import sync_playwright
 
     process = subprocess.Popen(
@@ -102,9 +99,7 @@ def test_highlight_follows_a_drag_in_the_browser(tmp_path):
                 picture, still = None, 0
                 for _ in range(300):
                     page.wait_for_timeout(100)
-                    page.screenshot(path=tmp_path / "page.png")
-                    last = picture
-                    picture = np.array(Image.open(tmp_path / "page.png").convert("RGB"))[70:]
+                    last, picture = picture, shot(page)[70:]
                     # The page fades in; a ball has its highlight and, once turned, another one.
                     good = picture.max() > 200 and (not turn or np.any(picture != shots[0]))
                     still = still + 1 if good and np.array_equal(picture, last) else 0
@@ -150,7 +145,6 @@ def test_browser_is_not_left_to_draw_live_light():
         shown(plotter)
     plotter.clear_actors()
     assert shown(plotter, screenshot=None) == {"screenshot": None}
-    plotter.close()
 
 
 def test_default_backend_draws_live_light_on_the_server():
@@ -159,7 +153,6 @@ def test_default_backend_draws_live_light_on_the_server():
     assert shown(plotter) == {"mode": "server"}
     with pytest.raises(ValueError, match="got 'client'"):
         shown(plotter, mode="client")
-    plotter.close()
 
 
 @pytest.mark.parametrize("registered", [True, False])
@@ -178,25 +171,26 @@ def test_the_page_is_a_frame_of_the_notebook(registered, monkeypatch):
     assert frame.text.count("<script>") == 1
 
 
-@browsers.needed()
+def shot(page):
+    return np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
 def test_an_exported_notebook_stays_interactive(browser, tmp_path):
     plotter = live_plotter()
     shown = notebook.Guarded("html", lambda plotter, **options: options)(plotter)
-    plotter.close()
     path = tmp_path / "notebook.html"
     path.write_text(f"<html><body>{shown._repr_html_()}{shown._repr_html_()}</body></html>")
     page = browser.new_page(viewport={"width": 800, "height": 900})
     page.goto(path.as_uri())
     for frame in page.frames[1:]:
         frame.wait_for_selector("body[data-ready]")
-    seen = [np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)]
+    first = shot(page)
     page.mouse.move(300, 200)
     page.mouse.down()
     page.mouse.move(450, 260, steps=5)
     page.mouse.up()
     page.wait_for_timeout(400)
-    seen.append(np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int))
-    assert np.abs(seen[1] - seen[0])[:420].max() > 30
+    assert np.abs(shot(page) - first)[:420].max() > 30
     page.close()
 
 
@@ -214,7 +208,6 @@ def test_exported_scenes_are_refused_while_there_is_live_light(light, tmp_path):
     plotter.add_mesh(pv.Sphere())
     plotter.export_obj(tmp_path / "ball.obj")
     assert (tmp_path / "ball.obj").stat().st_size > 1000
-    plotter.close()
 
 
 @pytest.mark.skipif("trame_pyvista" in MISSING, reason="needs trame_pyvista")
@@ -226,4 +219,3 @@ def test_gallery_of_pyvista_keeps_the_picture_of_live_light(monkeypatch):
     plotter.show(auto_close=False)
     assert plotter.last_vtksz is None
     assert plotter.last_image.max() > 50
-    plotter.close()

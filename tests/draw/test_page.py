@@ -7,20 +7,23 @@ import json
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import browsers
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import NEAR
 from PIL import Image
+from shapes import torus
 
 import vizlight
 from vizlight import Light, Material, Scene, View
 
-pytestmark = pytest.mark.opengl
-
 BASH = shutil.which("bash")
-needs_browser = browsers.needed(bash=BASH)
+pytestmark = [pytest.mark.opengl, browsers.needed(bash=BASH)]
+PANEL = {"bare": False, "viewport": {"width": 900, "height": 600}}
+
 #: Texts that would run as HTML, as script, as Python or in a shell where one is not escaped.
 PAYLOADS = (
     "</script><script>window.hit=1</script>",
@@ -56,10 +59,6 @@ PAYLOADS = (
 )  # fmt: skip
 
 
-def opened(browser, path):
-    return browsers.opened(browser, path, viewport={"width": 900, "height": 600})
-
-
 def hostile(text, path):
     """Write a page with a text in every place that takes one."""
     mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
@@ -73,16 +72,15 @@ def hostile(text, path):
     ), words  # fmt: skip
 
 
-@needs_browser
 @pytest.mark.parametrize(
     "number",
     # A page takes two seconds: the others are those of slow tests.
     [pytest.param(i, marks=[] if i % 6 == 0 else pytest.mark.slow) for i in range(len(PAYLOADS))],
 )
-def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
+def test_no_text_is_read_as_anything_else(number, opened, tmp_path):
     text = PAYLOADS[number]
     path, words = hostile(text, tmp_path / "page.html")
-    page, seen = opened(browser, path)
+    page, seen = opened(path, **PANEL)
     title = page.evaluate("document.querySelector('h1').textContent")
     assert title == text
     copied = page.evaluate("vizlight.texts()")
@@ -95,7 +93,6 @@ def test_no_text_is_read_as_anything_else(number, browser, tmp_path):
     assert page.evaluate(f"document.querySelectorAll({json.dumps(strange)}).length") == 0
     assert page.evaluate("window.hit") is None
     assert seen == [path.as_uri()]
-    page.close()
     for python in (copied["python"], again["python"]):
         strings = {node.value for node in ast.walk(ast.parse(python)) if _is_string(node)}
         assert text in strings
@@ -118,38 +115,49 @@ def _is_string(node):
     return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
-@needs_browser
-@pytest.mark.parametrize("state", ["first", "lamp", "cut", "parallel", "colours"])
-def test_the_copied_command_draws_the_picture(state, browser, tmp_path):
-    """The command, run by a shell as it was copied, draws what the page shows."""
-    mesh = pv.ParametricTorus(u_res=90, v_res=60)
-    mesh.clear_data()
-    mesh["height"] = np.asarray(mesh.points)[:, 2]
-    mesh.save(tmp_path / "ring.vtp")
+#: What is done to a page before its program and its command are copied.
+ACTS = {
+    "first": "app.draw()",
+    "lamp": "app.put(app.lamps[0], [0.6, 0, 0.8]); app.change({ fade: 0.5 })",
+    "question": "app.look('shape')",
+    "near side": "app.change({ cut: { axis: 2, at: 0.4, far: false } })",
+    "far side": "app.change({ cut: { axis: 0, at: 0.4, far: true } })",
+    "parallel": "app.state.camera.parallel = true; app.orbit(0.3, 0.2); app.change({})",
+    "colours": "app.change({ color: 'height', cmap: 'plasma' })",
+}
+
+
+@pytest.mark.parametrize("act", ACTS)
+def test_what_is_copied_draws_the_picture(act, opened, tmp_path, monkeypatch):
+    """The command, run by a shell as it was copied, and the program draw what the page shows."""
+    monkeypatch.setattr(pv, "OFF_SCREEN", True)
+    monkeypatch.chdir(tmp_path)
+    mesh = torus()
+    del mesh.point_data["n"]
+    mesh.save("ring.vtp")
     scene = Scene(
-        lights=Light(direction=(1, 0.9, 0.5), color=(1, 0.8, 0.6)), view=View(direction=(1, 1, 1)),
+        lights=[Light(direction=(1, 0.9, 0.5), intensity=0.8), NEAR],
+        view=View(direction=(1, 0.6, 0.8)),
         material=Material(ambient=0.2, diffuse=0.6, specular=0.2),
-    )  # fmt: skip
+    )
     path = vizlight.live_html(
-        pv.read(tmp_path / "ring.vtp"), scene, tmp_path / "a.html", background="black",
-        source=["ring.vtp"],
-    )  # fmt: skip
-    page, _ = opened(browser, path)
-    act = {
-        "lamp": "app.put(app.lamps[0], [0.6, 0, 0.8]); app.change({ fade: 0.5 })",
-        "cut": "app.change({ cut: { axis: 0, at: 0.4, far: true } })",
-        "parallel": "app.state.camera.parallel = true; app.orbit(0.3, 0.2); app.change({})",
-        "colours": "app.change({ color: 'height', cmap: 'plasma' })",
-    }.get(state, "app.draw()")
-    page.evaluate(f"() => {{ const app = vizlight; {act}; app.moving = false; app.draw(); }}")
+        pv.read("ring.vtp"), scene, tmp_path / "a.html", background="black", source=["ring.vtp"]
+    )
+    page, _ = opened(path, **PANEL)
+    page.evaluate(f"() => {{ const app = vizlight; {ACTS[act]}; app.moving = false; app.draw(); }}")
     data = page.evaluate("vizlight.canvas.toDataURL().split(',')[1]")
-    command = page.evaluate("vizlight.texts().command")
-    page.close()
-    shell = f'vizlight() {{ {sys.executable} -m vizlight "$@"; }}\n{command}'
-    subprocess.run([BASH, "-c", shell], cwd=tmp_path, capture_output=True, check=True)
+    texts = page.evaluate("vizlight.texts()")
     seen = np.array(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB"))
-    drawn = np.array(Image.open(tmp_path / "a.png").convert("RGB"), dtype=np.int16)
-    error = np.abs(seen - drawn)
-    assert drawn.std() > 10
-    assert error.mean() <= 1.5
-    assert np.quantile(error.max(axis=-1), 0.97) <= 6
+    shell = f'vizlight() {{ {sys.executable} -m vizlight "$@"; }}\n{texts["command"]}'
+    program = texts["python"].replace("clim=", "show_scalar_bar=False, clim=")
+    for draw in (
+        lambda: subprocess.run([BASH, "-c", shell], capture_output=True, check=True),
+        lambda: exec(compile(program, "copied", "exec"), {}),
+    ):
+        draw()
+        drawn = np.array(Image.open("a.png").convert("RGB"), dtype=np.int16)
+        Path("a.png").unlink()
+        error = np.abs(seen - drawn)
+        assert drawn.std() > 10
+        assert error.mean() <= 1.5
+        assert np.quantile(error.max(axis=-1), 0.97) <= 6

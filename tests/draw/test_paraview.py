@@ -101,9 +101,7 @@ def drawn(mesh, scene, options, camera):
     plotter.camera.up, plotter.camera.view_angle = (0, 0, 1), 30
     plotter.camera.parallel_projection, plotter.camera.parallel_scale = bool(parallel), 1.6
     plotter.renderer.ResetCameraClippingRange()
-    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-    plotter.close()
-    return picture
+    return np.asarray(plotter.screenshot(return_img=True), dtype=float)
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import inspect
 import numpy as np
 import pytest
 import pyvista as pv
+from shapes import ball
 
 pytestmark = pytest.mark.opengl
 
@@ -19,12 +20,6 @@ VALUES = {
     "anti_aliasing": "ssaa", "zoom": 1.5, "border": True, "border_color": "red",
     "border_width": 2.0, "before_close_callback": lambda _: None, "edl": True, "show_grid": True,
 }  # fmt: skip
-
-
-def ball():
-    mesh = pv.Sphere()
-    mesh["height"] = np.asarray(mesh.points)[:, 2]
-    return mesh
 
 
 def shown(**options):

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import pyvista as pv
-from lamps import far
+from lamps import far, shiny
+from vectors import unit
 
 import vizlight
 from vizlight import Material, Scene, View, render
@@ -24,9 +25,7 @@ def looking_down(*, parallel):
 
 def shot(mesh, camera, **options):
     plotter = render.make_plotter(mesh, camera=camera, **options)
-    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
-    plotter.close()
-    return picture
+    return np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
 
 
 @pytest.mark.parametrize("light", ["auto", "points"])
@@ -34,7 +33,7 @@ def shot(mesh, camera, **options):
 @pytest.mark.parametrize("along", [(1, 0), (0, 1), (1, 1), (2, -1)])
 def test_width_at_two_distances_is_that_of_the_projection(along, parallel, light):
     """To half a pixel: samples are a quarter of a pixel, on both sides."""
-    way = np.array([*along, 0]) / np.linalg.norm(along)
+    way = unit([*along, 0])
     height, radius = 200, 60
     row, column = np.mgrid[:height, :400]
     near_middle = np.hypot(row - 99.5, column - 199.5) < radius
@@ -64,13 +63,9 @@ def test_a_ring_has_no_gaps_where_its_segments_meet():
 def test_the_mean_across_a_line_is_the_light_of_its_cylinder(seed):
     """Means over the width are means over the visible half, weighted by projected width."""
     random = np.random.default_rng(seed)
-    way, toward = random.normal(size=(2, 3)) * [1, 1, 0.5]
-    way /= np.linalg.norm(way)
-    scene = far(
-        (*toward[:2], abs(toward[2])),
-        (0, 0, 1),
-        Material(ambient=0.1, diffuse=0.5, specular=0.3, shininess=10),
-    )
+    way, toward = unit(random.normal(size=(2, 3)) * [1, 1, 0.5])
+    toward[2] = abs(toward[2])
+    scene = far(toward, (0, 0, 1), shiny(specular=0.3, shininess=10))
     line = vizlight.illuminate(pv.Line(-9 * way, 9 * way, resolution=5), scene, model="cylinder")
     picture = shot(line, looking_down(parallel=True), size=(300, 300), line_diameter=0.8,
                    render_lines_as_tubes=True, anti_aliasing=None)  # fmt: skip
@@ -93,7 +88,6 @@ def test_live_light_widens_lines_that_come_nearer():
         plotter.render()
         picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
         widths.append(picture[:, 50:150].sum() / 100)
-    plotter.close()
     assert widths[1] == pytest.approx(2 * widths[0], rel=0.1)
 
 
@@ -108,7 +102,6 @@ def test_lines_with_light_at_their_points_are_bands():
             render_lines_as_tubes=tubes,
         )  # fmt: skip
         pictures.append(np.asarray(plotter.screenshot(return_img=True)))
-        plotter.close()
     assert pictures[0].std() > 10
     np.testing.assert_array_equal(*pictures)
 
@@ -121,4 +114,3 @@ def test_bad_input_names_the_option(option):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises((TypeError, ValueError), match="line_diameter: expected"):
         plotter.vizlight.add_mesh(line, **option)
-    plotter.close()

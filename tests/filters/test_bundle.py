@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
-from vectors import unit
+from refusals import refusals
+from shapes import straws as lines
 
 import vizlight
 from vizlight import _compiled, _pool
@@ -23,19 +24,6 @@ SCENE = vizlight.Scene(
     lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)), material=SHINY
 )
 QUICK = vizlight.Bundle(grid=24)
-
-
-def lines(count=300, points=12, seed=1):
-    """Return straight lines at random in a ball."""
-    random = np.random.default_rng(seed)
-    way = unit(random.normal(size=(count, 3)))
-    middle = random.uniform(-0.7, 0.7, (count, 3))
-    places = middle[:, None] + np.linspace(-0.3, 0.3, points)[:, None] * way[:, None]
-    mesh = pv.PolyData()
-    mesh.points = places.reshape(-1, 3)
-    ids = np.arange(count * points).reshape(count, points)
-    mesh.lines = np.insert(ids, 0, points, axis=1).ravel()
-    return mesh
 
 
 def test_the_shares_multiply_each_light_and_the_ambient_term():
@@ -227,22 +215,25 @@ def test_a_plan_says_that_light_is_dimmed():
     assert np.isfinite(bad.luminance).all()
 
 
-def test_bad_input():
-    for keywords, words in (
-        ({"diameter": 0.0}, "diameter"), ({"diameter": np.nan}, "diameter"),
-        ({"grid": 2}, "grid"), ({"grid": 4096}, "grid"), ({"depth": 0}, "depth"),
-    ):  # fmt: skip
-        with pytest.raises(ValueError, match=words):
-            vizlight.Bundle(**keywords)
+test_bad_bundles = refusals(
+    lambda keywords: vizlight.Bundle(**keywords),
+    ({"diameter": 0.0}, "diameter"),
+    ({"diameter": np.nan}, "diameter"),
+    ({"grid": 2}, "grid"),
+    ({"grid": 4096}, "grid"),
+    ({"depth": 0}, "depth"),
+    ({"lines": 3}, r"Bundle\(lines=\)", TypeError),
+)
+test_bad_input = refusals(
+    lambda mesh, bundle: vizlight.illuminate(mesh, SCENE, bundle=bundle),
+    (lines(5), "yes", "bundle: expected True, False or a vizlight.Bundle", TypeError),
+    (pv.Sphere(), True, "bundle: expected a mesh with lines"),
+    (lines(5), vizlight.Bundle(lines=pv.Sphere()), r"Bundle\(lines=\): expected a mesh of lines"),
+)
+
+
+def test_arrays_of_shares_that_do_not_fit():
     mesh = lines(5)
-    with pytest.raises(TypeError, match="bundle: expected True, False or a vizlight.Bundle"):
-        vizlight.illuminate(mesh, SCENE, bundle="yes")
-    with pytest.raises(ValueError, match="bundle: expected a mesh with lines"):
-        vizlight.illuminate(pv.Sphere(), SCENE, bundle=True)
-    with pytest.raises(TypeError, match=r"Bundle\(lines=\)"):
-        vizlight.illuminate(pv.Sphere(), SCENE, bundle=vizlight.Bundle(lines=3))
-    with pytest.raises(ValueError, match=r"Bundle\(lines=\): expected a mesh of lines"):
-        vizlight.illuminate(mesh, SCENE, bundle=vizlight.Bundle(lines=pv.Sphere()))
     mesh["transmittance"] = np.zeros(mesh.n_points)
     with pytest.raises(ValueError, match="'transmittance'"):
         vizlight.illuminate(mesh, SCENE, bundle=True)

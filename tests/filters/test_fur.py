@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import vtk
-from lamps import HEADLIT, KIT, SHINY, far, shiny
+from lamps import DEFAULT, HEADLIT, SHINY, far, shiny
 from refusals import refusals
 from vectors import unit
 
@@ -14,7 +14,7 @@ from studies import peak_memory
 from vizlight import Bundle, Light, Material, Scene, View, _compiled, _pool, fur
 from vizlight.model import cylinder
 
-TOWARD, EYE = unit([-1.0, -0.6, 0.9]), unit([0.3, -1, 0.8])
+TOWARD, EYE = unit([(-1.0, -0.6, 0.9), (0.3, -1, 0.8)])
 SCENE = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.9, specular=0.1))
 
 
@@ -26,22 +26,21 @@ def strands(coat, segments=3):
     return np.asarray(coat["fibres"].points).reshape(-1, segments + 1, 3)
 
 
-def outward(points, r1=1.5):
-    ring = points * [1, 1, 0]
-    ring *= r1 / np.linalg.norm(ring, axis=-1, keepdims=True)
-    return unit(points - ring)
+def ways(coat, segments=3):
+    """Return the vectors from the roots of fibres to their tips."""
+    along = strands(coat, segments)
+    return along[:, -1] - along[:, 0]
 
 
 def test_fibres_stand_on_the_surface_along_its_normals():
     mesh = torus(96)
     before = mesh.copy()
     coat = fur(mesh, SCENE, density=0.02, fibres=4000, length=0.2)
-    root, tip = strands(coat)[:, 0], strands(coat)[:, -1]
-    ring = np.hypot(root[:, 0], root[:, 1]) - 1.5
-    np.testing.assert_allclose(np.hypot(ring, root[:, 2]), 0.75, atol=2e-3)
-    np.testing.assert_allclose(np.linalg.norm(tip - root, axis=1), 0.2, rtol=1e-5)
-    along = np.sum((tip - root) / 0.2 * outward(root.astype(float)), axis=1)
-    assert along.min() > 0.999
+    root = strands(coat)[:, 0].astype(float)
+    outward = root - 1.5 * unit(root * [1, 1, 0])
+    np.testing.assert_allclose(np.linalg.norm(outward, axis=1), 0.75, atol=2e-3)
+    np.testing.assert_allclose(np.linalg.norm(ways(coat), axis=1), 0.2, rtol=1e-5)
+    assert np.sum(ways(coat) / 0.2 * unit(outward), axis=1).min() > 0.999
     assert mesh == before
     assert coat.keys() == ["fibres", "skin"]
     assert coat["fibres"].n_lines == 4000
@@ -54,7 +53,7 @@ def test_attenuation_is_the_closed_form_from_base_to_tip():
     mesh = torus()
     with_fur = fur(mesh, SCENE, density=density, fibres=2000, length=length)
     bare = fur(mesh, SCENE, absorption=0, fibres=2000, length=length)
-    normal = np.asarray(strands(bare)[:, -1] - strands(bare)[:, 0], dtype=float) / length
+    normal = ways(bare).astype(float) / length
     lit = (bare["fibres"]["luminance"].reshape(-1, 4) - 0.1).astype(float)
     thick = (with_fur["fibres"]["luminance"].reshape(-1, 4) - 0.1).astype(float)
     sine_in, sine_out = normal @ TOWARD, np.abs(normal @ EYE)
@@ -73,9 +72,8 @@ def test_skin_is_attenuated_by_the_fur_above_it():
     bare = vizlight.illuminate(mesh, SCENE)
     normal = np.asarray(mesh["Normals"], dtype=float)
     sine_in, sine_out = np.maximum(normal @ TOWARD, 1e-9), np.maximum(np.abs(normal @ EYE), 1e-9)
-    expected = 0.1 + (bare["luminance"] - 0.1) * (1 - density) ** (
-        length / sine_in + length / sine_out
-    )
+    remains = (1 - density) ** (length / sine_in + length / sine_out)
+    expected = 0.1 + (bare["luminance"] - 0.1) * remains
     np.testing.assert_allclose(coat["skin"]["luminance"], expected, atol=2e-6)
 
 
@@ -87,12 +85,13 @@ def test_illustration_3_as_numbers():
     b = fur(mesh, SCENE, absorption=0, **options)["fibres"]
     c = fur(mesh, SCENE, density=0.9, **options)["fibres"]
     np.testing.assert_array_equal(a.points, c.points)
-    root = strands({"fibres": a})[:, 0].astype(float)
-    normal = (strands({"fibres": a})[:, -1] - root) / 0.3
+    normal = ways({"fibres": a}).astype(float) / 0.3
     dark = np.repeat(normal @ TOWARD < -1e-3, 4)
     assert a["luminance"][dark].max() > 0.5
     for conditioned in (b, c):
         np.testing.assert_allclose(conditioned["luminance"][dark], 0.1, rtol=1e-6)
+    by_height = c["luminance"].reshape(-1, 4)
+    assert np.all(np.diff(by_height, axis=1) >= -1e-6)
 
 
 @pytest.mark.parametrize("density", [0.0, 1.0])
@@ -130,16 +129,15 @@ def test_lengths_by_point():
     mesh = torus()
     mesh["hair"] = np.where(np.asarray(mesh.points[:, 2]) > 0, 0.3, 0.1)
     coat = fur(mesh, SCENE, density=0.02, fibres=3000, length="hair")
-    root, tip = strands(coat)[:, 0], strands(coat)[:, -1]
-    size = np.linalg.norm(tip - root, axis=1)
+    root, size = strands(coat)[:, 0], np.linalg.norm(ways(coat), axis=1)
     np.testing.assert_allclose(size[root[:, 2] > 0.1], 0.3, rtol=1e-5)
     np.testing.assert_allclose(size[root[:, 2] < -0.1], 0.1, rtol=1e-5)
 
 
 def test_bent_and_curled_fibres_lean_where_they_are_told():
     mesh = torus()
-    straight = strands(fur(mesh, SCENE, density=0.02, fibres=500, length=0.2, segments=6), 6)
     options = {"density": 0.02, "fibres": 500, "length": 0.2, "segments": 6}
+    straight = strands(fur(mesh, SCENE, **options), 6)
     down = strands(fur(mesh, SCENE, toward=(0, 0, -1), bend=2.0, **options), 6)
     assert np.all(down[:, -1, 2] < straight[:, -1, 2] + 1e-6)
     np.testing.assert_array_equal(down[:, 0], straight[:, 0])
@@ -165,8 +163,7 @@ def test_vectors_that_point_inward_are_reversed_and_counted():
     with pytest.warns(UserWarning, match=r"\d+ of 1000 fibres point into .* reversed") as caught:
         coat = fur(mesh, SCENE, **options)
     count = int(str(caught[0].message).split()[0])
-    rise = (strands(coat)[:, -1] - strands(coat)[:, 0])[:, 2]
-    assert (rise > 0).sum() == 1000 - count
+    assert (ways(coat)[:, 2] > 0).sum() == 1000 - count
     assert 400 < count < 600
 
 
@@ -186,24 +183,19 @@ def test_far_from_the_origin(kind):
     light, eye = np.array([-2000.0, -1500, 1800]), np.array([500, -5000, 4000])
     cue = vizlight.DepthCue(back_scale=0.5)
     for view in ({"position": eye}, {"direction": (0.3, -1, 0.8)}):
-        lamp = Light(position=light)
-        scene = Scene(lights=lamp, view=View(**view), depth_cue=cue, material=SHINY)
+        scene = Scene(
+            lights=Light(position=light), view=View(**view), depth_cue=cue, material=SHINY
+        )
         moved = scene.replace(lights=Light(position=light + offset))
-        if "position" in view:
-            moved = scene.moved(offset)
+        moved = scene.moved(offset) if "position" in view else moved
         options = {"density": 0.001, "fibres": 2000, "length": 100, "curl": 0.3}
         here, there = fur(near, scene, **options), fur(far, moved, **options)
-        for block in ("fibres", "skin"):
-            np.testing.assert_allclose(
-                there[block]["luminance"], here[block]["luminance"], atol=3e-4
-            )
-        assert there["fibres"].points.dtype == np.float64
+        for one, other in zip(here, there, strict=True):
+            np.testing.assert_allclose(other["luminance"], one["luminance"], atol=3e-4)
+        places = np.asarray(there["fibres"].points)
+        assert places.dtype == np.float64
         assert here["fibres"].points.dtype == kind
-        np.testing.assert_allclose(
-            np.asarray(there["fibres"].points, np.float64) - offset,
-            here["fibres"].points,
-            atol=1e-3,
-        )
+        np.testing.assert_allclose(places - offset, here["fibres"].points, atol=1e-3)
 
 
 @pytest.mark.parametrize("shape", [{"curl": 1.0}, {"bend": 0.8, "toward": (0, 0, 1)}])
@@ -221,8 +213,7 @@ def test_vectors_of_any_size(scale, random):
     mesh = torus()
     if scale == "mixed":
         scale = 10.0 ** random.uniform(-150, 150, (mesh.n_points, 1))
-    way = np.asarray(mesh["Normals"], np.float64) + np.array([0, 0, 0.3])
-    mesh["way"] = way / np.linalg.norm(way, axis=1, keepdims=True)
+    mesh["way"] = unit(np.add(mesh["Normals"], (0, 0, 0.3)))
     options = {"density": 0.5, "fibres": 300, "bend": 1.0}
     expected = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
     mesh["way"] = mesh["way"] * scale
@@ -289,18 +280,8 @@ def test_an_array_called_normals_that_is_none():
     options = {"vectors": "Normals", "length": 0.1}
     with pytest.warns(UserWarning, match="fibres point into the surface and were reversed"):
         coat = fur(mesh, SCENE, density=0.02, fibres=100, **options)
-    tip = strands(coat)[:, -1] - strands(coat)[:, 0]
-    up = np.where(tip[:, 2:] > 0, 0.1, -0.1) * np.array([0, 0, 1])
-    np.testing.assert_allclose(tip, up, atol=1e-6)
-
-
-def test_the_users_own_array_is_not_replaced():
-    mesh = torus()
-    mesh["luminance"] = np.arange(mesh.n_points)
-    with pytest.raises(ValueError, match="name: expected one under which the mesh has no array"):
-        fur(mesh, SCENE, density=0.02, fibres=10)
-    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene or None, got 3"):
-        fur(torus(), 3, density=0.02)
+    up = np.where(ways(coat)[:, 2:] > 0, 0.1, -0.1) * np.array([0, 0, 1])
+    np.testing.assert_allclose(ways(coat), up, atol=1e-6)
 
 
 def test_no_fibres():
@@ -329,6 +310,9 @@ test_bad_input = refusals(
     ({"length": -0.1}, r"length: expected a number from 0 to 1e\+30, got -0.1"),
     ({"length": "hair"}, "length: expected a point array of one component"),
     ({"length": np.ones(3)}, "length: expected 2304 lengths of 0 or more"),
+    ({"length": [[1.0, 2], [3]]}, "length: expected numbers in rows of equal length", TypeError),
+    ({"absorption": 0.5}, "absorption, density: expected one of them"),
+    ({"density": None, "absorption": 1.1}, "absorption: expected a number from 0 to 1"),
     ({"fibres": -1}, "fibres: expected an integer of at least 0"),
     ({"segments": 0}, "segments: expected an integer of at least 1"),
     ({"vectors": "U"}, "vectors: expected the name of a point array"),
@@ -341,26 +325,35 @@ test_bad_input = refusals(
 )
 
 
-def test_bad_surfaces_and_scenes():
-    with pytest.raises(TypeError, match="surface: expected a PyVista surface, got list"):
-        fur([], SCENE, density=0.02)
-    with pytest.raises(ValueError, match="surface: expected a surface with faces"):
-        fur(pv.Line(), SCENE, density=0.02)
-    flat = Scene(lights=Light(direction=(1, 0)), view=View(position=(0, 0)), material=SHINY)
-    with pytest.raises(ValueError, match="scene: expected vectors of 3 components, got 2"):
-        fur(torus(), flat, density=0.02)
-    huge = torus()
-    huge.points = np.asarray(huge.points, float) * 1e100
-    with pytest.raises(ValueError, match="surface: expected a size from 1e-30 to 1e30"):
-        fur(huge, SCENE, density=0.02)
-    ragged = [[1.0, 2], [3]]
-    with pytest.raises(TypeError, match="length: expected numbers in rows of equal length"):
-        fur(torus(), SCENE, density=0.02, length=ragged)
+def huge():
+    mesh = torus()
+    mesh.points = np.asarray(mesh.points, float) * 1e100
+    return mesh
+
+
+def taken():
+    mesh = torus()
+    mesh["luminance"] = np.arange(mesh.n_points)
+    return mesh
+
+
+test_bad_surfaces_and_scenes = refusals(
+    lambda mesh, scene: fur(mesh, scene, density=0.02, fibres=10),
+    ([], SCENE, "surface: expected a PyVista surface, got list", TypeError),
+    (pv.Line(), SCENE, "surface: expected a surface with faces"),
+    (torus(), Scene(lights=Light(direction=(1, 0))), "scene: expected vectors of 3 .*, got 2"),
+    (torus(), 3, r"scene: expected a vizlight\.Scene or None, got 3", TypeError),
+    (huge(), SCENE, "surface: expected a size from 1e-30 to 1e30"),
+    (taken(), SCENE, "name: expected one under which the mesh has no array"),
+)
 
 
 def test_fur_without_a_scene_is_seen_from_infinity():
-    material = Material(ambient=0.4, diffuse=2.0, specular=0)
-    seen = Scene(lights=KIT, view=View(direction=(1, 1, 1)), material=material)
+    seen = Scene(
+        lights=DEFAULT,
+        view=View(direction=(1, 1, 1)),
+        material=Material(ambient=0.4, diffuse=2.0, specular=0),
+    )
     one, other = (fur(torus(), scene, density=0.2, fibres=50) for scene in (None, seen))
     for part in ("fibres", "skin"):
         np.testing.assert_allclose(one[part]["luminance"], other[part]["luminance"], atol=3e-6)
@@ -383,8 +376,7 @@ def test_fur_of_thin_cylinders_stands_on_a_skin_of_blinns():
     """Each fibre has the exact line light along itself, the skin the same highlight's power."""
     mesh, still = torus(), {"conditioned": False, "absorption": 0}
     coat = fur(mesh, SCENE, fibres=400, length=0.2, model="cylinder", **still)
-    root, tip = strands(coat)[:, 0].astype(float), strands(coat)[:, -1].astype(float)
-    way = np.repeat(tip - root, 4, axis=0)
+    way = np.repeat(ways(coat).astype(float), 4, axis=0)
     shine = cylinder.specular(TOWARD, EYE, way, shininess=SCENE.material.shininess)
     light = 0.1 + 0.9 * cylinder.diffuse(TOWARD, EYE, way) + 0.1 * shine
     np.testing.assert_allclose(coat["fibres"]["luminance"], light, atol=2e-5)
@@ -403,8 +395,7 @@ def test_fur_looks_the_same_on_a_mesh_of_any_size(scale):
     expected, found = fur(mesh, SCENE, fibres=2000), fur(sized, SCENE, fibres=2000)
     for part in ("fibres", "skin"):
         np.testing.assert_allclose(found[part]["luminance"], expected[part]["luminance"], atol=2e-4)
-    tips = [strands(coat)[:, -1] - strands(coat)[:, 0] for coat in (expected, found)]
-    length = [np.linalg.norm(tip, axis=1).mean() for tip in tips]
+    length = [np.linalg.norm(ways(coat), axis=1).mean() for coat in (expected, found)]
     assert length[0] == pytest.approx(0.03 * mesh.length, rel=1e-5)
     assert length[1] == pytest.approx(scale * length[0], rel=1e-4)
 
@@ -430,12 +421,6 @@ def test_absorption_where_lengths_vary_is_that_of_the_mean_length():
     other = fur(mesh, SCENE, density=density, fibres=500, length="hair")
     np.testing.assert_allclose(one["fibres"]["luminance"], other["fibres"]["luminance"], atol=2e-5)
     assert np.all(np.isfinite(fur(mesh, SCENE, fibres=50, length=0.0)["skin"]["luminance"]))
-    for options, words in (
-        ({"absorption": 0.5, "density": 0.5}, "absorption, density: expected one of them"),
-        ({"absorption": 1.1}, "absorption: expected a number from 0 to 1"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            fur(mesh, SCENE, fibres=5, **options)
 
 
 def test_points_of_the_skin_are_split_at_sharp_edges():
@@ -449,10 +434,8 @@ def test_points_of_the_skin_are_split_at_sharp_edges():
     # Each face has its own points, and fibres stand square on it.
     assert found["skin"].n_points == 6 * 81
     assert box.n_points == 386
-    ends = np.asarray(found["fibres"].points).reshape(600, -1, 3)
-    ways = ends[:, -1] - ends[:, 0]
-    np.testing.assert_allclose(np.abs(ways).max(axis=1), 0.1, rtol=1e-5)
-    np.testing.assert_allclose(np.abs(ways).sum(axis=1), 0.1, rtol=1e-5)
+    np.testing.assert_allclose(np.abs(ways(found)).max(axis=1), 0.1, rtol=1e-5)
+    np.testing.assert_allclose(np.abs(ways(found)).sum(axis=1), 0.1, rtol=1e-5)
     assert np.all(np.abs(found["skin"].points).max(axis=1) > 0.4999)
     with pytest.raises(TypeError, match="length: expected the name of a point array beside"):
         fur(box, scene, feature_angle=30, length=np.full(box.n_points, 0.1))

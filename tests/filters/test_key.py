@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, shiny
+from refusals import refusals
 
-import vizlight
 from vizlight import Light, Scene, View, engine, presets
 from vizlight.filters.key import BAR, HOLE, question_of
 from vizlight.shading.display import displayable
@@ -95,18 +95,20 @@ def test_conditioned_tangents_lie_in_a_surface_that_faces_the_eye():
     assert (bound < free).any()
 
 
-def test_bad_input():
-    near = Scene(lights=Light(position=(1, 2, 3)), view=VIEW, material=SHINY)
-    with pytest.raises(ValueError, match="scene: expected lights at infinity for a key"):
-        presets.key(near)
-    with pytest.raises(ValueError, match="question: expected 'direction', 'slope'"):
-        presets.key(Scene(), question="colour")
-    with pytest.raises(TypeError, match=r"scene: expected a vizlight\.Scene"):
-        vizlight.presets.key(None)
-    with pytest.raises(ValueError, match="view: expected a view with a direction"):
-        presets.key(
-            Scene(lights=Light(direction=(1, 2, 3)), view=View(position=(1, 2, 3)), material=SHINY)
-        )
+test_bad_input = refusals(
+    lambda scene, question: presets.key(scene, question=question),
+    (Scene(lights=Light(position=(1, 2, 3))), None, "scene: expected lights at infinity for a key"),
+    (Scene(), "colour", "question: expected 'direction', 'slope'"),
+    (None, None, r"scene: expected a vizlight\.Scene", TypeError),
+    (
+        Scene(lights=Light(direction=(1, 2, 3)), view=View(position=(1, 2, 3))),
+        None,
+        "view: expected a view with a direction",
+    ),
+)
+
+
+def test_the_key_of_a_scene_without_lamps_has_one_colour():
     dark = presets.key(Scene(lights=[], view=VIEW, material=SHINY))["rgb"]
     assert np.unique(dark).size == 1
 

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from lamps import far
+from refusals import refusals
 
 import vizlight
 from vizlight import Light, Scene, View
@@ -33,17 +35,17 @@ def test_cells_and_arrays(shape, kind, cells):
     np.testing.assert_array_equal(mesh.points[:, :width], shape.points[:, :width])
 
 
-def test_every_array_survives_a_file(tmp_path):
-    for shape, name in (
-        (manifolds.klein_bottle(resolution=8), "a.vtp"),
-        (manifolds.sphere3(resolution=2), "a.vtu"),
-    ):
-        mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
-        mesh.save(tmp_path / name)
-        again = pv.read(tmp_path / name)
-        for key in mesh.point_data:
-            np.testing.assert_array_equal(again[key], mesh[key])
-        assert vizlight.provenance(again, "projection") == vizlight.provenance(mesh, "projection")
+@pytest.mark.parametrize(
+    ("shape", "name"),
+    [(manifolds.klein_bottle(resolution=8), "a.vtp"), (manifolds.sphere3(resolution=2), "a.vtu")],
+)
+def test_every_array_survives_a_file(shape, name, tmp_path):
+    mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
+    mesh.save(tmp_path / name)
+    again = pv.read(tmp_path / name)
+    for key in mesh.point_data:
+        np.testing.assert_array_equal(again[key], mesh[key])
+    assert vizlight.provenance(again, "projection") == vizlight.provenance(mesh, "projection")
 
 
 def test_every_shape_is_lit_in_its_own_space():
@@ -64,8 +66,25 @@ def test_every_shape_is_lit_in_its_own_space():
         assert np.ptp(mesh["luminance"]) > 0.05
 
 
-def test_not_a_shape():
-    with pytest.raises(TypeError, match="shape: expected a vizlight.geometry.manifolds.Manifold"):
-        vizlight.manifold(pv.Sphere())
-    with pytest.raises(TypeError, match=r"got a function; sample it by manifolds\.parametric\("):
-        vizlight.manifold(lambda u, v: (u, v, u * v, 0))
+def test_order_2_in_the_size_of_cells():
+    """Light in the middle of a cell, by the mean of its corners, against the exact light there."""
+    errors, sizes = [], [32, 64, 128, 256]
+    scene = far((0.7, 0.6, 0.38, 0.2), (0, 0.2, 1, 0))
+    for size in sizes:
+        mesh, fine = (
+            vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=n), scene=scene)
+            for n in (size, 2 * size)
+        )
+        between = mesh["luminance"][mesh.regular_faces].mean(axis=1)
+        exact = fine["luminance"].reshape(2 * size, 2 * size)[1::2, 1::2].ravel()
+        errors.append(np.abs(between - exact).max())
+    order = -np.polyfit(np.log(sizes), np.log(errors), 1)[0]
+    assert abs(order - 2) < 0.2
+
+
+test_not_a_shape = refusals(
+    vizlight.manifold,
+    (pv.Sphere(), "shape: expected a vizlight.geometry.manifolds.Manifold"),
+    (lambda u, v: (u, v, u * v, 0), r"got a function; sample it by manifolds\.parametric\("),
+    kind=TypeError,
+)

@@ -231,16 +231,11 @@ def test_light_takes_at_most_three_times_the_memory_of_the_mesh(make):
     call = "vizlight.illuminate(mesh, scene, {})".format(more and "feature_angle=30")
     call = "vizlight.isoluminance(mesh, scene)" if bands else call
     code = PEAK.replace("{MAKE}", make).replace("{CALL}", call)
+    command = [sys.executable, "-c", code]
     environment = {**os.environ, "VIZLIGHT_FAST": "0", "VIZLIGHT_THREADS": "1"}
     peaks: list[float] = []
     # In one run of eight or so the C library keeps more of what is freed.
     while len(peaks) < 5 and not (peaks and min(peaks) < 3):
-        run = subprocess.run(
-            [sys.executable, "-c", code],
-            capture_output=True,
-            text=True,
-            check=True,
-            env=environment,
-        )
+        run = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
         peaks.append(float(run.stdout))
     assert 1 < min(peaks) < 3

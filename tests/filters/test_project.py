@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import far
+from refusals import refusals
 from scipy.stats import special_ortho_group
 from vectors import unit
 
@@ -47,10 +48,8 @@ def test_pushed_frame_is_tangent_to_what_is_seen():
     gram = np.einsum("bki,bli->bkl", frame, frame)
     np.testing.assert_allclose(gram, np.tile(np.eye(2), (mesh.n_points, 1, 1)), atol=1e-14)
     normals = np.cross(frame[:, 0], frame[:, 1])
-    computed = mesh.triangulate().compute_normals(cell_normals=False, split_vertices=False)[
-        "Normals"
-    ]
-    along = np.abs(np.sum(normals * np.asarray(computed, float), axis=1))
+    computed = mesh.triangulate().compute_normals(cell_normals=False, split_vertices=False)
+    along = np.abs(np.sum(normals * computed["Normals"], axis=1))
     assert along.min() > 0.999
 
 
@@ -68,13 +67,11 @@ def test_light_after_is_the_light_in_three_space(torus):
     lit = project(torus, rotation=TURN, distance=3.0, scene=SCENE3, light="after")
     placed = project(torus, rotation=TURN, distance=3.0)
     frame = frames(placed, "projected_frame", 3)
-    placed["N"] = np.cross(frame[:, 0], frame[:, 1])
-    expected = engine.shade(placed.points, None, SCENE3, normals=placed["N"], two_sided=True)
+    normals = np.cross(frame[:, 0], frame[:, 1])
+    expected = engine.shade(placed.points, None, SCENE3, normals=normals, two_sided=True)
     np.testing.assert_allclose(lit["luminance"], expected.luminance, atol=1e-12)
-    assert (
-        np.abs(lit["luminance"] - project(torus, rotation=TURN, scene=SCENE4)["luminance"]).max()
-        > 0.1
-    )
+    before = project(torus, rotation=TURN, scene=SCENE4)["luminance"]
+    assert np.abs(lit["luminance"] - before).max() > 0.1
 
 
 def test_silhouette_has_the_ambient_light_and_is_marked():
@@ -129,22 +126,17 @@ def test_a_sphere_cut_by_a_hyperplane():
 PLANE = ((0.3, -0.2, 0.5, 1), 0.05)
 
 
-@pytest.mark.parametrize(
-    ("shape", "bound"),
-    [(manifolds.klein_bottle(), 0.99), (manifolds.veronese(resolution=48), 0.99)],
-    ids=["Klein bottle", "Veronese surface"],
-)
-def test_tangents_of_a_cut_are_along_it(shape, bound):
+@pytest.mark.parametrize("shape", [manifolds.klein_bottle(), manifolds.veronese(resolution=48)])
+def test_tangents_of_a_cut_are_along_it(shape):
     """Also where the surface is not orientable and neighbours' frames differ in sign."""
     curve = vizlight.manifold(shape, hyperplane=PLANE)
     x, ends = np.asarray(curve["position"]), curve.lines.reshape(-1, 3)[:, 1:]
     step = x[ends[:, 1]] - x[ends[:, 0]]
     size = np.linalg.norm(step, axis=1)
     long = size > 1e-6 * size.max()
-    unit = step[long] / size[long, np.newaxis]
     for end in (0, 1):
-        along = np.abs(np.sum(unit * np.asarray(curve["frame"])[ends[long, end]], axis=1))
-        assert along.min() > bound
+        along = np.sum(unit(step[long]) * curve["frame"][ends[long, end]], axis=1)
+        assert np.abs(along).min() > 0.99
 
 
 def test_a_point_without_tangents_leaves_none_in_the_cut(torus):
@@ -176,7 +168,6 @@ def test_silhouettes_are_found_beyond_rounding():
     assert edge.sum() == 128
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_a_fold_is_lit_by_the_limit_of_the_light(dtype):
     """The projected torus is a cylinder, lit as one up to the circles where it is folded."""
     shape = manifolds.torus(1.5, 0.75, resolution=64)
@@ -234,12 +225,6 @@ def test_no_tangents_named_are_the_frame(torus):
         np.testing.assert_array_equal(one["luminance"], other["luminance"])
 
 
-def test_what_is_not_changed_is_copied(torus):
-    np.testing.assert_array_equal(project(torus)["frame"], torus["frame"])
-    assert not np.shares_memory(project(torus)["frame"], torus["frame"])
-    assert not np.shares_memory(project(torus, rotation=TURN)["frame"], torus["frame"])
-
-
 def test_sheets_that_fall_on_each_other_stay_apart_in_a_cut():
     """Both halves of the 3-sphere project to one ball: places in 3-space must join nothing."""
     shape = manifolds.sphere3(resolution=4)
@@ -276,9 +261,8 @@ def test_points_behind_the_eye_are_an_error_or_left_out(torus):
     w = np.asarray(torus["position"])[:, 3]
     with pytest.raises(ValueError, match=f"{np.sum(w >= 0.5)} of 384 points.*cut=True"):
         project(torus, distance=0.5)
-    with pytest.warns(
-        UserWarning, match=f"{np.sum(w >= 0.5)} points cannot be projected"
-    ) as caught:
+    words = f"{np.sum(w >= 0.5)} points cannot be projected"
+    with pytest.warns(UserWarning, match=words) as caught:
         out = project(torus, distance=0.5, cut=True)
     assert len(caught) == 1
     assert isinstance(out, pv.PolyData)
@@ -292,15 +276,10 @@ def test_points_behind_the_eye_are_an_error_or_left_out(torus):
 
 
 def test_all_points_behind_the_eye(torus):
+    torus["position"] = np.add(torus["position"], (0, 0, 0, 9.0))
     with pytest.warns(UserWarning, match="384 points cannot be projected"):
-        out = project(_up(torus), distance=0.5, cut=True)
+        out = project(torus, distance=0.5, cut=True)
     assert out.n_points == 0
-
-
-def _up(mesh):
-    mesh = mesh.copy()
-    mesh["position"] = np.asarray(mesh["position"]) + np.array([0, 0, 0, 9.0])
-    return mesh
 
 
 def test_points_that_are_not_finite(torus):
@@ -314,9 +293,8 @@ def test_points_that_are_not_finite(torus):
             out = project(torus, cut=True, **options)
         assert out.n_points == 382
     plane = {"hyperplane": ((1, 0, 0, 0), 0.1)}
-    with pytest.raises(
-        ValueError, match="mesh: expected finite points, got 2 of 384[^;]*; drop them by cut=True"
-    ):
+    words = "mesh: expected finite points, got 2 of 384[^;]*; drop them by cut=True"
+    with pytest.raises(ValueError, match=words):
         project(torus, **plane)
     with pytest.warns(UserWarning, match="2 points cannot be projected"):
         cut = project(torus, cut=True, **plane)
@@ -332,38 +310,31 @@ def test_vectors_turn_and_are_pushed_forward(torus):
     )
     np.testing.assert_allclose(out["projected_V"], expected[:, 0], atol=1e-14)
     # The first row of the frame is along it.
-    unit = np.asarray(out["projected_V"])
-    unit = unit / np.linalg.norm(unit, axis=1, keepdims=True)
-    np.testing.assert_allclose(frames(out, "projected_frame", 3)[:, 0], unit, atol=1e-14)
+    along = unit(out["projected_V"])
+    np.testing.assert_allclose(frames(out, "projected_frame", 3)[:, 0], along, atol=1e-14)
 
 
 def test_a_field_on_a_surface_in_four_space(torus):
     """Codimension 2 has no sides: the surface's own brightness is the factor."""
     torus["V"] = torus["frame"][:, :4]
-    matte = SCENE4.replace(material=Material(ambient=0.1, diffuse=0.5, specular=0.4))
-    options = {"tangents": "V", "positions": "position"}
-    free = illuminate(torus, matte, **options)
-    lit = illuminate(torus, matte, conditioned="frame", **options)
-    own = illuminate(
-        torus,
-        matte.replace(material=Material(ambient=0, diffuse=1, specular=0)),
-        tangents="frame",
-        positions="position",
-    )
-    np.testing.assert_allclose(
-        lit["luminance"] - 0.1, (free["luminance"] - 0.1) * own["luminance"], atol=1e-14
-    )
-    again = project(torus, scene=matte, tangents="V", conditioned="frame")
-    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
-    with pytest.raises(ValueError, match="normals: .*conditioned by the name of the surface's tan"):
-        illuminate(torus, matte, conditioned=True, **options)
-    with pytest.raises(ValueError, match="conditioned: expected the name of a point array"):
-        illuminate(torus, matte, conditioned="farme", **options)
     torus["short"] = torus["frame"][:, :6]
-    with pytest.raises(ValueError, match="conditioned: expected a point array of 4 or 8"):
-        illuminate(torus, matte, conditioned="short", **options)
-    with pytest.raises(ValueError, match="facing: expected no facing beside tangents"):
-        illuminate(torus, matte, conditioned="frame", facing="eye", **options)
+    options = {"tangents": "V", "positions": "position"}
+    free = illuminate(torus, SCENE4, **options)
+    lit = illuminate(torus, SCENE4, conditioned="frame", **options)
+    white = SCENE4.replace(material=Material(ambient=0, diffuse=1, specular=0))
+    own = illuminate(torus, white, tangents="frame", positions="position")
+    expected = (free["luminance"] - 0.1) * own["luminance"]
+    np.testing.assert_allclose(lit["luminance"] - 0.1, expected, atol=1e-14)
+    again = project(torus, scene=SCENE4, tangents="V", conditioned="frame")
+    np.testing.assert_array_equal(again["luminance"], lit["luminance"])
+    for more, words in (
+        ({"conditioned": True}, "normals: .*conditioned by the name of the surface's tan"),
+        ({"conditioned": "farme"}, "conditioned: expected the name of a point array"),
+        ({"conditioned": "short"}, "conditioned: expected a point array of 4 or 8"),
+        ({"conditioned": "frame", "facing": "eye"}, "facing: expected no facing beside tangents"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            illuminate(torus, SCENE4, **options, **more)
 
 
 def test_provenance(torus):
@@ -376,13 +347,6 @@ def test_provenance(torus):
     assert vizlight.provenance(two)["options"]["tangents"] == "frame"
     again = project(torus, rotation=told["earlier"]["rotation"], distance=4.0)
     np.testing.assert_array_equal(again.points, one.points)
-
-
-@pytest.mark.parametrize(("light", "n"), [("before", 3), ("after", 4)])
-def test_a_scene_of_another_space_is_refused_with_the_remedy(torus, light, n):
-    other = "after" if light == "before" else "before"
-    with pytest.raises(ValueError, match=f"scene: expected .*, got {n}; pass light='{other}'"):
-        project(torus, scene=SCENE3 if n == 3 else SCENE4, light=light)
 
 
 def test_blocks_grids_and_points(torus):
@@ -447,11 +411,6 @@ def test_empty_mesh():
     assert project(mesh, frame=None, rotation=TURN, distance=2.0).n_points == 0
 
 
-def test_a_mesh_without_places_is_told_where_they_come_from():
-    with pytest.raises(ValueError, match=r"positions: expected places .* vizlight\.manifold makes"):
-        vizlight.project(pv.Sphere())
-
-
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [
@@ -481,8 +440,12 @@ def test_a_mesh_without_places_is_told_where_they_come_from():
         ({"scene": SCENE4, "rotate": 1}, TypeError, "rotate: expected an option of project"),
         ({"rotate": 1}, TypeError, "rotate: .* did you mean rotation="),
         ({"exponent": 1}, TypeError, "exponent: expected an option of project, or"),
-        ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 components"),
-        ({"scene": SCENE4, "light": "after"}, ValueError, "scene: expected vectors of 3"),
+        ({"scene": SCENE3}, ValueError, "scene: expected vectors of 4 .*, got 3; .* light='after'"),
+        (
+            {"scene": SCENE4, "light": "after"},
+            ValueError,
+            "scene: expected vectors of 3 .*, got 4; pass light='before'",
+        ),
         ({"scene": SCENE4, "frame": None}, ValueError, "frame: expected tangents to light by"),
     ],
 )
@@ -495,19 +458,22 @@ def test_bad_arguments(torus, options, error, words):
         project(torus, **options)
 
 
-def test_a_3_manifold_has_no_light_after_the_projection():
-    shape = manifolds.torus(1.0, 1.0, 1.0, resolution=4)
-    with pytest.raises(ValueError, match="light: expected a curve or a surface, got a 3-manifold"):
-        vizlight.manifold(shape, scene=SCENE3, light="after")
+def taken():
+    mesh = vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=4))
+    del mesh.point_data["projected_frame"], mesh.field_data["projection_provenance"]
+    mesh["projected_frame"] = np.zeros((mesh.n_points, 6))
+    return mesh
 
 
-def test_not_a_mesh():
-    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
-        project(np.zeros((3, 4)))
+def of_dimension_3():
+    return vizlight.manifold(manifolds.torus(1.0, 1.0, 1.0, resolution=4))
 
 
-def test_a_users_own_array_is_not_overwritten(torus):
-    del torus.point_data["projected_frame"], torus.field_data["projection_provenance"]
-    torus["projected_frame"] = np.zeros((torus.n_points, 6))
-    with pytest.raises(ValueError, match="mesh: expected a mesh without an array"):
-        project(torus)
+AFTER = {"scene": SCENE3, "light": "after"}
+test_meshes_that_do_not_fit = refusals(
+    lambda make, options: project(make(), **options),
+    (lambda: np.zeros((3, 4)), {}, "mesh: expected a PyVista mesh", TypeError),
+    (pv.Sphere, {}, r"positions: expected places .* vizlight\.manifold makes"),
+    (of_dimension_3, AFTER, "light: expected a curve or a surface, got a 3-manifold"),
+    (taken, {}, "mesh: expected a mesh without an array"),
+)

@@ -42,11 +42,12 @@ test_bad_days = refusals(
     ({"directions": [(0, 0, -1)]}, "directions: expected the sun above the hor"),
     ({"latitude": 0, "day": 9, "hours": [[12]]}, "hours: expected a list of one"),
     ({"latitude": 0, "day": 9, "hours": []}, "hours: expected a list of one"),
-    (
-        {"directions": (0, 0, 1), "scene": Scene(lights=[])},
-        "scene: expected an option of",
-        TypeError,
-    ),
+    ({"latitude": 0.5}, "latitude, day: expected both, or directions="),
+    ({"latitude": 0.5, "day": 1, "hours": [0]}, "hours: expected the sun above .*, got night"),
+    ({"directions": [(0, 0, 1)], "day": 4}, "directions: expected directions alone"),
+    ({"sun": [1, 2, 3]}, "sun: expected pairs of azimuth and altitude"),
+    ({"sun": [1, 2], "directions": [(0, 0, 1)]}, "sun: expected sun alone"),
+    ({"directions": (0, 0, 1), "scene": Scene()}, "scene: expected an option of", TypeError),
     ({"directions": (0, 0, 1), "lit": True}, "lit: expected an option of", TypeError),
 )
 

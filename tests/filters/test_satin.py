@@ -1,4 +1,4 @@
-"""The satin ball: light of its panels, curves, records and options."""
+"""The satin ball, as numbers: terminator, brightest point, dark side."""
 
 import numpy as np
 import pytest
@@ -11,12 +11,8 @@ import vizlight
 from vizlight import Material
 from vizlight.filters import relight
 
-TOWARD = unit([1.0, -1, 0.6])
-SCENE = far(
-    TOWARD,
-    (0.0, -1, 0.3),
-    Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
-)
+TOWARD, EYE = unit([(1.0, -1, 0.6), (0, -1, 0.3)])
+SCENE = far(TOWARD, EYE, Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)))
 
 
 @pytest.fixture(scope="module")
@@ -30,23 +26,39 @@ def made():
     return sphere, vizlight.satin(sphere, SCENE, tangents="V", seeds=80, facing="outward")
 
 
-def test_panels_have_the_light_of_the_filter(made):
+def test_four_panels(made):
     sphere, panels = made
     assert panels.keys() == ["curves", "surface", "field", "conditioned"]
+    assert all({"luminance", "rgb"} <= set(panel.point_data) for panel in panels)
     assert "luminance" not in sphere.point_data
-    faces = {"facing": "outward"}
-    for name, options in (
-        ("surface", faces), ("field", {"tangents": "V"}),
-        ("conditioned", faces | {"tangents": "V", "conditioned": True}),
-    ):  # fmt: skip
-        expected = vizlight.illuminate(sphere, SCENE, **options)
-        for array in ("luminance", "rgb"):
-            np.testing.assert_array_equal(panels[name][array], expected[array])
-    dark = np.asarray(sphere.points, float) @ TOWARD < -1e-6
+
+
+def test_dark_side_is_exactly_ambient_in_d_and_not_in_c(made):
+    sphere, panels = made
+    cosine = np.asarray(sphere.points, float) @ TOWARD
+    dark = cosine < -1e-6
     assert np.all(panels["conditioned"]["luminance"][dark] == 0.1)
     assert np.all(panels["surface"]["luminance"][dark] == 0.1)
+    # The terminator is where the cosine vanishes.
+    lit = panels["conditioned"]["luminance"] > 0.1
+    assert cosine[~lit].max() < 1e-6 + cosine[lit].min() + 0.05
     assert panels["field"]["luminance"][dark].max() > 0.5
-    assert {"luminance", "rgb"} <= set(panels["curves"].point_data)
+    np.testing.assert_allclose(
+        panels["conditioned"]["rgb"][dark], np.tile([0.1, 0.025, 0.03], (dark.sum(), 1))
+    )
+
+
+def test_brightest_point_is_on_the_cone_of_reflection(made):
+    sphere, panels = made
+    tangent = unit(sphere["V"])
+    miss = np.abs(np.arccos(tangent @ TOWARD) + np.arccos(tangent @ EYE) - np.pi)
+    parts = vizlight.illuminate(sphere, SCENE, tangents="V", components=True)
+    assert miss[np.argmax(parts["specular"])] < 0.05
+    assert np.corrcoef(miss, parts["specular"])[0, 1] < -0.5
+    # The satin's highlight is a band along latitudes, the plain ball's a spot.
+    band = parts["specular"] > 0.5
+    assert np.ptp(np.arctan2(*np.asarray(sphere.points)[band, 1::-1].T)) > 3
+    assert panels["field"]["luminance"].max() > 1
 
 
 def test_curves_have_the_light_of_the_field(made):

@@ -5,7 +5,10 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+from fields import step
+from lamps import far
 from refusals import refusals
+from vectors import unit
 
 import vizlight
 from vizlight import _compiled
@@ -16,11 +19,7 @@ from vizlight.shading import engine, loops
 from vizlight.shading.options import LightOptions
 
 pytest.importorskip("embreex")
-SCENE = vizlight.Scene(
-    lights=vizlight.Light(direction=(1, 1, 1)),
-    view=vizlight.View(direction=(0, 0, 1)),
-    material=vizlight.Material(ambient=0.5, diffuse=0.4, specular=0.3),
-)
+SCENE = far((1, 1, 1), (0, 0, 1), vizlight.Material(ambient=0.5, diffuse=0.4, specular=0.3))
 
 
 def valley(count=21):
@@ -33,6 +32,11 @@ def valley(count=21):
 def balls(apart=1.2):
     """Return two balls that hide a part of each other's sky."""
     return [pv.Sphere(center=(x, 0, 0), theta_resolution=16) for x in (0.0, apart)]
+
+
+def both(apart=1.05):
+    """Return them as one mesh."""
+    return pv.merge(balls(apart), merge_points=False)
 
 
 def test_kinds_of_height_fields_agree():
@@ -76,21 +80,19 @@ def test_blocks_hide_one_another_and_a_field_sees_itself():
 
 
 def test_ghost_cells_hide_the_sky_and_hidden_ones_do_not():
-    both = pv.merge(balls(1.05), merge_points=False)
-    first = both.n_cells // 2
-    whole = vizlight.sky(both, error=0.02)["sky"]
-    ghosts = np.zeros(both.n_cells, np.uint8)
+    piece = both()
+    first = piece.n_cells // 2
+    whole = vizlight.sky(piece, error=0.02)["sky"]
+    ghosts = np.zeros(piece.n_cells, np.uint8)
     for mark, hides in ((1, True), (32, False)):
-        piece = both.copy()
         ghosts[first:] = mark
         piece.cell_data["vtkGhostType"] = ghosts
         with warnings.catch_warnings():
             # Points of hidden cells alone have no sky.
             warnings.filterwarnings("ignore", message=".* points have no sky")
             found = vizlight.sky(piece, error=0.02)["sky"]
-        side = np.abs(both.points[:, 0]) < 0.6
-        least = found[side].min()
-        assert (least < 0.3) == hides
+        side = np.abs(piece.points[:, 0]) < 0.6
+        assert (found[side].min() < 0.3) == hides
         if hides:
             np.testing.assert_allclose(found, whole, atol=0.05)
 
@@ -115,15 +117,12 @@ def test_volumes_and_lines():
 
 
 def test_points_without_a_sky_are_marked_and_have_that_of_the_nearest():
-    overlapping = pv.merge(balls(0.4), merge_points=False)
     with pytest.warns(UserWarning, match="have no sky"):
-        found = vizlight.sky(overlapping, error=0.05)
-    centres = np.array([[0, 0, 0], [0.4, 0, 0]])
-    inside = np.zeros(overlapping.n_points, np.bool_)
-    for centre, own in zip(centres, np.split(np.arange(overlapping.n_points), 2), strict=True):
-        inside[np.setdiff1d(np.arange(len(inside)), own)] |= (
-            np.linalg.norm(overlapping.points - centre, axis=1) < 0.48
-        )[np.setdiff1d(np.arange(len(inside)), own)]
+        found = vizlight.sky(both(0.4), error=0.05)
+    # The points of each ball that lie inside the other.
+    first, second = np.split(np.asarray(found.points), 2)
+    inside = np.concatenate([np.linalg.norm(first - (0.4, 0, 0), axis=1) < 0.48,
+                             np.linalg.norm(second, axis=1) < 0.48])  # fmt: skip
     assert not found["sky_valid"][inside].any()
     assert found["sky"].min() > 0.5
     hole = valley()
@@ -132,13 +131,6 @@ def test_points_without_a_sky_are_marked_and_have_that_of_the_nearest():
         found = vizlight.sky(hole, error=0.05)
     assert np.isfinite(found["sky"]).all()
     assert np.flatnonzero(~found["sky_valid"]).tolist() == [30, 31, 32]
-
-
-def step(length=4):
-    """Return a step of a length: a prism whose section is an L."""
-    corners = [[0, 0, 0], [length, 0, 0], [length, 1, 0], [2, 1, 0], [2, 3, 0], [0, 3, 0]]
-    section = pv.PolyData(np.array(corners, float), faces=[6, 0, 1, 2, 3, 4, 5])
-    return section.triangulate().extrude((0, 0, 3), capping=True).clean()
 
 
 def test_points_of_creases_see_the_sky_of_each_side():
@@ -186,15 +178,13 @@ def test_triangles_inside_of_which_the_sky_changes_are_split():
 def test_a_coarse_ball_stays_round_where_its_triangles_are_split():
     """New points have normals between those of the corners, not of the flat faces."""
     ball = pv.Sphere(theta_resolution=12, phi_resolution=12).triangulate()
-    mesh = ball + pv.Plane(i_size=4, j_size=4, i_resolution=1, j_resolution=1).translate(
-        (0, 0, -0.5)
-    )
+    floor = pv.Plane(center=(0, 0, -0.5), i_size=4, j_size=4, i_resolution=1, j_resolution=1)
+    mesh = ball + floor
     mesh.clear_data()
     lit = vizlight.illuminate(mesh, SCENE, occlusion="sky", feature_angle=80, components=True)
     round_ = lit.points[:, 2] > -0.4
     assert np.count_nonzero(round_) > 2 * ball.n_points
-    away = lit.points[round_] / np.linalg.norm(lit.points[round_], axis=1)[:, None]
-    cosine = (lit["vizlight_normals"][round_, :3] * away).sum(axis=1)
+    cosine = (lit["vizlight_normals"][round_, :3] * unit(lit.points[round_])).sum(axis=1)
     assert cosine.min() > np.cos(np.radians(5))
 
 
@@ -208,7 +198,7 @@ def test_points_that_see_nothing_are_counted():
 
 
 def test_a_sky_that_is_older_than_the_mesh_is_told():
-    known = vizlight.sky(pv.merge(balls(), merge_points=False), error=0.05)
+    known = vizlight.sky(both(1.2), error=0.05)
     for same in (known, known.triangulate(), known.clip("z")):
         vizlight.illuminate(same, SCENE, occlusion="sky")
     moved, fewer = known.copy(), known.copy()
@@ -259,11 +249,10 @@ def test_openness_and_names():
 @pytest.mark.parametrize("color", [None, (1.0, 0.5, 0.2)])
 def test_it_multiplies_the_ambient_term_alone(fast, color, monkeypatch):
     monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
-    both = pv.merge(balls(1.05), merge_points=False)
     scene = SCENE.replace(material=vizlight.Material(ambient=0.5, diffuse=0.4, color=color))
-    plain = vizlight.illuminate(both, scene, components=True)
+    plain = vizlight.illuminate(both(), scene, components=True)
     with vizlight.report(sample=40) as report:
-        lit = vizlight.illuminate(both, scene, components=True, occlusion="sky")
+        lit = vizlight.illuminate(both(), scene, components=True, occlusion="sky")
     assert report.error < 2e-6
     np.testing.assert_allclose(lit["ambient"], lit["sky"] * plain["ambient"], atol=1e-6)
     np.testing.assert_allclose(lit["diffuse"], plain["diffuse"], atol=1e-6)
@@ -299,12 +288,12 @@ def test_refined_and_many_small_meshes():
 
 
 def test_live_light_has_the_sky_of_the_mesh():
-    both = pv.merge(balls(1.05), merge_points=False)
-    (source,) = relight.from_options(both, SCENE, LightOptions(occlusion="sky"))
-    assert source.mesh is both
-    assert "sky" not in both.point_data
+    mesh = both()
+    (source,) = relight.from_options(mesh, SCENE, LightOptions(occlusion="sky"))
+    assert source.mesh is mesh
+    assert "sky" not in mesh.point_data
     assert live.unfit(source) == ""
-    lit = vizlight.illuminate(both, SCENE, occlusion="sky")
+    lit = vizlight.illuminate(mesh, SCENE, occlusion="sky")
     shading = engine.run(source.inputs, SCENE, source.options)
     assert loops.why_not(shading.plan) == ""
     np.testing.assert_allclose(shading.luminance, lit["luminance"], atol=1e-6)
@@ -373,25 +362,21 @@ def test_constant_heights_missing_heights_and_faces_of_no_size():
 
 
 def test_without_embree_it_works_and_says_that_it_is_slow(monkeypatch):
-    both = pv.merge(balls(1.05), merge_points=False)
-    fast = vizlight.sky(both, error=0.05)["sky"]
+    fast = vizlight.sky(both(), error=0.05)["sky"]
     monkeypatch.setattr(closed_meshes, "embree_tree", lambda _: None)
     monkeypatch.setattr(sky, "SLOW", 10)
     with pytest.warns(UserWarning, match="20 times as long without embreex"):
-        slow = vizlight.sky(both, error=0.05)["sky"]
+        slow = vizlight.sky(both(), error=0.05)["sky"]
     np.testing.assert_allclose(slow, fast, atol=0.05)
 
 
 def test_a_piece_needs_the_sky_of_the_whole(tmp_path):
-    for i, ball in enumerate(balls()):
-        ball.save(tmp_path / f"part{i}.vtp")
+    def light(parts):
+        for i, ball in enumerate(parts):
+            ball.save(tmp_path / f"part{i}.vtp")
+        files, out = f"{tmp_path}/part*.vtp", tmp_path / "lit.pvtp"
+        vizlight.pieces.light(files, SCENE, out=out, occlusion="sky")
+
     with pytest.raises(vizlight.pieces.PieceError, match="occlusion: expected a point array"):
-        vizlight.pieces.light(
-            f"{tmp_path}/part*.vtp", SCENE, out=tmp_path / "lit.pvtp", occlusion="sky"
-        )
-    made = vizlight.sky(pv.MultiBlock(balls()), error=0.05)
-    for i, ball in enumerate(made):
-        ball.save(tmp_path / f"part{i}.vtp")
-    vizlight.pieces.light(
-        f"{tmp_path}/part*.vtp", SCENE, out=tmp_path / "lit.pvtp", occlusion="sky"
-    )
+        light(balls())
+    light(vizlight.sky(pv.MultiBlock(balls()), error=0.05))

@@ -4,7 +4,9 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import pyvista as pv
+import shapes
 from lamps import SHINY, shiny
+from refusals import refusals
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -20,9 +22,8 @@ WHITE = Scene(
 )
 
 
-def ball(count=24):
-    mesh = pv.Sphere(theta_resolution=count, phi_resolution=count)
-    mesh["height"] = np.array(mesh.points[:, 2])
+def ball():
+    mesh = shapes.ball()
     mesh["flow"] = np.array(mesh.points) * (1, 2, 3)
     mesh["zone"] = np.digitize(mesh["height"], [-0.3, 0, 0.2])
     return mesh
@@ -246,38 +247,47 @@ def test_empty_mesh():
     assert tint(lit, np.zeros(0))["rgb"].shape == (0, 3)
 
 
-def test_bad_input():
+def lit_ball(**options):
     mesh = ball()
-    lit = vizlight.illuminate(mesh, SCENE)
-    for arguments, options, text in (
-        ((mesh, "height"), {}, "lit: expected a mesh with the light of a filter"),
-        ((lit, "hight"), {}, "scalars: expected a point array"),
-        ((lit,), {}, "scalars: expected the name of a point array"),
-        ((lit, np.zeros(3)), {}, "scalars: expected 530 rows"),
-        ((lit, "height"), {"cmap": "viridi"}, "cmap: expected a colour map"),
-        ((lit, "height"), {"clim": (1, 0)}, "clim: expected a lower and a higher number"),
-        ((lit, "height"), {"n_colors": 0}, "n_colors: expected an integer of at least 1"),
-        ((lit, "flow"), {"component": 3}, "component: expected one of 3 components"),
-        ((lit, "height"), {"name": ""}, "name: expected a name"),
-        ((lit, "height"), {"light": "glow"}, "lit: expected a mesh with the light"),
-    ):
-        with pytest.raises(ValueError, match=text):
-            tint(*arguments, **options)
-    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
-        tint("ball.vtp", "height")
-    words = lit.copy()
-    words["word"] = np.array(["a"] * words.n_points)
-    with pytest.raises(TypeError, match="scalars: expected real numbers"):
-        tint(words, "word")
-    given = vizlight.illuminate(mesh, SCENE, tangents=np.array(mesh.points))
-    with pytest.raises(ValueError, match="attach the array and name it by tangents="):
-        tint(given, "height")
-    moved = lit.copy()
-    moved["Normals"][:] = moved["Normals"][::-1].copy()
-    with pytest.raises(ValueError, match="light it again"):
-        tint(moved, "height")
+    mesh["word"] = np.array(["a"] * mesh.n_points)
+    mesh["wave"] = np.exp(1j * mesh.points[:, 0])
+    return vizlight.illuminate(mesh, SCENE, **options)
+
+
+def moved():
+    mesh = lit_ball()
+    mesh["Normals"][:] = mesh["Normals"][::-1].copy()
+    return mesh
+
+
+test_bad_input = refusals(
+    lambda make, scalars, options: tint(make(), scalars, **options),
+    (ball, "height", {}, "lit: expected a mesh with the light of a filter"),
+    (lit_ball, "hight", {}, "scalars: expected a point array"),
+    (lit_ball, None, {}, "scalars: expected the name of a point array"),
+    (lit_ball, np.zeros(3), {}, "scalars: expected 530 rows"),
+    (lit_ball, "height", {"cmap": "viridi"}, "cmap: expected a colour map"),
+    (lit_ball, "height", {"clim": (1, 0)}, "clim: expected a lower and a higher number"),
+    (lit_ball, "height", {"n_colors": 0}, "n_colors: expected an integer of at least 1"),
+    (lit_ball, "flow", {"component": 3}, "component: expected one of 3 components"),
+    (lit_ball, "height", {"name": ""}, "name: expected a name"),
+    (lit_ball, "height", {"light": "glow"}, "lit: expected a mesh with the light"),
+    (lambda: "ball.vtp", "height", {}, "mesh: expected a PyVista mesh", TypeError),
+    (lit_ball, "word", {}, "scalars: expected real numbers", TypeError),
+    (lit_ball, "wave", {}, r"real numbers.*attach numbers, such as np\.abs\(values\)", TypeError),
+    (
+        lambda: lit_ball(tangents=np.array(ball().points)),
+        "height",
+        {},
+        "attach the array and name it by tangents=",
+    ),
+    (moved, "height", {}, "light it again"),
+)
+
+
+def test_colours_of_no_data_have_no_table():
     with pytest.raises(ValueError, match="expected the result of tint"):
-        unlit_colors(vizlight.illuminate(mesh, SCENE, name="rgb"))
+        unlit_colors(vizlight.illuminate(ball(), SCENE, name="rgb"))
 
 
 @pytest.mark.parametrize("strips", [False, True])
@@ -309,10 +319,3 @@ def test_cells_have_one_colour_each_under_smooth_light(strips):
     place = lit.copy(deep=False)
     tint(place, "rank", cmap="viridis", inplace=True)
     assert np.array_equal(place["rgb"], colored["rgb"])
-
-
-def test_the_remedy_for_complex_values_is_their_size():
-    ball = pv.Sphere()
-    ball["wave"] = np.exp(1j * ball.points[:, 0])
-    with pytest.raises(TypeError, match=r"real numbers.*attach numbers, such as np\.abs\(values\)"):
-        vizlight.tint(vizlight.illuminate(ball), "wave")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
-from vectors import unit
+from shapes import straws
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View
@@ -19,6 +19,7 @@ pytestmark = pytest.mark.opengl
 
 MATTE = Material(ambient=0.08, diffuse=0.9, specular=0)
 FEW = {"samples": 512}
+HEAD = Scene(lights=Light.headlight(), material=MATTE, view=View(direction=(0, 0, 1)))
 
 
 def ring(turn=None, height=0.0, head=0.4, view=None):
@@ -33,10 +34,6 @@ def ring(turn=None, height=0.0, head=0.4, view=None):
     return Scene(lights=lamps, material=MATTE, view=view)
 
 
-def head():
-    return Scene(lights=Light.headlight(), material=MATTE, view=View(direction=(0, 0, 1)))
-
-
 def bumps(dtype=np.float64, n=60):
     """Return a curved sheet with a swirl and heights."""
     x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n))
@@ -48,16 +45,6 @@ def bumps(dtype=np.float64, n=60):
     mesh["swirl"] = np.stack([-y, x, -y * slopes[0] + x * slopes[1]], axis=1).astype(dtype)
     mesh["height"] = z.astype(dtype)
     return mesh
-
-
-def arcs(n=40, seed=0):
-    """Return straight lines in all directions."""
-    random = np.random.default_rng(seed)
-    start = random.uniform(-1, 1, (n, 3))
-    way = unit(random.normal(size=(n, 3)))
-    points = start[:, np.newaxis] + np.linspace(0, 0.7, 8)[:, np.newaxis] * way[:, np.newaxis]
-    cells = np.insert(np.arange(8 * n).reshape(n, 8), 0, 8, axis=1)
-    return pv.PolyData(points.reshape(-1, 3), lines=cells.ravel())
 
 
 def figures(found):
@@ -75,7 +62,7 @@ def test_a_good_light_is_read_and_a_headlight_is_not():
     good = vizlight.legibility(bumps(), ring(), tangents="swirl")
     assert good.direction.within_10 > 0.97
     assert good.direction.legend_median < 6
-    bad = vizlight.legibility(bumps(), head(), tangents="swirl")
+    bad = vizlight.legibility(bumps(), HEAD, tangents="swirl")
     assert bad.direction.within_10 < 0.6
     assert bad.direction.legend_median > 35
     assert good.slope is None
@@ -83,7 +70,7 @@ def test_a_good_light_is_read_and_a_headlight_is_not():
 
 
 def test_lines_under_a_headlight_tell_their_slope():
-    found = vizlight.legibility(arcs(), head())
+    found = vizlight.legibility(straws(40, 8), HEAD)
     assert found.slope.spearman < -0.99
     assert found.slope.bits > 3
     assert found.slope.within_10 < 0.75  # which end is near is a coin
@@ -117,15 +104,12 @@ def test_a_turned_scene_reads_the_same():
     turned["swirl"] = np.asarray(mesh["swirl"]) @ turn.T
     how = {"tangents": "swirl", "scalars": "height", "cmap": "viridis"}
     one = vizlight.legibility(mesh, ring(), **how)
-    other = vizlight.legibility(turned, ring(turn), view=camera_turned(turned, turn), **how)
+    camera = camera_on(turned, turn[:, 2], up=turn[:, 1], parallel=True)
+    other = vizlight.legibility(turned, ring(turn), view=camera, **how)
     for name, value in figures(one).items():
         # A sample of 4,096 pixels of some 200,000.
         slack = 0.02 if "within" in name else 0.3 + 0.1 * value
         assert abs(figures(other)[name] - value) < slack, name
-
-
-def camera_turned(mesh, turn):
-    return camera_on(mesh, turn[:, 2], up=turn[:, 1], parallel=True)
 
 
 def test_a_seed_repeats_and_another_one_does_not():
@@ -185,7 +169,7 @@ def test_a_camera_sees_what_it_shows():
 
 
 def test_blocks_are_read_together():
-    both = pv.MultiBlock({"sheet": bumps(), "lines": arcs(), "none": None})
+    both = pv.MultiBlock({"sheet": bumps(), "lines": straws(40, 8), "none": None})
     found = vizlight.legibility(both, ring(height=1.0))
     assert found.slope is not None
     assert found.shape is not None
@@ -193,9 +177,9 @@ def test_blocks_are_read_together():
 
 
 def test_light_inside_a_bundle_is_that_of_the_mesh():
-    lines = arcs(300)
-    lit = vizlight.illuminate(lines, head(), bundle=vizlight.Bundle(depth=4.0))
-    alone, inside = (vizlight.legibility(mesh, head()).slope for mesh in (lines, lit))
+    lines = straws()
+    lit = vizlight.illuminate(lines, HEAD, bundle=vizlight.Bundle(depth=4.0))
+    alone, inside = (vizlight.legibility(mesh, HEAD).slope for mesh in (lines, lit))
     assert 0 < inside.bits < alone.bits - 0.5
     assert abs(inside.spearman) < abs(alone.spearman) - 0.03
     with pytest.raises(ValueError, match="one column for each of the 4 lights"):
@@ -224,7 +208,7 @@ def test_without_opengl_points_that_face_the_eye_are_read(monkeypatch):
 
 def test_values_are_read_off_the_bar():
     mesh = bumps()
-    flat = head().replace(material=Material(ambient=1, diffuse=0, specular=0))
+    flat = HEAD.replace(material=Material(ambient=1, diffuse=0, specular=0))
     unlit = vizlight.legibility(mesh, flat, scalars="height", cmap="viridis").value
     # Half a step, and one more where bytes of the map repeat.
     assert unlit.p95 < 0.5 / 256
@@ -249,11 +233,6 @@ def test_records_print_and_become_dicts():
     assert json.loads(json.dumps(found.to_dict()))["direction"]["samples"] == 512
     with pytest.raises(dataclasses.FrozenInstanceError):
         found.seed = 1
-
-
-def test_the_accessor_has_it():
-    mesh = bumps()
-    assert mesh.vizlight.legibility(ring(), **FEW) == vizlight.legibility(mesh, ring(), **FEW)
 
 
 def test_what_has_no_answer_is_noted():

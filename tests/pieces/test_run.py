@@ -19,6 +19,23 @@ PLAIN = Scene(view=View(direction=(0, 0, 1)))
 LEVEL = 1.2
 
 
+@pytest.fixture
+def light(tmp_path):
+    """Return what lights a source into one file."""
+
+    def call(source, scene=SCENE, *, out="lit.pvtp", **options):
+        return pieces.light(source, scene, out=tmp_path / out, **options)
+
+    return call
+
+
+@pytest.fixture
+def stored(image, tmp_path):
+    """Return the file of the grid."""
+    image.save(tmp_path / "grid.vti")
+    return tmp_path / "grid.vti"
+
+
 @pytest.fixture(scope="module")
 def image():
     grid = pv.ImageData(dimensions=(21, 18, 23), spacing=(0.2,) * 3, origin=(5, 3, 2))
@@ -36,13 +53,8 @@ def cut(grid, folder, labels, suffix):
     for i in np.unique(labels):
         which = np.flatnonzero(labels == i)
         part = grid.extract_cells(which, pass_point_ids=False, pass_cell_ids=False)
-        part = part.extract_surface(algorithm="geometry") if suffix == "vtp" else part
-        for data, name in (
-            (part.point_data, "vtkOriginalPointIds"),
-            (part.cell_data, "vtkOriginalCellIds"),
-        ):
-            if name in data:
-                del data[name]
+        if suffix == "vtp":
+            part = part.extract_surface(algorithm="geometry", pass_pointid=False, pass_cellid=False)
         part.save(folder / f"part{i:02d}.{suffix}")
     return str(folder / f"*.{suffix}")
 
@@ -66,14 +78,17 @@ def cuts(grid, seed):
 def assert_as_whole(lit, whole, limit=1e-6):
     """Assert that each point of the pieces has the light of the whole, and no cell is missing."""
     where = {tuple(p): i for i, p in enumerate(np.asarray(whole.points, dtype=np.float64).tolist())}
-    cells = 0
+    cells = nowhere = 0
     for path in lit.files:
         part = pv.read(path)
-        at = [where[tuple(p)] for p in np.asarray(part.points, dtype=np.float64).tolist()]
-        np.testing.assert_allclose(part["luminance"], whole["luminance"][at], atol=limit)
+        rows = np.flatnonzero(np.isfinite(part.points).all(axis=1))
+        at = [where[tuple(p)] for p in np.asarray(part.points[rows], dtype=np.float64).tolist()]
+        np.testing.assert_allclose(part["luminance"][rows], whole["luminance"][at], atol=limit)
         assert not set(part.cell_data) & {"vizlight_ghost", "vtkGhostType"}
         cells += part.n_cells
+        nowhere += part.n_points - len(rows)
     assert cells == whole.n_cells == lit.cells
+    assert (nowhere > 0) == (not np.isfinite(whole.points).all())
 
 
 def assert_alike(folder, whole, labels, view, **options):
@@ -108,10 +123,10 @@ def test_arrays_of_the_user_with_names_of_vtk_are_kept(tmp_path, monkeypatch):
     ],
     ids=str,
 )
-def test_an_isosurface_in_12_pieces_is_lit_as_the_whole(image, tmp_path, kind, options):
+def test_an_isosurface_in_12_pieces_is_lit_as_the_whole(image, tmp_path, light, kind, options):
     grid = image.cast_to_unstructured_grid()
     files = cut(grid, tmp_path, cuts(grid, 3)[kind], "vtu")
-    lit = pieces.light(files, SCENE, contour="s", level=LEVEL, out=tmp_path / "lit.pvtp", **options)
+    lit = light(files, contour="s", level=LEVEL, **options)
     if "normals" in options:
         grid = grid.compute_derivative(scalars="s", gradient="gradient")
     whole = grid.contour([LEVEL], scalars="s")
@@ -136,20 +151,18 @@ def surface(kind):
     """Return a surface of one part or several, open and closed, wound outward or not."""
     ball = pv.Sphere(theta_resolution=24, phi_resolution=24)
     height = sheet(3).extract_surface(algorithm="geometry").triangulate()
+    beside = [ball.translate((3, 0, 0)).flip_faces(), height.translate((3, 0, 0))]
     made = {
         "ball": lambda: ball,
         "sheet": lambda: height,
         "bowl": lambda: ball.clip("z", origin=(0, 0, 0.1), invert=False),
         "nearly closed": lambda: ball.clip("z", origin=(0, 0, 0.4)),
-        "several": lambda: pv.merge(
-            [ball, ball.translate((3, 0, 0)).flip_faces(), height, height.translate((3, 0, 0))]
-        ),
+        "several": lambda: pv.merge([ball, height, *beside]),
         "solid": lambda: pv.ImageData(dimensions=(7, 6, 5)).cast_to_unstructured_grid(),
         "hollow": hollow,
     }[kind]()
-    made = made if isinstance(made, pv.UnstructuredGrid) else made.extract_surface(
-        algorithm="geometry"
-    )  # fmt: skip
+    if kind not in ("solid", "hollow"):
+        made = made.extract_surface(algorithm="geometry")
     made.clear_data()
     return made
 
@@ -203,33 +216,24 @@ def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, a
         assert_alike(tmp_path / str(i), whole, labels, View(direction=(0.9, 0.3, -0.2)))
 
 
-def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path):
+def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path, light):
     for name, mesh in (("ball", surface("ball")), ("line", pv.Line(resolution=9))):
         mesh.clear_data()
         mesh["V"] = np.tile([1.0, 0, 0], (mesh.n_points, 1))
         mesh.save(tmp_path / f"{name}.vtp")
     with pytest.raises(pieces.PieceError, match=r"line\.vtp: sources: expected faces as in .*ball"):
-        pieces.light(str(tmp_path / "*.vtp"), SCENE, out=tmp_path / "lit.pvtp")
-    lit = pieces.light(str(tmp_path / "*.vtp"), SCENE, tangents="V", out=tmp_path / "lit.pvtp")
-    assert len(lit.files) == 2
+        light(f"{tmp_path}/*.vtp")
+    assert len(light(f"{tmp_path}/*.vtp", tangents="V").files) == 2
 
 
-def test_points_at_no_place_are_no_neighbours_of_any(tmp_path):
+def test_points_at_no_place_are_no_neighbours_of_any(tmp_path, light):
     whole = surface("ball")
     whole.points[[3, 40, 200]] = np.nan
     files = cut(whole, tmp_path, np.arange(whole.n_cells) % 4, "vtp")
     with pytest.warns(UserWarning, match="could not be lit"):
-        lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp")
+        lit = light(files)
     with pytest.warns(UserWarning, match="could not be lit"):
-        lit_whole = vizlight.illuminate(whole, SCENE)
-    known = np.isfinite(whole.points).all(axis=1)
-    where = {tuple(p): i for i, p in enumerate(whole.points.tolist()) if known[i]}
-    for path in lit.files:
-        part = pv.read(path)
-        rows = np.flatnonzero(np.isfinite(part.points).all(axis=1))
-        at = [where[tuple(p)] for p in part.points[rows].tolist()]
-        light = part["luminance"][rows]
-        np.testing.assert_allclose(light, lit_whole["luminance"][at], atol=1e-6)
+        assert_as_whole(lit, vizlight.illuminate(whole, SCENE))
 
 
 def test_a_sheet_in_slabs_is_lit_as_the_whole(tmp_path):
@@ -255,25 +259,21 @@ def corners(mesh):
     return dict(zip(map(tuple, np.round(keys, 5).tolist()), light.ravel(), strict=True))
 
 
-def test_names_with_dots_keep_the_pieces_apart(image, tmp_path):
-    image.save(tmp_path / "grid.vti")
-    made = [
-        pieces.light(
-            tmp_path / "grid.vti", SCENE, contour="s", level=LEVEL, slab=0.05, out=tmp_path / out
-        )
+def test_names_with_dots_keep_the_pieces_apart(stored, tmp_path, light):
+    plain, dotted = (
+        vizlight.read(light(stored, contour="s", level=LEVEL, slab=0.05, out=out).path)
         for out in ("a.pvtp", "b.0.5.pvtp")
-    ]
-    plain, dotted = (vizlight.read(one.path) for one in made)
+    )
     assert len(list((tmp_path / "b.0.5").iterdir())) > 1
     np.testing.assert_array_equal(dotted.points, plain.points)
 
 
 @pytest.mark.parametrize("angle", [30, "auto"])
-def test_creases_in_pieces_are_lit_as_the_whole(tmp_path, angle):
+def test_creases_in_pieces_are_lit_as_the_whole(tmp_path, light, angle):
     box = pv.Cube(center=(0.01, 0, 0)).triangulate().subdivide(3).clean()
     box.clear_data()
     files = cut(box, tmp_path, np.random.default_rng(0).integers(0, 4, box.n_cells), "vtp")
-    lit = pieces.light(files, SCENE, out=tmp_path / "lit.pvtp", feature_angle=angle)
+    lit = light(files, feature_angle=angle)
     whole = corners(vizlight.illuminate(box, SCENE, feature_angle=angle))
     found = {}
     for path in lit.files:
@@ -297,12 +297,8 @@ def test_pieces_that_were_lit_are_lit_again_joined_or_not(balls):
         vizlight.illuminate(own, SCENE)
 
 
-def test_every_piece_has_the_mask_and_the_index_is_read_by_vtk(image, tmp_path):
-    image.save(tmp_path / "grid.vti")
-    lit = pieces.light(
-        tmp_path / "grid.vti", PLAIN, contour="s", level=LEVEL, tangents="V", slab=0.05,
-        out=tmp_path / "lit.pvtp",
-    )  # fmt: skip
+def test_every_piece_has_the_mask_and_the_index_is_read_by_vtk(stored, light):
+    lit = light(stored, PLAIN, contour="s", level=LEVEL, tangents="V", slab=0.05)
     assert len(lit.files) > 2
     index = lit.path.read_text()
     assert '<PPointData Scalars="luminance">' in index
@@ -349,14 +345,12 @@ def sources(image, folder, kind):
 
 
 @pytest.mark.parametrize("kind", ["vti", "vtr", "vts", "vtkhdf", "array", "memmap", "zarr", "dask"])
-def test_a_grid_is_lit_slab_by_slab(image, tmp_path, kind):
-    lit = pieces.light(
-        sources(image, tmp_path, kind), SCENE, contour="s", level=LEVEL, normals="gradient",
-        slab=0.05, out=tmp_path / "lit.pvtp",
-    )  # fmt: skip
+def test_a_grid_is_lit_slab_by_slab(image, tmp_path, light, kind):
+    source = sources(image, tmp_path, kind)
+    lit = light(source, contour="s", level=LEVEL, normals="gradient", slab=0.05)
     assert len(lit.files) > 2
     if kind in ("vti", "vtr", "vts"):
-        camera = pieces.camera_on(sources(image, tmp_path, kind), (1, 2, 3))
+        camera = pieces.camera_on(source, (1, 2, 3))
         expected = render.camera_on(image, (1, 2, 3))
         np.testing.assert_allclose(camera.position, expected.position, rtol=1e-5)
     whole = image.compute_derivative(scalars="s", gradient="gradient").contour([LEVEL], scalars="s")
@@ -364,20 +358,18 @@ def test_a_grid_is_lit_slab_by_slab(image, tmp_path, kind):
     assert lit.cells == whole.n_cells
     values = np.concatenate([pv.read(path)["luminance"] for path in lit.files])
     assert set(np.round(values, 5)) <= set(np.round(whole["luminance"], 5)) or kind != "vti"
-    np.testing.assert_allclose([values.min(), values.max()],
-        [whole["luminance"].min(), whole["luminance"].max()], atol=1e-5)  # fmt: skip
+    ends = values.min(), values.max()
+    np.testing.assert_allclose(ends, whole.get_data_range("luminance"), atol=1e-5)
 
 
 @pytest.mark.parametrize(
     ("kind", "slab"),
     [("vti", 0.05), *((kind, 0.005) for kind in ("vti", "vtkhdf", "memmap", "zarr", "dask"))],
 )
-def test_a_grid_stays_a_grid(image, tmp_path, kind, slab):
+def test_a_grid_stays_a_grid(image, tmp_path, light, kind, slab):
     """Also where a slab is less than a layer of cells, and is cut across y too."""
     image = image.extract_subset((0, 20, 0, 17, 0, 3))
-    lit = pieces.light(
-        sources(image, tmp_path, kind), PLAIN, tangents="V", slab=slab, out=tmp_path / "lit.pvti",
-    )  # fmt: skip
+    lit = light(sources(image, tmp_path, kind), PLAIN, tangents="V", slab=slab, out="lit.pvti")
     assert len(lit.files) == (1 if slab == 0.05 else 6)
     whole = pv.read(lit.path)
     assert whole.dimensions == image.dimensions
@@ -385,7 +377,7 @@ def test_a_grid_stays_a_grid(image, tmp_path, kind, slab):
     np.testing.assert_array_equal(whole["luminance"], expected)
 
 
-def test_partitions_of_a_file_and_indices_are_pieces(tmp_path):
+def test_partitions_of_a_file_and_indices_are_pieces(tmp_path, light):
     from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet
     from vtkmodules.vtkIOHDF import vtkHDFWriter
 
@@ -397,23 +389,18 @@ def test_partitions_of_a_file_and_indices_are_pieces(tmp_path):
     writer.SetInputDataObject(parts)
     writer.SetFileName(str(tmp_path / "balls.vtkhdf"))
     writer.Write()
-    lit = pieces.light(tmp_path / "balls.vtkhdf", PLAIN, out=tmp_path / "a.pvtu")
+    lit = light(tmp_path / "balls.vtkhdf", PLAIN, out="a.pvtu")
     # VTK 9.4 joins the partitions as it reads them.
     count = 3 if pv.vtk_version_info >= (9, 5) else 1
     assert len(lit.files) == count
-    again = pieces.light(lit.path, PLAIN, out=tmp_path / "b.pvtu", name="second")
+    again = light(lit.path, PLAIN, out="b.pvtu", name="second")
     assert (again.points, len(again.files)) == (lit.points, count)
     pv.MultiBlock(balls).save(tmp_path / "balls.vtm")
-    third = pieces.light(tmp_path / "balls.vtm", PLAIN, out=tmp_path / "c.pvtu")
-    assert third.points == lit.points
+    assert light(tmp_path / "balls.vtm", PLAIN, out="c.pvtu").points == lit.points
 
 
-def test_streamlines_of_each_piece(image, tmp_path):
-    image.save(tmp_path / "grid.vti")
-    lit = pieces.light(
-        tmp_path / "grid.vti", PLAIN, filter="streamlines", vectors="V", seeds=5, slab=0.1,
-        out=tmp_path / "lit.pvtp",
-    )  # fmt: skip
+def test_streamlines_of_each_piece(stored, light):
+    lit = light(stored, PLAIN, filter="streamlines", vectors="V", seeds=5, slab=0.1)
     assert lit.ranges["luminance"][1] > lit.ranges["luminance"][0]
 
 
@@ -485,7 +472,7 @@ def test_pieces_of_another_kind_are_named(balls, change, message):
 
 
 @pytest.mark.parametrize("what", ["grid", "array"])
-def test_boxes_of_another_grid_are_named(image, tmp_path, what):
+def test_boxes_of_another_grid_are_named(image, tmp_path, light, what):
     image.save(tmp_path / "a.vti")
     other = image.copy()
     other.origin = (0, 0, 0) if what == "grid" else other.origin
@@ -493,16 +480,15 @@ def test_boxes_of_another_grid_are_named(image, tmp_path, what):
         other["W"] = other["s"]
     other.save(tmp_path / "b.vti")
     both = [tmp_path / "a.vti", tmp_path / "b.vti"]
-    message = r"piece .*b\.vti\[0:22\]: sources: expected " + (
-        "the Origin of" if what == "grid" else "no point array 'W'"
-    )
+    words = {"grid": "the Origin of", "array": "no point array 'W'"}[what]
+    message = rf"piece .*b\.vti\[0:22\]: sources: expected {words}"
     with pytest.raises(pieces.PieceError, match=message):
-        pieces.light(both, PLAIN, tangents="V", out=tmp_path / "lit.pvti")
+        light(both, PLAIN, tangents="V", out="lit.pvti")
     assert not (tmp_path / "lit.pvti").exists()
     text = (tmp_path / "a.vti").read_bytes()
     (tmp_path / "none.vti").write_bytes(text.replace(b'"0 20 0 17 0 22"', b'"0 -1 0 -1 0 -1"'))
     with pytest.raises(pieces.PieceError, match=r"expected a grid with nodes, got '.*none\.vti'"):
-        pieces.light(tmp_path / "none.vti", PLAIN, out=tmp_path / "lit.pvti")
+        light(tmp_path / "none.vti", PLAIN, out="lit.pvti")
 
 
 def test_sources_are_given_once_and_never_replaced(balls):
@@ -517,17 +503,14 @@ def test_sources_are_given_once_and_never_replaced(balls):
     assert digests(first) == before
 
 
-def test_a_level_outside_is_told_with_the_range(image, tmp_path):
-    image.save(tmp_path / "grid.vti")
+def test_a_level_outside_is_told_with_the_range(image, stored, light):
     low, high = image.get_data_range("s")
-    for work in (pieces.camera_on, pieces.light):
-        more = {} if work is pieces.camera_on else {"out": tmp_path / "lit.pvtp"}
-        arguments = (tmp_path / "grid.vti", (1, 1, 1) if work is pieces.camera_on else PLAIN)
-        words = f"level: expected a value between {low:g} and {high:g}, got 99"
+    words = f"level: expected a value between {low:g} and {high:g}, got 99"
+    for work in (pieces.camera_on, light):
         with pytest.raises(pieces.PieceError, match=words):
-            work(*arguments, contour="s", level=99, slab=0.05, **more)
+            work(stored, contour="s", level=99, slab=0.05)
     with pytest.raises(ValueError, match=r"contour: .* one of \['s'\], got 'W'"):
-        pieces.camera_on(tmp_path / "grid.vti", contour="W")
+        pieces.camera_on(stored, contour="W")
 
 
 def test_lines_in_pieces_are_lit_as_the_whole(tmp_path, monkeypatch):

@@ -74,31 +74,6 @@ def test_view_from_camera(parallel):
     assert view.parallel == parallel
 
 
-@pytest.mark.opengl
-def test_scene_from_plotter_reads_camera_and_lights():
-    plotter = pv.Plotter(lighting="none", off_screen=True)
-    plotter.add_mesh(pv.Sphere())
-    plotter.add_light(pv.Light(position=(5, 5, 5), light_type="scene light"))
-    plotter.add_light(pv.Light(light_type="headlight"))
-    plotter.camera_position = [(4, 0, 0), (0, 0, 0), (0, 0, 1)]
-    scene = Scene.from_plotter(plotter, material=Material(specular=0))
-    assert scene.view == View.from_camera(plotter.camera)
-    assert [light.follows_view for light in scene.lights] == [False, True]
-    assert scene.lights[0].direction == (5.0, 5.0, 5.0)
-    assert scene.material.specular == 0
-    plotter.close()
-
-
-@pytest.mark.opengl
-def test_scene_from_plotter_with_the_default_light_kit():
-    plotter = pv.Plotter(off_screen=True)
-    plotter.add_mesh(pv.Sphere())
-    scene = Scene.from_plotter(plotter)
-    assert len(scene.lights) == 5
-    assert scene.view is not None
-    plotter.close()
-
-
 def test_lights_and_cameras_of_pyvista_are_taken_as_they_are():
     camera = pv.Camera()
     camera.position, camera.focal_point = (0, 0, 4), (0, 0, 0)
@@ -229,50 +204,55 @@ def test_an_actor_coloured_by_data_gives_no_colour():
 
 
 test_bad_values = refusals(
-    lambda call: call(),
-    (lambda: Material(diffuse=-0.1), "diffuse: expected"),
-    (lambda: Material(shininess=np.inf), "shininess: expected a number from 0"),
-    (lambda: Material(color=(1, 2)), "color: expected three channels"),
-    (View, "View: expected position= .* or direction="),
-    (lambda: View(position=(0, 0, 1), parallel=True), "direction: expected"),
-    (lambda: View(direction=(0, 0, 1), parallel=False), "position: expected the eye"),
-    (lambda: View(position=(0, 0, 1), direction=(0, 1)), "direction: expected 3 components"),
-    (lambda: View.from_camera("camera"), "camera: expected a pyvista.Camera", TypeError),
-    (lambda: DepthCue(front=1, back=1), "front: expected a depth other than back"),
-    (lambda: DepthCue(back_scale=1.5), "back_scale: expected a number from 0 to 1"),
+    lambda make, options: make(**options),
+    (Material, {"diffuse": -0.1}, "diffuse: expected"),
+    (Material, {"shininess": np.inf}, "shininess: expected a number from 0"),
+    (Material, {"color": (1, 2)}, "color: expected three channels"),
+    (View, {}, "View: expected position= .* or direction="),
+    (View, {"position": (0, 0, 1), "parallel": True}, "direction: expected"),
+    (View, {"direction": (0, 0, 1), "parallel": False}, "position: expected the eye"),
+    (View, {"position": (0, 0, 1), "direction": (0, 1)}, "direction: expected 3 components"),
+    (DepthCue, {"front": 1, "back": 1}, "front: expected a depth other than back"),
+    (DepthCue, {"back_scale": 1.5}, "back_scale: expected a number from 0 to 1"),
     (
-        lambda: View.from_camera(pv.Plotter(off_screen=True)),
-        "camera: expected .*; pass its .camera",
-        TypeError,
-    ),
-    (
-        lambda: Scene(lights=pv.Light(light_type="camera light", positional=True)),
+        Scene,
+        {"lights": pv.Light(light_type="camera light", positional=True)},
         r"lights: expected a pyvista.Camera as view= .*from_plotter\(plotter\)",
     ),
     (
-        lambda: Scene(view=pv.Plotter(off_screen=True)),
-        "view: expected .*; pass its .camera",
-        TypeError,
-    ),
-    (
-        lambda: Scene(lights=(1, 1, 1)),
+        Scene,
+        {"lights": (1, 1, 1)},
         r"lights: expected a vizlight.Light, got 1; Light\(direction=\(1, 1, 1\)\) makes one",
         TypeError,
     ),
-    (lambda: Scene(lights=["sun"]), "lights: expected a vizlight.Light, got 'sun'", TypeError),
+    (Scene, {"lights": np.array(3.0)}, r"lights: expected a vizlight\.Light", TypeError),
+    (Scene, {"lights": np.array(Light.headlight())}, "lights: expected a vizlight.L", TypeError),
+    (Scene, {"lights": ["sun"]}, "lights: expected a vizlight.Light, got 'sun'", TypeError),
     (
-        lambda: Scene(lights=3),
+        Scene,
+        {"lights": 3},
         "lights: expected a vizlight.Light, a pyvista.Light or a sequence of them, got 3",
         TypeError,
     ),
-    (lambda: Scene(view=(0, 0, 1)), "view: expected a vizlight.View, a camera or None", TypeError),
-    (lambda: Scene(material=0.5), "material: expected a vizlight.Material", TypeError),
-    (lambda: Scene(depth_cue=True), "depth_cue: expected a vizlight.DepthCue", TypeError),
+    (Scene, {"view": (0, 0, 1)}, "view: expected a vizlight.View, a camera or None", TypeError),
+    (Scene, {"material": 0.5}, "material: expected a vizlight.Material", TypeError),
+    (Scene, {"depth_cue": True}, "depth_cue: expected a vizlight.DepthCue", TypeError),
     (
-        lambda: Scene(lights=Light(direction=(1, 0)), view=View(direction=(1, 0, 0))),
+        Scene,
+        {"lights": Light(direction=(1, 0)), "view": View(direction=(1, 0, 0))},
         r"Scene: expected vectors of one space, got \[2, 3\] components",
     ),
-    (lambda: Scene.from_plotter("plotter"), "plotter: expected a pyvista.Plotter", TypeError),
+)
+test_what_is_no_camera_or_plotter = refusals(
+    lambda make: make(),
+    (lambda: View.from_camera("camera"), "camera: expected a pyvista.Camera"),
+    (
+        lambda: View.from_camera(pv.Plotter(off_screen=True)),
+        "camera: expected .*; pass its .camera",
+    ),
+    (lambda: Scene(view=pv.Plotter(off_screen=True)), "view: expected .*; pass its .camera"),
+    (lambda: Scene.from_plotter("plotter"), "plotter: expected a pyvista.Plotter"),
+    kind=TypeError,
 )
 
 
