@@ -473,7 +473,8 @@ def depths(
     widths: Array = np.ones(at.shape[1], np.float32)
     if not gone.size:
         return out, widths
-    # Width of a cone at distance 1: at the median distance of the pieces it is that of a voxel.
+    # Width of a cone at distance 1: it grows to a voxel at the median distance of the pieces, or at
+    # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
     middles, vectors, share = _for_cones(middles - centre, vectors, width, thick)
     gone = size(middles)
