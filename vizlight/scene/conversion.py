@@ -285,6 +285,8 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
             position, target = tuple(light.GetPosition()), tuple(light.GetFocalPoint())
         else:
             position, target = _position_and_target(light, camera)
+        # VTK's light shines from its position to its focal point; a direction here goes toward the
+        # light.
         toward = tuple(p - t for p, t in zip(position, target, strict=True))
         if light.GetPositional():
             # From 90 degrees on VTK draws a positional light without a cone.

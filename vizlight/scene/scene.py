@@ -176,6 +176,7 @@ class Scene:
         parts = _fields("values", values, cls)
         if parts.get("lights") is not None:
             lights = parts["lights"]
+            # The first two can be iterated as well, by letters and by keys.
             if isinstance(lights, str | Mapping) or not isinstance(lights, Iterable):
                 expected, got = "a list of dicts", _check.describe(lights)
                 raise TypeError(_check.message("values, lights", expected, got))

@@ -262,6 +262,8 @@ class Growth:
         # closed.
         going = made & inside & (ahead.length < self.how.max_length)
         going &= (ahead.number < self.how.max_steps) & ~np.isin(ahead.curve, [*self.closed])
+        # Of an end that has come back beside its own curve: the last step before, up to which it is
+        # kept.
         began = np.where(self.returning < 0, walkers.number, self.returning)
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.

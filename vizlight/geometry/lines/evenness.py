@@ -226,6 +226,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     # One cell of each box tells which others can be far.
     number = np.zeros(len(middle))
     for axis in middle[:, :3].T:
+        # One number for each box, as for cells of a grid.
         box = np.floor((axis - axis.min(initial=0)) / (BOX * spacing))
         number = number * (box.max(initial=0) + 1) + box
     _, first, same = np.unique(number, return_index=True, return_inverse=True)
@@ -239,6 +240,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     rows = rows[np.argsort(-near[rows], kind="stable")[:FIRST]]
     # The farthest few, measured exactly, set a bound that rules out most cells at once.
     gap = float(distances.of_lines(middle[first[rows]], along[rows]).max(initial=0))
+    # What cannot hold a larger gap than the one that was found is not halved at all.
     kept = np.flatnonzero(far + radius > gap + KNOWN * spacing)
     # The corners of a whole cell have the weight 1 at one vertex each.
     whole = np.tile(np.eye(mesh.k + 1), (len(kept), 1, 1))

@@ -141,6 +141,7 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
         expected = "a field with sides between 1e-70 and 1e70"
         raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
+    # Where the solid extends without end it has no holes either.
     wide = wide if border == "wall" else filled(wide)
     return Field(
         origin=np.array([axes[0][0], axes[1][0], low]),

@@ -153,6 +153,7 @@ def shadow(
     """
     field = height_field.make(x, y, z, border=border)
     depth = _check.number("depth", depth, low=0.0)
+    # By the heights as given: the field itself may have filled its holes.
     dark = np.isnan(np.asarray(z, dtype=np.float64))
     if normals is None:
         normal = height_field.normals(field)
@@ -241,6 +242,7 @@ def ratio(
         nodes = np.stack([field.x[column], field.y[row], heights[rows]])
         return nodes if limit else nodes - depth * normals[rows].T
 
+    # First these are the lengths r, from which t is made below.
     t = _lengths(field, start, len(heights), ways, report)
     if limit:
         # A ray that grazes its own cell by rounding has not been occluded.

@@ -119,6 +119,7 @@ def sky(
     random = np.random.default_rng(0)
     # Nodes at the crossings of some rows and columns, so that NumPy can take them at once.
     rows, columns = (np.sort(random.choice(n, min(n, SAMPLES), replace=False)) for n in there.shape)
+    # All of them may lie in holes; then a single node stands for the field.
     if not there[np.ix_(rows, columns)].any():
         known = np.argwhere(there)
         rows, columns = known[len(known) // 2][:, np.newaxis]
@@ -412,7 +413,7 @@ def arc(
     if before == 0:
         return max(t, c1 / length)
     c0 = last - here - before * (c1 + before * c2)
-    # The slope c0 / s + c1 + c2 s is largest at the root of c0 / c2, where it is c1 + 2 c2 s.
+    # The slope c0 / s + c1 + c2 s is largest at s = sqrt(c0 / c2), where it is c1 + 2 c2 s.
     if c0 < 0:
         peak = math.sqrt(c0 / c2)
         if before < peak < now:
@@ -513,6 +514,8 @@ def azimuth(
         # Lines come from above, so that the hull of the last column grows by the nodes between two.
         while edge_row >= 0 and y[edge_row] > leaves:
             place = z[edge_row, columns - 1]
+            # Along an axis a line goes on over one height beyond the border, and passes no other
+            # node there.
             if place == place and slope > 0:
                 edge = pushed(bx, bz, edge, y[edge_row], place)
             edge_row -= 1

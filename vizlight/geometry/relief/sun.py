@@ -55,7 +55,7 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     times = _check.floats("hours", hours).astype(np.float64)
     if not np.all((times >= 0) & (times <= 24)):
         raise ValueError(_check.message("hours", "hours from 0 to 24", _check.describe(hours)))
-    # Angle since the first hour of the year; 365.2422 days are a tropical year.
+    # Angle since the start of the year; a tropical year has 365.2422 days.
     year = 2 * np.pi * (day - 1 + times / 24) / 365.2422
     # Mean anomaly and mean longitude, whose values at the start of the year are in degrees.
     anomaly = np.radians(357.21) + year

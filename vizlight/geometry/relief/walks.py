@@ -107,6 +107,7 @@ class _Rays:
         below = np.maximum(z0, z1) <= self.bounds.least[at]
         clear = below | (np.minimum(z0, z1) >= self.bounds.largest[at])
         inside = np.where(below, leave - s, 0.0)
+        # A single cell that the ray is neither above nor below: its surface itself is looked at.
         leaf = np.flatnonzero(~clear & (level == 0))
         inside[leaf] = self._in_cell(leaf, own[:, leaf], leave[leaf])
 
@@ -155,6 +156,8 @@ class _Rays:
             edges = self.edges[axis]
             place = self.start[axis, which] + self.s[which] * self.way[axis, which]
             left = self.cell[axis, which] << 1
+            # Where a square reaches past the field its middle may be infinite: the first half has
+            # the ray.
             middle = edges[np.minimum((left + 1) << level, len(edges) - 1)]
             self.cell[axis, which] = left + (place >= middle)
         self.level[which] = level
@@ -192,6 +195,7 @@ def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
     q = -0.5 * (f1 + np.copysign(np.sqrt(np.maximum(square, 0)), f1))
     one, other = (np.minimum(np.maximum(root, 0), end) for root in (f0 / q, q / (f2 + 0.0)))
     between = np.abs(one - other)
+    # A parabola that opens upward is positive outside its roots, any other between them.
     length = np.where(f2 >= 0, end - between, between)
     # Without a root, or for a constant f, the sign is the same everywhere.
     whole = (square < 0) | (q == 0)
@@ -275,6 +279,7 @@ def walk(
         # Above the highest node there is nothing to meet.
         place = (top - pz) / wz if wz != 0 else 0.0
         s, end = max(place, 0.0) if wz < 0 else 0.0, reach[ray]
+        # A level ray above all nodes ends at 0, so that nothing is walked.
         if wz > 0 or (wz == 0 and pz >= top):
             end = min(end, place)
         # A ray begins in its own cell and climbs to larger squares as it goes.
