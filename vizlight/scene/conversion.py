@@ -53,6 +53,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
             remedy = "make the lights brighter instead"
             raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
     power = values["shininess"]
+    # VTK takes its model from the lights and has no switch for it, so that the power must change.
     if _check_model(model) != vtk_model(given):
         power = _converted(power, _angle(given, view), model)
     shown = min(power, LARGEST_POWER)
@@ -60,6 +61,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
     made = pv.Property(
         **coefficients,
         specular_power=shown,
+        # Here the name tells how normals are interpolated, not which model of reflection VTK takes.
         interpolation="phong",
         lighting=True,
     )
@@ -79,6 +81,7 @@ def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model
     given, view = _check_lights(lights, view), as_view(view)
     shown = power = float(source.GetSpecularPower())
     if _check_model(model) != vtk_model(given):
+        # The other way round: VTK's is the model that the power comes from.
         power = _converted(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
     _warn_of_error(source.GetSpecular(), power, given, view, model, shown)
     if tuple(source.GetAmbientColor()) != tuple(source.GetDiffuseColor()):
@@ -112,6 +115,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     """
     if lights is None:
         return default_lights(as_view(view))
+    # An array of NumPy without dimensions has the method of an iterable, but cannot be iterated.
     several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
     if isinstance(lights, str) or not (several or isinstance(lights, Light) or _is_vtk(lights)):
         expected = "a vizlight.Light, a pyvista.Light or a sequence of them"
@@ -129,6 +133,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
 
 def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
     """Return a light of VTK as one of this package, none if it is switched off."""
+    # At infinity such a light follows any view; where a lamp is only the camera itself tells.
     moves = light.LightTypeIsCameraLight() or light.LightTypeIsHeadlight()
     if moves and light.GetPositional() and not is_camera(view):
         expected, got = "a pyvista.Camera as view= beside a lamp that moves with it", view
@@ -146,6 +151,7 @@ def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     """Return the lights, or the default ones, after checking that they are in 3-space."""
     given = all_lights(lights, view)
     for light in given:
+        # A headlight has neither, and is in any space.
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
             raise ValueError(_check.message("lights", "vectors of 3 components, as in VTK", n))
@@ -163,6 +169,7 @@ def _angle(lights: Sequence[Light], view: View | None) -> float:
     """Return the angle between the eye and the brightest light at infinity, or 0 if unknown."""
     if view is None or view.direction is None:
         return 0.0
+    # A headlight has the angle 0, and a lamp at a place a different one at each point.
     beside = [light.seen_from(view) for light in lights if not light.is_headlight]
     distant = [light for light in beside if light.direction is not None]
     if not distant:
@@ -182,8 +189,10 @@ def _converted(power: float, angle: float, model: str) -> float:
     """
     from vizlight.model import highlights
 
+    # Half the angle between light and eye is beta, for which the factor is 4 cos(beta).
     cosine = max(float(np.cos(angle / 2)), LEAST_COSINE)
     least, factor = 0.5, float(highlights.simple_factor(2 * np.arccos(cosine)))
+    # Blinn's power where Phong's is 1/2: both parts of the conversion meet there.
     low = least * float(highlights.simple_factor(2 * np.arccos(cosine), least))
     if model == "phong":
         return low + factor * (power - least) if power > least else power * low / least
@@ -210,10 +219,12 @@ def _warn_of_error(
         error = 255 * abs(x**wanted - x**shown)
     else:
         phong, blinn = (wanted, shown) if model == "phong" else (shown, wanted)
+        # Both powers are 0 then, and the term is a constant in either model.
         if phong == 0:
             return
         bound = highlights.max_pixel_error(_angle(lights, view), phong, factor=blinn / phong)
         error = abs(float(bound.error))
+    # Errors so far are for a coefficient and an intensity of 1.
     error *= specular * max(light.intensity for light in lights)
     if error <= VISIBLE_ERROR:
         return
@@ -235,6 +246,7 @@ def is_light_kit(lights: Iterable[vtkLight], /) -> bool:
     """Return whether lights are VTK's light kit as it is, with which PyVista's plotters begin."""
     from vtkmodules.vtkRenderingCore import vtkLight, vtkLightKit, vtkRenderer
 
+    # VTK itself makes the kit, so that its numbers are not copied here.
     renderer = vtkRenderer()
     vtkLightKit().AddLightsToRenderer(renderer)
     kit = renderer.GetLights()
@@ -262,6 +274,7 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
     for light in lights:
         if not light.GetSwitch():
             continue
+        # Of a light's three colours VTK's shaders take the diffuse one.
         intensity, color = light.GetIntensity(), _color(light.GetDiffuseColor())
         if light.LightTypeIsHeadlight() and not light.GetPositional():
             yield Light.headlight(intensity=intensity, color=color)
@@ -272,8 +285,11 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
             position, target = tuple(light.GetPosition()), tuple(light.GetFocalPoint())
         else:
             position, target = _position_and_target(light, camera)
+        # VTK's light shines from its position to its focal point; a direction here goes toward the
+        # light.
         toward = tuple(p - t for p, t in zip(position, target, strict=True))
         if light.GetPositional():
+            # From 90 degrees on VTK draws a positional light without a cone.
             if light.GetConeAngle() < 90:
                 _check.warn(
                     f"vizlight takes a spotlight of cone angle {light.GetConeAngle():g} degrees as "
@@ -298,6 +314,7 @@ def _position_and_target(light: vtkLight, camera: vtkCamera | None) -> tuple[Vec
     """Return the position and the focal point of a light in the coordinates of the scene."""
     from vtkmodules.vtkRenderingCore import vtkLight
 
+    # A headlight is at the camera, wherever the light says that it was put.
     if camera is not None and light.LightTypeIsHeadlight():
         return tuple(camera.GetPosition()), tuple(camera.GetFocalPoint())
     if camera is not None and light.LightTypeIsCameraLight():

@@ -31,6 +31,7 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
     ]
     # A function that hands further keywords on checks them itself.
     hands_on = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters)
+    # Arguments that may come without a name, ``self`` among them.
     places = len(known) - len(by_name) - hands_on
     owner = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
@@ -39,6 +40,7 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
         if by_name and len(arguments) > places:
             value: object = arguments[places]
             kind = type(value).__name__.lower()
+            # A Material is most likely meant for material=: the class of a value tells its keyword.
             own = kind if kind in by_name else by_name[0]
             expected, got = f"keywords of {owner} ({', '.join(by_name)})", _check.describe(value)
             raise TypeError(

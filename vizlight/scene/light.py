@@ -122,6 +122,7 @@ class Light:
             expected = "3 components with follows_view=True, in the frame of the eye"
             raise ValueError(_check.message("direction", expected, len(self.direction)))
         x, y, z = self.direction
+        # z of the eye's frame is toward the eye: kept as None, a headlight has one form only.
         if x == y == 0 and z > 0:
             _check.set_fields(self, direction=None)
 
@@ -182,6 +183,7 @@ class Light:
             # Scaled first, as products of huge components might leave float64.
             scale = max(map(abs, self.direction))
             direction = tuple(np.divide(self.direction, scale) @ view.axes())
+        # A perspective view without a direction has no axis: its headlight is at the eye itself.
         position = view.position if direction is None else None
         return dataclasses.replace(self, follows_view=False, direction=direction, position=position)
 

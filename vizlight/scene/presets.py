@@ -219,13 +219,16 @@ def hues(count: int, saturation: float) -> Array:
     blue = np.array([0.0, -least, green])
     blue /= np.linalg.norm(blue)
     red = np.cross(blue, np.divide(LUMA, np.linalg.norm(LUMA)))
+    # Even angles around a circle have the mean 0, and so the colours' mean is white.
     angles = np.radians(FIRST_HUE) + 2 * np.pi * np.arange(count) / count
     ways = np.cos(angles)[:, np.newaxis] * red + np.sin(angles)[:, np.newaxis] * blue
+    # With a saturation of 1 the channel that goes farthest below white becomes 0.
     return np.asarray(1 + saturation * ways / np.abs(np.minimum(ways, 0)).max())
 
 
 def _ring(height: float, saturation: float, head: float) -> list[Lamp]:
     """Return three lamps of equal luma around the eye, and a white one at it."""
+    # Lamps are as far apart as their hues, so that hue goes once around with the azimuth.
     lamps = [
         (of_eye(FIRST_AZIMUTH + 120.0 * i, height), color)
         for i, color in enumerate(hues(3, saturation))
@@ -245,11 +248,13 @@ def _scene(lamps: Sequence[Lamp], brightest: float, view: Eye) -> Scene:
         most = float(channels.max())
         color = None if np.ptp(channels) == 0 else tuple((channels / most).tolist())
         lights.append(
+            # A lamp at the eye is a headlight. Of all together nothing has more than 1.
             Light(
                 direction=None if toward[2] == 1 else toward, follows_view=True, color=color,
                 intensity=most / brightest,
             )
         )  # fmt: skip
+    # Ambient and diffuse light are at most 1 together, so that no colour is clipped.
     material = Material(ambient=AMBIENT, diffuse=1 - AMBIENT, specular=0.0)
     return Scene(lights=lights, material=material, view=_view(view))
 

@@ -84,6 +84,7 @@ class Scene:
         ambient_color: ColorLike | None = None,
         depth_cue: DepthCue | None = None,
     ) -> None:
+        # Lights first: a lamp that moves with a camera needs it as given, not the view made of it.
         lights, view = conversion.all_lights(lights, view), as_view(view)
         _check.instance("material", material, Material, optional=True)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
@@ -98,6 +99,7 @@ class Scene:
             ambient_color=_check.color("ambient_color", ambient_color),
             depth_cue=depth_cue,
         )
+        # Light is computed from products of these vectors, which must be of one space.
         sizes = _sizes(lights, view)
         if len(sizes) > 1:
             raise ValueError(
@@ -135,6 +137,7 @@ class Scene:
         if self.n not in (None, len(offset)):
             expected = f"{self.n} components, as the vectors of the scene have"
             raise ValueError(_check.message("offset", expected, len(offset)))
+        # A light at infinity has no place that could move.
         lights = tuple(
             dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
             if light.position is not None
@@ -173,6 +176,7 @@ class Scene:
         parts = _fields("values", values, cls)
         if parts.get("lights") is not None:
             lights = parts["lights"]
+            # The first two can be iterated as well, by letters and by keys.
             if isinstance(lights, str | Mapping) or not isinstance(lights, Iterable):
                 expected, got = "a list of dicts", _check.describe(lights)
                 raise TypeError(_check.message("values, lights", expected, got))
@@ -239,6 +243,7 @@ class Scene:
             raise TypeError(
                 _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
             )
+        # To read it makes PyVista set a camera that is not set yet, as its show does.
         camera, own_view = plotter.camera, "view" not in fields
         seen = View.from_camera(camera)
         fields.setdefault("view", seen)
@@ -248,6 +253,7 @@ class Scene:
                 raise ValueError(_check.message("material", "an actor alone", "both"))
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
+            # A lone headlight's highlight is as from an eye at infinity in VTK.
             if own_view and conversion.vtk_model(conversion.all_lights(lights, view)) == "blinn":
                 fields["view"] = dataclasses.replace(seen, parallel=True)
         return cls(**fields)
@@ -255,6 +261,7 @@ class Scene:
 
 def _sizes(lights: Iterable[Light], view: View | None) -> set[int]:
     """Return the numbers of components of vectors of a space; the frame of the eye is none."""
+    # A direction in the frame of the eye says nothing about the space of the mesh.
     owners = [*(light for light in lights if not light.follows_view), view]
     return {
         len(v)

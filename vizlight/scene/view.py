@@ -136,13 +136,16 @@ class View:
         toward = unit(self.direction)
         n = len(toward)
         if n == 2:
+            # Right is a quarter turn clockwise from the direction toward the eye.
             return np.stack([np.array([toward[1], -toward[0]]), np.zeros(2), toward])
         # Seen along z, z cannot be up: y takes its place.
         up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else unit(self.up)
         if n == 3:
+            # The two cross products take from up what of it lies along the view.
             right = unit(np.cross(up, toward))
             return np.stack([right, np.cross(toward, right), toward])
         up = unit(_across(up, toward[np.newaxis]))
+        # The axis of which most is left gives right, so that its digits do not cancel.
         sides = [_across(axis, np.stack([toward, up])) for axis in np.eye(n)[:3]]
         right = unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
         # In the first three axes right, up and toward the eye are to be right-handed.
@@ -169,6 +172,7 @@ class View:
         """
         if not is_camera(camera):
             raise TypeError(_no_camera("camera", "a pyvista.Camera or vtkCamera", camera))
+        # VTK's direction goes from the eye into the scene, one of a view toward the eye.
         direction = tuple(-x for x in camera.GetDirectionOfProjection())
         up = tuple(camera.GetViewUp())
         return cls(
@@ -235,6 +239,7 @@ class DepthCue:
             color=_check.color("color", color),
             smooth=_check.boolean("smooth", smooth),
         )
+        # The scale goes from one depth to the other, and is undefined where both are one.
         if self.front is not None and self.front == self.back:
             raise ValueError(_check.message("front", "a depth other than back", self.front))
 

@@ -59,6 +59,8 @@ def directions(count: int, /) -> Array:
         Unit vectors of a hemisphere, on a Fibonacci spiral.
     """
     number = np.arange(max(1, count // 2))
+    # Bands of equal height have equal areas on a sphere (Archimedes), so even heights spread
+    # evenly.
     z = (number + 0.5) / len(number)
     r = np.sqrt(1 - z * z)
     return np.stack([r * np.cos(GOLDEN * number), r * np.sin(GOLDEN * number), z], axis=1)
@@ -102,8 +104,10 @@ class Targets(NamedTuple):
             return np.ones((2, self.places.shape[1]), np.float32)
         # A thin cylinder shows a lamp its diameter times the sine of the angle between them.
         cosine = np.einsum("i...,i...->...", toward.reshape(3, -1), self.vectors)
+        # A surface is lit on the side of its normal alone, so both ends of the direction differ.
         if self.lengths is None:
             return np.maximum([cosine, -cosine], 0)
+        # A line is lit alike from either end. Rounding may leave a cosine just above 1.
         sine = np.sqrt(np.maximum(1 - cosine * cosine, 0))
         return np.stack([sine, sine])
 
@@ -130,6 +134,8 @@ class Targets(NamedTuple):
             return 0.0
         # A line that is short as the light sees it fills only a part of its own voxels.
         seen = self.lengths * facing[0]
+        # A depth per diameter is a length over an area, so in wider voxels it is less in
+        # proportion.
         share: Array = np.minimum(seen / (2 * width), 1) * np.float32(OWN) / width
         return share
 
@@ -171,6 +177,7 @@ class Medium:
         -------
         Targets
         """
+        # Centred in float64: float32 would lose the digits of lines far from the origin.
         places = (points.T.astype(np.float64) - self.origin[:, np.newaxis]) / self.voxel
         known: Bools = np.asarray(np.isfinite(places).all(axis=0))
         # Beyond this, float32 has no fractions of a voxel left; what is farther is as dark.
@@ -237,6 +244,7 @@ class Medium:
         targets = targets.ordered(order)
         left = np.empty((targets.places.shape[1], len(lights)), np.float32)
 
+        # A part is one light, which writes a column of its own, so that threads need no lock.
         def work(part: Slice) -> int:
             left[order, part.start] = self._light(targets, thick, *lights[part.start])
             return int(part.start)
@@ -244,6 +252,7 @@ class Medium:
         for number in _pool.run(work, _pool.blocks(len(lights), 1)):
             if progress is not None:
                 progress(number + 1)
+        # What has no place is not dimmed; until here such points stood at the origin.
         left[order[~targets.known]] = 1
         return left
 
@@ -279,14 +288,17 @@ class Medium:
             total += found.pop(number)
         with np.errstate(invalid="ignore"):
             sides = (total[0] / total[1]).astype(np.float32)
+        # A point with a normal of zero faces no direction: it is not dimmed, rather than 0 / 0.
         sides[~targets.known | (total[1] == 0)] = 1
         share: Array = np.empty_like(sides)
+        # Back from the order of blocks to that of the points.
         share[order] = sides
         return share
 
     def _light(self, targets: Targets, thick: float, place: VectorLike, near: bool) -> Array:
         """Return the share of a light that is left."""
         if not near:
+            # The last row of the frame is the direction with length 1, whatever length was given.
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
             return _left(depth, targets.own(targets.facing(toward)), _crowded(thick))
@@ -294,8 +306,10 @@ class Medium:
         lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
         depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
         way = lamp[:, np.newaxis] - targets.places
+        # A point at the lamp itself has no direction toward it, and nothing is divided by 0.
         way /= np.maximum(size(way), NARROWEST)
         width = np.maximum(width, NARROWEST)
+        # The depth has the factor for crowded lines, and so must what is taken off it.
         own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(thick / width)
         return _left(depth, own, thick)
 
@@ -305,6 +319,7 @@ class Medium:
         facing = targets.facing(toward)
         own = targets.own(facing)
         forth, back = (_left(d, own, _crowded(thick)) for d in self.depths(targets.places, toward))
+        # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
     def crowded(self, targets: Targets, count: int) -> float:
@@ -313,6 +328,7 @@ class Medium:
         ways = directions(count)
         for way in ways:
             forth, back = self.depths(targets.places, way)
+            # Without the point's own line, which does not dim it however crowded the lines are.
             total += (forth + back) / 2 - targets.own(targets.facing(way.astype(np.float32)))
         return float(np.median(total[targets.known]) / len(ways)) if targets.known.any() else 0.0
 
@@ -360,6 +376,7 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
 
 def _by_blocks(places: Array) -> Indices:
     """Return the order of places in voxels in which those near each other follow one another."""
+    # Clipped, so that three numbers of blocks fit into one integer of 64 bits.
     x, y, z = np.clip(np.floor(places / BLOCK), -FINEST / 2, FINEST / 2).astype(np.int64)
     return np.argsort((x * FINEST + y) * FINEST + z, kind="stable")
 
@@ -378,6 +395,7 @@ def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> A
     ends = points[connectivity].astype(np.float64)
     size = np.zeros(len(connectivity) + 1)
     size[first] = np.linalg.norm(ends[first + 1] - ends[first], axis=1)
+    # The running sum would carry NaN from one line to all that follow.
     size[~np.isfinite(size)] = 0
     along = np.concatenate([[0.0], np.cumsum(size)])
     length = along[offsets[1:]] - along[offsets[:-1]]
@@ -388,6 +406,7 @@ def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> A
 
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
+    # Beer and Lambert: what is left is the exponential of minus the depth of all other lines.
     others = depth - own
     others *= -thick
     # More light than all comes of rounding alone.
@@ -448,21 +467,29 @@ def depths(
     """
     centre = np.asarray(lamp, np.float64)[:, np.newaxis]
     at = places - centre
+    # Distances of the pieces and of the points from the light.
     gone, far = size(middles - centre), size(at)
     out = np.zeros(at.shape[1], np.float32)
     widths: Array = np.ones(at.shape[1], np.float32)
     if not gone.size:
         return out, widths
+    # Width of a cone at distance 1: it grows to a voxel at the median distance of the pieces, or at
+    # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
     middles, vectors, share = _for_cones(middles - centre, vectors, width, thick)
     gone = size(middles)
+    # |w x t| times the length of a piece, for a direction w that differs from piece to piece.
     across = share * size(np.cross(vectors, middles, axis=0)) / np.maximum(gone, NARROWEST)
+    # Lines crowd by their diameter in widths of the cones there, not in voxels.
     across *= crowding(thick / np.maximum(width * gone, NARROWEST))
+    # As in a cube map the largest component tells through which face the light sees a point.
     face = np.argmax(np.abs(at), axis=0)
     for axis in range(3):
         others = [i for i in range(3) if i != axis]
         for side in (1, -1):
             rows = np.flatnonzero((face == axis) & (side * at[axis] > 0))
+            # The half space, not the pyramid alone: pieces just beyond its edges spread into its
+            # cones.
             held = np.flatnonzero(side * middles[axis] > 0)
             if rows.size and held.size:
                 # Tangents of the two angles under which the light sees points and pieces.
@@ -471,6 +498,8 @@ def depths(
                 )
                 out[rows] = _in_pyramid(seen, far[rows], pieces, gone[held], across[held], width)
                 height = side * at[axis, rows]
+                # The root of the area that a cone has across the light at the point, as for pieces
+                # below.
                 widths[rows] = width * height * np.sqrt(height / far[rows])
     return out, widths
 
@@ -484,15 +513,19 @@ def _in_pyramid(
     cones into which the pyramid is cut, and by their distances from it.
     """
     reach = far.max()
+    # A piece spreads over one cone to each side and a point reads as far: others are not met.
     low = seen.min(axis=1, keepdims=True) - 2
     high = seen.max(axis=1, keepdims=True) + 2
+    # Pieces that are farther from the light than every point stand in nobody's way.
     inside = ((held > low) & (held < high)).all(axis=0) & (gone < reach + 2)
     if not inside.any():
         return np.zeros(len(far), np.float32)
     held, gone, across = held[:, inside], gone[inside], across[inside]
     # Height over the light of the plane that is divided into squares, in voxels.
     slant = np.sqrt(1 + width**2 * (held * held).sum(axis=0))
+    # A cone's square at the height of a piece is seen aslant; this is its area across the light.
     area = (width * gone) ** 2 / slant**3
+    # The third axis is the distance from the light, along which the grid is summed.
     rows = np.concatenate([held, gone[np.newaxis]])
     low, shape = voxels.box(rows)
     grid = voxels.spread((rows - low).astype(np.float32), across / area, shape)
@@ -514,8 +547,10 @@ def crowding(thick: Array) -> Array:
     It is ``1 + d / 4`` where voxels are much wider than lines, as for a light at infinity: -log(1 -
     d / 2) is the depth that leaves the light which a line of half the width leaves.
     """
+    # Near a light a line can be wider than a cone: the limit keeps the logarithm finite.
     share = np.minimum(2 * CROWDING * thick, WIDEST)
     factor: Array = -np.log1p(-share) / np.maximum(share, NARROWEST)
+    # For lines without width the quotient would be 0 in place of its limit, 1.
     return np.where(share > NARROWEST, factor, 1)
 
 
@@ -526,22 +561,29 @@ def _for_cones(
 
     A piece is cut along its length, and into parallel pieces over the width of the line.
     """
+    # No piece longer than a cone is wide where the piece comes nearest to the light.
     parts = _limited(size(vectors) / (width * _nearest(middles, vectors)))
     middles, vectors = voxels.cut(middles, vectors, parts)
+    # Across both the line and the light: the direction in which the line shows its width.
     across = np.cross(vectors, middles, axis=0)
     reach = np.maximum(size(across), NARROWEST**2)
     # The two planes that touch a cylinder are farther apart than its diameter where it is near.
     sine = thick * size(vectors) / (2 * reach)
+    # A light inside the line would have a sine above 1, and no plane that touches the line.
     wider = 1 / np.sqrt(1 - np.minimum(sine, WIDEST) ** 2)
+    # From here on as long as the width that the line shows to the light.
     across *= thick * wider / reach
+    # Two parallel pieces for each cone that the line's width covers.
     parts = _limited(2 * thick * wider / (width * _nearest(middles, vectors)))
     middles, across = voxels.cut(middles, across, parts)
+    # The parallel pieces share what the whole line takes from the light.
     return middles, np.repeat(vectors, parts, axis=1), np.repeat(wider / parts, parts)
 
 
 def _nearest(middles: Array, vectors: Array) -> Array:
     """Return the least distances of pieces from the light."""
     square = np.maximum((vectors * vectors).sum(axis=0), NARROWEST**4)
+    # The foot of the perpendicular from the light, kept between the ends of the piece.
     place = np.clip(-(middles * vectors).sum(axis=0) / square, -0.5, 0.5)
     return np.maximum(size(middles + place * vectors), NARROWEST)
 
@@ -550,6 +592,7 @@ def _limited(parts: Array) -> Indices:
     """Return whole numbers of parts, fewer of the largest where there would be too many pieces."""
     most = MOST_PARTS
     while True:
+        # A lower limit takes parts only from the pieces that have most, those nearest to the light.
         number = np.ceil(np.clip(parts, 1, most)).astype(np.intp)
         if most <= 1 or number.sum() <= len(number) + MOST_PIECES:
             return number

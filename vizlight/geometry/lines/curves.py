@@ -78,8 +78,12 @@ def polyline_tangents(
         for first in range(0, len(lines.vertices), BLOCK):
             block = slice(first, min(first + BLOCK, len(lines.vertices)))
             found = lines.tangents(block)
+            # A point that is not finite spoils the tangents of its neighbours; none is better than
+            # NaN.
             found[~np.all(np.isfinite(found), axis=1)] = 0
             rows, vertex = lines.rows(block)
+            # Repeated points share their vertex's tangent; where lines meet, the last one written
+            # stays.
             tangents[ids[rows]] = found[vertex]
     return tangents
 
@@ -94,15 +98,18 @@ class _Lines:
         self.positions, self.ids, self.starts = positions, ids, starts
         fresh = np.empty(len(ids), dtype=np.bool_)
         for i in range(0, len(ids), BLOCK):
+            # One point before the block, with which its first one is compared.
             place = positions[ids[max(i - 1, 0) : i + BLOCK]]
             fresh[max(i, 1) : i + BLOCK] = np.any(place[1:] != place[:-1], axis=1)
         filled = starts[:-1] < starts[1:]
+        # Also where a line begins in the place in which the line before it ends.
         fresh[starts[:-1][filled]] = True
         #: Place of each vertex in ids.
         self.vertices = np.flatnonzero(fresh)
         first = np.searchsorted(self.vertices, starts[:-1][filled])
         last = np.append(first, len(self.vertices))[1:] - 1
         same = np.all(self.place(first) == self.place(last), axis=1)
+        # A line that goes there and back ends where it starts, too, but goes around nothing.
         closed = same & (last - first > 2)
         #: First and last vertex of each closed line, in ascending order.
         self.closed = first[closed], last[closed]
@@ -118,6 +125,8 @@ class _Lines:
         line = np.searchsorted(self.starts, self.vertices[wide], side="right")
         inside = slice(block.start - wide.start, block.stop - wide.start)
         found = _vertex_tangents(self.place(wide), line)[inside]
+        # The neighbour across the seam is at the line's other end, which may be far from this
+        # block.
         for end in self.closed:
             low, high = np.searchsorted(end, (block.start, block.stop))
             found[end[low:high] - block.start] = self._seams(slice(low, high))
@@ -126,11 +135,13 @@ class _Lines:
     def _seams(self, lines: Slice) -> Array:
         """Return the tangents where closed lines begin and end."""
         first, last = (end[lines] for end in self.closed)
+        # Before the seam, on it and after it, as a line of its own whose middle vertex is wanted.
         corners = np.stack([last - 1, first, first + 1], axis=1).ravel()
         return _vertex_tangents(self.place(corners), np.repeat(first, 3))[1::3]
 
     def rows(self, block: Slice) -> tuple[Slice, Indices]:
         """Return the places in ids of a block of vertices, and the vertex in the block of each."""
+        # A vertex stands for all points up to the next vertex, since these repeat it.
         ends = np.append(self.vertices[block], len(self.ids))
         if block.stop < len(self.vertices):
             ends[-1] = self.vertices[block.stop]
@@ -145,6 +156,7 @@ def _vertex_tangents(place: Array, line: Indices) -> Array:
         return tangent
     step = place[1:] - place[:-1]
     inside = line[1:] == line[:-1]
+    # The kernel takes columns, and rescales steps whose squares would leave float64.
     direction, size = kernels.unit(np.ascontiguousarray(step.T))
     unit = direction.T
 
@@ -156,6 +168,7 @@ def _vertex_tangents(place: Array, line: Indices) -> Array:
     last = np.flatnonzero((after < 0) & (before >= 0))
 
     both = np.flatnonzero((before >= 0) & (after >= 0))
+    # The parabola weighs a direction by the other segment's length: the shorter one is nearer.
     part = _share(size[before[both]], size[after[both]])
     tangent[both] = (1 - part) * unit[before[both]] + part * unit[after[both]]
     _ends(tangent, unit, size, first, last)
@@ -172,9 +185,11 @@ def _share(h0: Array, h1: Array) -> Array:
 
 def _ends(tangent: Array, unit: Array, size: Array, first: Indices, last: Indices) -> None:
     """Fill in the tangents at the ends of open lines; a single segment gives its direction."""
+    # A line of one segment has no second one by which its curvature could be told.
     long = last - first > 1
     for end, near, far in ((first, first, first + 1), (last, last - 1, last - 2)):
         tangent[end] = unit[near]
         near, far = near[long], far[long]
+        # Beyond the near segment the parabola turns on by this part of the turn between the two.
         part = _share(size[near], size[far])
         tangent[end[long]] += (unit[near] - unit[far]) * part

@@ -52,6 +52,7 @@ class Samples:
     def add(self, walkers: Walkers, embedded: Array) -> None:
         """Add where ends are now."""
         size, total = self._size, self._size + len(embedded)
+        # Each field is a column of its own, the cell and the weights of a place among them.
         new = vars(walkers) | vars(walkers.places)
         new |= {"embedded": embedded, "used": np.ones(len(embedded), np.bool_)}
         del new["places"]
@@ -70,11 +71,14 @@ class Samples:
         """Forget the samples of a curve."""
         rows = np.flatnonzero(self.curve[: self._size] == curve)
         self.used[rows] = False
+        # The small tree is made again; in the large one the rows are masked until too many are
+        # stale.
         self._seen = -1
         self._stale += int(np.count_nonzero(rows < self._whole))
 
     def of(self, curve: int) -> tuple[Places, Array]:
         """Return the places of a curve's samples, and its directions there."""
+        # Two samples per spacing are enough to look beside a curve.
         rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
         return Places(self.cell[rows], self.weights[rows]), self.along[rows]
 
@@ -105,6 +109,8 @@ class Samples:
                 continue
             found = tree.query(embedded, k=count, distance_upper_bound=radius)
             distance = np.asarray(found[0]).reshape(-1, count)
+            # For a missing neighbour the tree gives its number of points as row, and infinity as
+            # distance.
             row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
             counted = self.used[row]
             if along is not None:
@@ -114,6 +120,7 @@ class Samples:
         if not distances:
             empty = np.zeros((len(embedded), 1))
             return empty + np.inf, empty.astype(np.intp)
+        # Not merged in order: callers take the least distance, or any, of both trees.
         return np.concatenate(distances, axis=1), np.concatenate(numbers, axis=1)
 
 
@@ -160,6 +167,7 @@ def embedded(flow: Flow, spacing: float, places: Places | None = None) -> Array:
     if flow.normals is None:
         return rows[0]
     points, normals = rows
+    # Opposite normals at the vertices of a cell may cancel between these.
     size = np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     return np.hstack([points, NORMALS * spacing / size * normals])
 
@@ -220,6 +228,7 @@ class Growth:
         numbers = self.count + np.arange(len(chosen))
         self.count += len(chosen)
         made = Walkers.at(self.flow, seeds[chosen], numbers)
+        # Each curve is there twice, by its two ends, and so it is counted.
         self.growing.update(made.curve.tolist())
         self.trail.append(made)
         self.samples.add(made, embedded(self.flow, self.spacing, made.places))
@@ -253,6 +262,8 @@ class Growth:
         # closed.
         going = made & inside & (ahead.length < self.how.max_length)
         going &= (ahead.number < self.how.max_steps) & ~np.isin(ahead.curve, [*self.closed])
+        # Of an end that has come back beside its own curve: the last step before, up to which it is
+        # kept.
         began = np.where(self.returning < 0, walkers.number, self.returning)
         for row in np.flatnonzero(~going & ~lost).tolist():
             # What runs beside the curve itself is taken back, unless that closes it.
@@ -313,6 +324,8 @@ class Growth:
         curve, sign = int(ahead.curve[row]), int(ahead.sign[row])
         if curve not in self.closed:
             self.closed.add(curve)
+            # Both ends are cut where they meet; if each reaches the other in one step the first
+            # closes.
             self.last[curve, -sign] = int(self.samples.number[sample])
             self.last[curve, sign] = int(ahead.number[row])
 
@@ -349,6 +362,7 @@ class Growth:
             size = np.linalg.norm(side, axis=1, keepdims=True)
             step = self.spacing * side / np.where(size > 0, size, 1)
             found, inside = self.flow.mesh.walk(places, step)
+            # A step that ended at a boundary has not gone a whole spacing.
             self.beside = self.beside.joined(found[inside])
 
     def refill(self, pool: Places) -> Places:
@@ -359,9 +373,11 @@ class Growth:
             # 0.95: rounding on the way beside a curve must not count as crowded.
             first = first[self.distances(first, 0.95 * spacing) >= 0.95 * spacing]
             if len(first.cell):
+                # Those for which there was no room stay first in the queue.
                 self.beside = first[~self.start(first)].joined(rest)
                 return pool
             self.beside = rest
+        # Random places last: one that is free now may soon be beside a curve that still grows.
         if not self.growing:
             least = WIDE * spacing if self.last_gaps else spacing
             pool = pool[self.distances(pool, least) >= least]
@@ -375,6 +391,7 @@ class Growth:
         """Return the places in wide gaps, those farthest from all curves first."""
         least = WIDE * self.spacing
         wide = places[self.distances(places, least) >= least]
+        # Those farther than the radius have an infinite distance and so come first.
         return wide[np.argsort(-self.distances(wide, 4 * least), kind="stable")]
 
 
@@ -423,6 +440,7 @@ def evenly_spaced(
     growth = Growth(flow, spacing, how, random)
     total, covered, before = len(pool.cell), 0, -1
     if seeds is not None:
+        # Tried like places beside a curve, and so before every random place.
         growth.beside = seeds
     while True:
         if len(growth.growing) <= CROWD // 2:
@@ -433,6 +451,7 @@ def evenly_spaced(
             growth.grow()
         elif not growth.growing and not len(growth.beside.cell) and not len(pool.cell):
             kept = growth.count - len(growth.dropped)
+            # The search for gaps is repeated as long as a round has added a curve.
             if kept == before:
                 break
             # Last, with denser places, the gaps that are wide but too small for a whole spacing.
@@ -465,6 +484,7 @@ def _apart(embedded: Array, distance: float, most: int) -> Indices:
         # Greedy, in order: each row that is kept removes those near to it.
         gap = embedded[left] - embedded[left[0]]
         left = left[np.einsum("ij,ij->i", gap, gap) >= distance**2]
+        # Where the square of the distance is 0 a row does not remove itself.
         if left.size and left[0] == chosen[-1]:
             left = left[1:]
     return np.array(chosen, dtype=np.intp)

@@ -76,12 +76,14 @@ class Distances:
         left, looked = np.arange(len(at)), count
         # Neighbours are looked for in larger and larger sets until one is of such a curve.
         while len(left) and looked:
+            # A list of ranks, since for a single neighbour by number the tree drops an axis.
             found = self._tree.query(at[left], k=np.arange(1, looked + 1))
             far, near = np.asarray(found[0]), np.asarray(found[1])
             if curve is not None:
                 far[self.curve[near] == curve[left][:, np.newaxis]] = np.inf
             if self.crossing:
                 far[~parallel(self.along[near], along[left][:, np.newaxis])] = np.inf
+            # Of a larger set only the nearest are kept, so that all rows have one width.
             if looked > count:
                 order = np.argsort(far, axis=1)[:, :count]
                 far = np.take_along_axis(far, order, axis=1)
@@ -100,11 +102,14 @@ class Distances:
         a = self.there[row]
         away = at[:, np.newaxis] - a
         for step in (-1, 1):
+            # The segments on both sides of a point; at an end of the array it is its own neighbour.
             other = np.clip(row + step, 0, len(self.there) - 1)
             u = self.there[other] - a
             size = np.einsum("nki,nki->nk", u, u)
             share = np.einsum("nki,nki->nk", away, u) / np.where(size > 0, size, 1)
+            # From the foot of the perpendicular, which is kept on the segment.
             rest = away - np.clip(share, 0, 1)[..., np.newaxis] * u
+            # The next point in the array may begin another curve: no line runs there.
             counted = np.isfinite(distance) & (self.curve[other] == self.curve[row])
             far = np.where(counted, np.einsum("nki,nki->nk", rest, rest), np.inf)
             found = np.minimum(found, np.sqrt(far.min(axis=1)))
@@ -142,12 +147,15 @@ class Parts(Columns):
         side = self.corners[:, one] - self.corners[:, other]
         longest = np.einsum("nei,nei->ne", side, side).argmax(axis=1)
         count = len(self.cell)
+        # Each part twice; in one copy one end of its longest side moves, in the other the other.
         both = self.joined(self)
         cell, weights, corners = both.cell, both.weights, both.corners
         rows, ends = np.arange(2 * count), np.concatenate([one[longest], other[longest]])
+        # The two ends of a side are so many rows apart.
         opposite = np.roll(ends, count)
         weights[rows, ends] = (weights[rows, ends] + weights[rows, opposite]) / 2
         flow, spacing = distances.flow, distances.spacing
+        # Embedded anew, since normals of length 1 are not linear along a side.
         corners[rows, ends] = embedded(flow, spacing, Places(cell, weights[rows, ends]))
         middles = Places(cell, weights.mean(axis=1))
         at = embedded(flow, spacing, middles)
@@ -192,7 +200,9 @@ def largest_gap(distances: Distances) -> float:
         order = np.argpartition(-first, min(BATCH, len(first)) - 1)
         halves, moving = parts[order[:BATCH]].halved(distances)
         room -= 0 if large.any() else len(halves.cell)
+        # No curve passes where the field has no direction, and such a middle is no gap.
         gap = max(gap, float(halves.far[moving].max(initial=0)))
+        # All places of a smaller part are as far as its middle, to within what the gap is known to.
         parts = parts[order[BATCH:]].joined(halves[halves.radius > known])
         parts = parts[parts.far + parts.radius > gap + known]
     return gap
@@ -204,6 +214,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     vertices, used = embedded(flow, spacing), mesh.measures > 0
     resting = ~np.any(flow.vectors, axis=1)
     if resting.any():
+        # A cell at whose vertices nothing moves has no curves to be filled with.
         used &= ~resting[mesh.cells].all(axis=1)
     cell = np.flatnonzero(used)
     corners = [vertices[corner] for corner in mesh.cells[cell].T]
@@ -215,6 +226,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     # One cell of each box tells which others can be far.
     number = np.zeros(len(middle))
     for axis in middle[:, :3].T:
+        # One number for each box, as for cells of a grid.
         box = np.floor((axis - axis.min(initial=0)) / (BOX * spacing))
         number = number * (box.max(initial=0) + 1) + box
     _, first, same = np.unique(number, return_index=True, return_inverse=True)
@@ -222,11 +234,15 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     along, there = flow.directions(Places(cell[first], share))
     near = distances.of_points(middle[first], along, None, 1)[0].min(axis=1)
     away = middle - middle[first[same]]
+    # The triangle inequality: no middle is farther than that of its box's first cell and the way.
     far = near[same] + np.sqrt(np.einsum("ni,ni->n", away, away))
     rows = np.flatnonzero(there)
     rows = rows[np.argsort(-near[rows], kind="stable")[:FIRST]]
+    # The farthest few, measured exactly, set a bound that rules out most cells at once.
     gap = float(distances.of_lines(middle[first[rows]], along[rows]).max(initial=0))
+    # What cannot hold a larger gap than the one that was found is not halved at all.
     kept = np.flatnonzero(far + radius > gap + KNOWN * spacing)
+    # The corners of a whole cell have the weight 1 at one vertex each.
     whole = np.tile(np.eye(mesh.k + 1), (len(kept), 1, 1))
     found = np.stack([corner[kept] for corner in corners], axis=1)
     return Parts(cell[kept], whole, found, far[kept], radius[kept]), gap
@@ -246,6 +262,7 @@ def evenness(flow: Flow, spacing: float, curves: Curves, /) -> tuple[float, floa
     distances = Distances(flow, spacing, curves)
     gap = largest_gap(distances)
     random, count = np.random.default_rng(1), len(distances.there)
+    # The generator has a fixed seed, so the same curves have the same number.
     picked = random.choice(count, min(count, ON_CURVES), replace=False)
     found = distances.of_points(
         distances.there[picked], curves.along[picked], distances.curve[picked], 32

@@ -91,7 +91,9 @@ def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
     with np.errstate(all="ignore"):
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
         centre = a + b + c
+        # One infinite centre would make the box endless, and the order of all others meaningless.
         centre[~np.all(np.isfinite(centre), axis=1)] = np.nan
+        # With an initial value a surface without triangles is no error here.
         low = np.nanmin(centre, axis=0, initial=np.inf)
         side = float(np.nanmax(centre - low, initial=0))
     area[~np.isfinite(area)] = 0
@@ -99,6 +101,7 @@ def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
     if 0 < side < np.inf:
         # Enough for 4 cells between neighbours, and no more: sorting grows with the bits.
         bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
+        # Triangles without a centre come anywhere: their area is 0, and no seed falls on them.
         places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
         order = np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
     return order, np.cumsum(area[order])
@@ -114,16 +117,20 @@ def hilbert(cell: Indices, bits: int) -> Indices:
     for bit in range(bits - 1, 0, -1):
         low = (1 << bit) - 1
         for i in range(3):
+            # All bits set, or none: with it lower bits of the first axis are mirrored, else
+            # exchanged.
             one = -(x[i] >> bit & 1)
             swapped = (x[0] ^ x[i]) & low & ~one
             x[0] ^= (low & one) | swapped
             x[i] ^= swapped
+    # A Gray code, by which one axis changes at a time from cell to cell along the curve.
     x[1] ^= x[0]
     x[2] ^= x[1]
     turned = np.zeros_like(x[0])
     for bit in range(bits - 1, 0, -1):
         turned ^= ((1 << bit) - 1) & -(x[2] >> bit & 1)
     x ^= turned
+    # The bits of the axes interleaved, from the highest on.
     index: Indices = np.zeros_like(turned)
     for bit in range(bits - 1, -1, -1):
         for i in range(3):
@@ -140,6 +147,7 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices
     random = np.random.default_rng([seed, start // SEED_BLOCK])
     number = np.arange(start, min(start + SEED_BLOCK, count), dtype=np.float64)
     mean = float(total[-1] / count)
+    # Stratified: one place anywhere in each of the equal pieces of the area.
     place = (number + random.random(len(number))) * mean
     first, last = np.minimum(np.searchsorted(total, place[[0, -1]], side="right"), len(total) - 1)
     starts = random.random(last + 1 - first)
@@ -150,6 +158,7 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices
     face = np.repeat(np.arange(first, last + 1), counts)
     edges = np.concatenate([[total[first - 1] if first else 0.0], total[first : last + 1]])
     area = np.diff(edges)
+    # A triangle without area has no place; its quotient is not used.
     area = np.where(area > 0, area, 1)
     share = (place - np.repeat(edges[:-1], counts)) / np.repeat(area, counts)
     # The square root of the area before a place makes places uniform in the triangle.
@@ -161,6 +170,7 @@ def seed_block(total: Array, start: int, count: int, seed: int) -> tuple[Indices
     weights = np.empty((len(place), 3), np.float32)
     weights[:, 0] = 1 - root
     weights[:, 2] = (number - np.floor(number)) * root
+    # By difference, so that the three weights sum to 1 within rounding.
     weights[:, 1] = root - weights[:, 2]
     return face, weights
 
@@ -221,6 +231,7 @@ def strands(
             angle = np.asarray(start + 2 * np.pi * turns * t, kind)
             way = way + kind.type(curl) * (np.cos(angle) * side + np.sin(angle) * up)
         size = np.sqrt(np.einsum("ib,ib->b", way, way))
+        # However much bend and curl lengthen the direction, all segments have the same length.
         np.multiply(way, step / np.where(size > 0, size, 1), out=out[j + 1])
         out[j + 1] += out[j]
     return out
@@ -245,6 +256,7 @@ def tangents(offsets: Array, ways: Array, /) -> Array:
     out = np.empty_like(offsets)
     out[0], out[-1] = step[0], step[-1]
     if len(step) > 1:
+        # Segments are equal in length: twice the parabola's derivative at an end, as inside below.
         out[0] = 3 * step[0] - step[1]
         out[-1] = 3 * step[-1] - step[-2]
         out[1:-1] = step[1:] + step[:-1]

@@ -64,6 +64,7 @@ def numbered(points: Array) -> Indices:
     order = np.lexsort(points.T)
     ranked = points[order]
     fresh = np.ones(len(order), dtype=np.intp)
+    # NaN differs from itself, so that a point without a place is merged with no other.
     fresh[1:] = np.any(ranked[1:] != ranked[:-1], axis=1)
     number = np.empty(len(order), dtype=np.intp)
     number[order] = np.cumsum(fresh) - 1
@@ -99,7 +100,9 @@ class Simplices:
             # unit.
             volume = np.linalg.det(gram / np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis])
         self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
+        # A single singular matrix would be an error for all cells.
         gram[~self.good] = np.eye(self.k)
+        # By the edges' products, so that gradients of triangles lie in the planes of these.
         rest = np.linalg.solve(gram, edges)
         rest[~self.good] = 0
         self.gradients = np.concatenate([-rest.sum(axis=1, keepdims=True), rest], axis=1)
@@ -133,9 +136,11 @@ class Simplices:
         ranked = sides[order]
         same = np.all(ranked[1:] == ranked[:-1], axis=1)
         before, after = np.append(False, same), np.append(same, False)
+        # A run of exactly two: where three cells or more meet it is not clear which comes next.
         twice = np.flatnonzero(same & ~before[:-1] & ~after[1:])
         found = np.full((len(cells), k + 1), -1, dtype=np.intp)
         a, b = order[twice], order[twice + 1]
+        # Each cell has k + 1 sides one after the other, so that a quotient tells the cell.
         found.ravel()[a] = cells[b // (k + 1)]
         found.ravel()[b] = cells[a // (k + 1)]
         neighbours = np.full(self.cells.shape, -1, dtype=np.intp)
@@ -253,6 +258,7 @@ class Simplices:
             here, at = cell[on], weights[on]
             change = np.einsum("nij,nj->ni", self.gradients[here], ahead)
             with np.errstate(all="ignore"):
+                # In units of the step: a side that is reached at 1 or later is not crossed.
                 time = np.where(change < 0, -at / change, np.inf)
             side = np.argmin(time, axis=1)
             rows = np.arange(len(on))
@@ -274,6 +280,7 @@ class Simplices:
             cell[on], weights[on], ahead = self._crossed(
                 here[go], side[go], at[go], beyond[go], ahead
             )
+        # Steps that cross too many cells end where they are.
         inside[on] = False
         return Places(cell, weights), inside
 
@@ -285,6 +292,7 @@ class Simplices:
         change = np.einsum("nij,nj->ni", self.gradients[cell], steps)
         flat = np.einsum("ni,nij->nj", change, self.points[self.cells[cell]])
         length, asked = np.linalg.norm(flat, axis=1), np.linalg.norm(steps, axis=1)
+        # A step at a right angle to the triangle has no direction in it and leads nowhere.
         scale = np.where(length > 0, asked / np.where(length > 0, length, 1), 0)
         return np.asarray(flat * scale[:, np.newaxis])
 
@@ -295,13 +303,19 @@ class Simplices:
         own, other = self.merged[cell], self.merged[beyond]
         # By number of the position: neighbours may have vertices of their own at the same place.
         shared = other[:, :, np.newaxis] == own[:, np.newaxis, :]
+        # Where one triangle lies on the other even the vertex left behind has the place of one
+        # beyond.
         shared[np.arange(len(cell)), :, side] = False
+        # Weights move along with their vertices; the new one begins at 0, as the place is on the
+        # side.
         found = np.einsum("nij,nj->ni", shared, weights)
         if self.k == 2:
             # On triangles the step is turned about the common edge as if both were unfolded into
             # one plane: its part along the edge stays, its part across points toward the new
             # triangle's third vertex.
             apex = np.argmin(shared.any(axis=2), axis=1)
+            # The gradient of a weight points from the opposite side toward its vertex, at a right
+            # angle.
             inward = self.gradients[beyond, apex]
             inward = inward / np.linalg.norm(inward, axis=1, keepdims=True)
             rows = np.arange(len(cell))
@@ -332,6 +346,7 @@ def _to_side(w: Array, gradients: Array, here: int, step: Step) -> tuple[float, 
         at = 3 * (here * m + j)
         change = gradients[at] * step[0] + gradients[at + 1] * step[1] + gradients[at + 2] * step[2]
         w[j] = max(w[j] + min(share, 1.0) * change, 0.0)
+        # Exactly 0, whatever rounding leaves: the place is on that side.
         if share < 1 and j == side:
             w[j] = 0.0
         total += w[j]
@@ -366,6 +381,7 @@ def _turned(step: Step, points: Array, a: int, b: int, gradients: Array, at: int
     along = step[0] * p + step[1] * q + step[2] * r
     x, y, z = step[0] - along * p, step[1] - along * q, step[2] - along * r
     f, g, h = gradients[at], gradients[at + 1], gradients[at + 2]
+    # The gradient (f, g, h) is not of length 1, which the quotient makes up for.
     across = np.sqrt((x * x + y * y + z * z) / (f * f + g * g + h * h))
     return along * p + across * f, along * q + across * g, along * r + across * h
 
@@ -384,10 +400,12 @@ def _walk(
             share, side = _to_side(w, gradients, here, (x, y, z))
             beyond = neighbours[here * m + side]
             if share >= 1 or beyond < 0:
+                # A step whose rest would lead through a boundary is not whole.
                 inside[i] = share >= 1
                 break
             x, y, z = (1 - share) * x, (1 - share) * y, (1 - share) * z
             apex = _beyond(w, found, merged, here, side, beyond)
+            # Tetrahedra fill one space, in which the step goes on as it is; triangles are unfolded.
             if m == 3:
                 a, b = cells[here * 3 + (side + 1) % 3], cells[here * 3 + (side + 2) % 3]
                 at = 3 * (beyond * 3 + apex)

@@ -47,9 +47,12 @@ def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices
     # Vertices at one position are compared with the first of them.
     number = numbered(points)
     first = np.unique(number, return_index=True)[1]
+    # Copies of a vertex may list its pair in either order: the sheet tells which belong together.
     turned = _turned(pairs[first[number]], pairs)
     corners = pairs[cells]
+    # Whether a corner continues the first direction of the cell's first corner as its second one.
     other = _turned(corners[:, :1], corners)
+    # The same cell on either sheet: all its corners are exchanged for those on the other one.
     twice = np.concatenate([cells + count * other, cells + count * ~other])
     mesh = Simplices(np.concatenate([points, points]), twice, np.concatenate([turned, ~turned]))
     return mesh, np.concatenate([pairs[:, 0], pairs[:, 1]])
@@ -57,6 +60,7 @@ def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices
 
 def _turned(a: Array, b: Array) -> Bools:
     """Return whether the first direction of each pair b continues the second one of a."""
+    # Without sign, as the directions of a cross have none.
     cosine = np.abs(np.einsum("...ic,...jc->...ij", a, b))
     straight = cosine[..., 0, 0] + cosine[..., 1, 1]
     return np.asarray(straight < cosine[..., 0, 1] + cosine[..., 1, 0])
@@ -134,6 +138,7 @@ class Flow:
             turned = np.einsum("nij,nj->ni", corners, first if along is None else along) < 0
             corners = np.where(turned[:, :, np.newaxis], -corners, corners)
         found = np.einsum("ni,nij->nj", places.weights, corners)
+        # Lines are aligned with a direction that has its sign already.
         if not self.line_field:
             found *= sign[:, np.newaxis]
         speed = np.linalg.norm(found, axis=1)
@@ -198,10 +203,12 @@ class Walkers(Columns):
         inside : ndarray of bool, shape (N,)
             Whether the curve goes on: not where it has reached a boundary.
         """
+        # The direction half a step ahead carries the whole step, which makes its error of order 3.
         half, _ = flow.mesh.walk(self.places, self.along * (step / 2)[:, np.newaxis])
         middle, moving = flow.directions(half, self.along, self.sign)
         end, inside = flow.mesh.walk(self.places, middle * step[:, np.newaxis])
         last, still = flow.directions(end, middle, self.sign)
+        # Where the field turns by a right angle within half a step no curve is followed any more.
         made = moving & still & (np.einsum("ni,ni->n", last, middle) > 0)
         number, length = self.number + 1, self.length + step
         return Walkers(self.curve, self.sign, end, last, number, length), made, inside
@@ -257,8 +264,10 @@ def passed(
     limit = np.full((int(all_.curve.max(initial=0)) + 1, 2), np.iinfo(np.intp).max)
     for (curve, sign), number in last.items():
         limit[curve, int(sign > 0)] = number
+    # Numbers of steps begin at 0, so that nothing is kept of these.
     limit[[*dropped]] = -1
     kept = all_.number <= limit[all_.curve, (all_.sign > 0).astype(np.intp)]
+    # From the last step against the field by the seed to the last one along it.
     order = np.lexsort((all_.sign * all_.number, all_.curve))
     order = order[kept[order]]
     # Both ends begin at the seed; one of them is enough.
@@ -270,10 +279,12 @@ def passed(
     runs = []
     for name, start, count in zip(names.tolist(), starts, counts, strict=True):
         run = order[start : start + count]
+        # A single place is no line.
         if count > 1:
             runs.append(np.append(run, run[0]) if name in closed else run)
     rows = np.concatenate(runs) if runs else np.empty(0, dtype=np.intp)
     offsets = np.concatenate([[0], np.cumsum([len(run) for run in runs])]).astype(np.intp)
+    # Ends go away from the seed, but a whole curve goes along the field.
     along = all_.along[rows] * all_.sign[rows][:, np.newaxis]
     return Curves(all_.places[rows], along, offsets)
 
@@ -307,10 +318,13 @@ def trace(
     for _ in range(how.max_steps):
         if not len(walkers.curve):
             break
+        # The last step is shorter, so that a curve is not longer than what was asked for.
         room = how.max_length - walkers.length
         size = np.minimum(how.step * flow.mesh.sizes(walkers.places), room)
         walkers, made, inside = walkers.advanced(flow, size)
         trail.append(walkers[made])
+        # Lengths are sums of steps, whose rounding must not lead to one more step of almost
+        # nothing.
         walkers = walkers[made & inside & (walkers.length < how.max_length * (1 - 1e-9))]
         report(2 * len(seeds.cell) - len(walkers.curve))
     return passed(trail, {}, closed=set(), dropped=set())

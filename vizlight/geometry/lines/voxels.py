@@ -22,8 +22,10 @@ AT_ONCE = 1 << 19
 def cut(middles: Array, vectors: Array, parts: Indices) -> tuple[Array, Array]:
     """Return pieces, given by columns, each cut to some parts of equal lengths."""
     owner = np.repeat(np.arange(len(parts)), parts)
+    # Counts from 0 within each piece, so that parts of all pieces are made without a loop.
     number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
     share = 1 / parts[owner]
+    # Middles of the parts, in lengths of the piece from its middle: from -1/2 to 1/2.
     place = (number + 0.5) * share - 0.5
     vectors = np.take(vectors, owner, axis=1)
     return np.take(middles, owner, axis=1) + place * vectors, vectors * share
@@ -33,6 +35,8 @@ def box(rows: Array) -> tuple[Array, tuple[int, int, int]]:
     """Return the lower corner and the shape of a grid around places, with a margin of zeros."""
     if not rows.size:
         return np.zeros((3, 1), np.float32), (3, 3, 3)
+    # An empty layer before all pieces and two behind: a place outside is clipped to one, where it
+    # finds no line beside it, or the whole sum behind the last.
     low = np.floor(rows.min(axis=1, keepdims=True)) - 1
     i, j, k = (int(n) + 4 for n in (rows.max(axis=1) - low[:, 0]))
     return low, (i, j, k)
@@ -43,6 +47,7 @@ def _corners(cells: Array, shape: tuple[int, ...]) -> Iterator[tuple[Indices, Ar
     low = np.floor(cells).astype(np.intp)
     high = cells - low
     base = (low[0] * shape[1] + low[1]) * shape[2] + low[2]
+    # Trilinear: the weight of a corner is the product of three shares, one along each axis.
     weights = (1 - high, high)
     for a in (0, 1):
         for b in (0, 1):
@@ -79,6 +84,7 @@ def spread(cells: Array, values: Array, shape: tuple[int, int, int], /) -> Array
         part = slice(start, start + AT_ONCE)
         indices, weights = zip(*_corners(cells[:, part], shape), strict=True)
         shares = np.concatenate(weights).reshape(8, -1) * values[part]
+        # Unlike an indexed sum this adds all that falls on one voxel, and it does so in float64.
         flat += np.bincount(np.concatenate(indices), shares.reshape(-1), minlength=size)
     return flat.astype(np.float32).reshape(shape)
 
@@ -110,8 +116,10 @@ def read(grid: Array, cells: Array, /) -> Array:
 
 def summed(grid: Array) -> Array:
     """Replace each voxel by the sum of those before it and half of it; return the sum of all."""
+    # A sum is read at the middle of a voxel, before which half of its own content lies.
     half = grid * np.float32(0.5)
     np.cumsum(grid, axis=2, dtype=np.float32, out=grid)
+    # Before the halves are taken off: the last running sum is that of the whole row.
     total = grid[:, :, -1].copy()
     grid -= half
     return total
@@ -137,6 +145,7 @@ def depths(middles: Array, vectors: Array, places: Array, frame: Array, /) -> tu
     # For so few rows a product of matrices takes twice as long.
     turned, at = (np.einsum("ij,jk->ik", frame, rows) for rows in (middles, places))
     low, shape = box(turned)
+    # A cylinder takes from the light by |w x t|, the length of its part in the plane across w.
     u, v = np.einsum("ij,jk->ik", frame[:2], vectors)
     grid = spread(turned - low, np.sqrt(u * u + v * v), shape)
     total = summed(grid)
@@ -153,6 +162,7 @@ def _spread(cells: Array, values: Array, grid: Array, rows: int, columns: int) -
     one, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
     for i in range(len(values)):
         p, q, r = int(x[i]), int(y[i]), int(z[i])
+        # The casts keep the arithmetic in float32: with an integer numba would widen it to float64.
         f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
         at = (p * rows + q) * columns + r
         for plane in (values[i] * (one - f), values[i] * f):

@@ -78,8 +78,10 @@ def depth_map(
     height = np.full(shape[0] * shape[1], -np.inf)
 
     corners = places[faces]
+    # A node on the border of the box is tested, whatever rounding does to its place.
     low = np.maximum(np.ceil(corners.min(axis=1) - 1e-9), 0)
     high = np.minimum(np.floor(corners.max(axis=1) + 1e-9), [shape[1] - 1, shape[0] - 1])
+    # NaN, of a vertex without a place, and a box between two nodes make 0 nodes.
     size = np.nan_to_num(high - low + 1).clip(min=0).astype(np.intp)
     count = size[:, 0] * size[:, 1]
     over = np.flatnonzero(count)
@@ -87,6 +89,7 @@ def depth_map(
     begin = 0
     while begin < len(over):
         done = total[begin - 1] if begin else 0
+        # A triangle that covers more nodes than a block has pairs is a block of its own.
         end = max(int(np.searchsorted(total, done + BLOCK, side="right")), begin + 1)
         some = over[begin:end]
         # All nodes in the bounding box of each triangle.
@@ -97,6 +100,7 @@ def depth_map(
         node[:, 1] += place // size[which, 0]
         inside, z = _over(corners[which], vertices[:, 2][faces[which]], node)
         flat = node[inside, 1] * shape[1] + node[inside, 0]
+        # The eye above sees the highest of all triangles; several of a block may lie over one node.
         np.maximum.at(height, flat, z)
         begin = end
         if progress is not None:
@@ -108,10 +112,13 @@ def depth_map(
 def _over(corners: Array, z: Array, node: Indices) -> tuple[Bools, Array]:
     """Return a mask of the nodes inside their triangles, and the triangles' heights there."""
     a, b, c = (corners[:, k] - node for k in range(3))
+    # Twice the areas between the node and each side: barycentric weights before the division.
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
     area = weights.sum(axis=1)
+    # Triangles are seen however they are wound.
     weights *= np.sign(area)[:, np.newaxis]
     area = np.abs(area)
+    # A tolerance for rounding: else a node on a common edge could be in neither triangle.
     inside = (area > 0) & np.all(weights >= -1e-9 * area[:, np.newaxis], axis=1)
     height = np.einsum("ij,ij->i", weights[inside], z[inside]) / area[inside]
     return inside, height

@@ -70,20 +70,26 @@ class Field:
     @cached_property
     def corners(self) -> Array:
         """Heights at the corners of the cells, shape (ny + 2, nx + 2)."""
+        # The unbounded cells around the field have the heights of the border at all their corners.
         return np.pad(self.heights, 1, mode="edge")
 
     @cached_property
     def bounds(self) -> Bounds:
         """Bounds of the heights on every scale."""
         corners = self.corners
+        # A bilinear patch lies between the least and the largest of its four corners.
         four = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]]
         largest, least = np.maximum.reduce(four), np.minimum.reduce(four)
+        # np.maximum hands NaN on: a cell with a corner in a hole is empty.
         empty = np.isnan(largest)
+        # Beyond a wall there is no solid: the unbounded cells are empty too.
         if self.border == "wall":
             empty[[0, -1]] = True
             empty[:, [0, -1]] = True
+        # No ray is below the least height here, and any ray is above the largest one.
         largest[empty] = least[empty] = -np.inf
         levels = [(largest, least)]
+        # Up to one square of all cells, whose bounds are those of the whole field.
         while max(largest.shape) > 1:
             largest = _halve(largest, np.maximum, -np.inf)
             least = _halve(least, np.minimum, np.inf)
@@ -131,9 +137,11 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
     wide -= low
     top = float(wide[there].max())
     sides = [float(axis[-1] - axis[0]) for axis in axes]
+    # Products of up to four lengths stay in the range of float64.
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
         expected = "a field with sides between 1e-70 and 1e70"
         raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
+    # Where the solid extends without end it has no holes either.
     wide = wide if border == "wall" else filled(wide)
     return Field(
         origin=np.array([axes[0][0], axes[1][0], low]),
@@ -195,6 +203,7 @@ def _slope(heights: Array, nodes: Array) -> Array:
     """Return the slope at the nodes along the last axis, 0 at nodes without a neighbour."""
     sides = [(0, 0), (1, 1)]
     step = np.pad(np.diff(nodes), 1, mode="edge")
+    # NaN where a neighbour is missing, beyond the border as in a hole.
     rise = np.pad(np.diff(heights), sides, constant_values=np.nan) / step
     before, after = rise[:, :-1], rise[:, 1:]
     # The weight of the slope on one side is the length of the step on the other side.
@@ -221,6 +230,7 @@ def _edges(nodes: Array) -> Array:
 
 def _halve(cells: Array, extreme: np.ufunc, neutral: float) -> Array:
     odd = [(0, size % 2) for size in cells.shape]
+    # The last of an odd number is paired with a square that changes no bound.
     even = np.pad(cells, odd, constant_values=neutral)
     by_row = extreme(even[::2], even[1::2])
     result: Array = extreme(by_row[:, ::2], by_row[:, 1::2])

@@ -153,6 +153,7 @@ def shadow(
     """
     field = height_field.make(x, y, z, border=border)
     depth = _check.number("depth", depth, low=0.0)
+    # By the heights as given: the field itself may have filled its holes.
     dark = np.isnan(np.asarray(z, dtype=np.float64))
     if normals is None:
         normal = height_field.normals(field)
@@ -184,6 +185,7 @@ def toward(
     if len(vector) != 3:
         raise ValueError(_check.message(name, "3 components", len(vector)))
     if position is None:
+        # The largest component becomes 1 first, since squares of huge ones would leave float64.
         way = np.array(vector) / max(abs(c) for c in vector)
         # The sine of 180 degrees is not 0 in a computer; a ray in a plane of nodes stays there.
         way[np.abs(way) < ROUNDING] = 0
@@ -193,6 +195,7 @@ def toward(
             np.full(start.shape[1], walks.FAR),
         )
     lamp = np.array(vector) - field.origin
+    # The length inside the solid of a ray straight up is the depth of the lamp below the surface.
     above, inside = np.array([[0.0], [0.0], [1.0]]), np.empty(1)
     _follow(field, lamp[:, np.newaxis], above, np.array([walks.FAR]), inside)
     # A lamp may stand on the ground; 1e-9 of the size is rounding.
@@ -204,6 +207,7 @@ def toward(
     def to_lamp(start: Array) -> tuple[Array, Array]:
         way = lamp[:, np.newaxis] - start
         size = kernels.length(way)
+        # A start at the lamp has no direction, and a ray of length 0.
         unit = way / np.where(size > 0, size, 1)
         unit[np.abs(unit) < ROUNDING] = 0
         return unit, np.minimum(size, walks.FAR)
@@ -234,9 +238,11 @@ def ratio(
 
     def start(rows: Slice) -> Array:
         row, column = np.divmod(np.arange(rows.start, rows.stop), shape[1])
+        # The source's p' is a depth below the node along its normal; for the limit it is the node.
         nodes = np.stack([field.x[column], field.y[row], heights[rows]])
         return nodes if limit else nodes - depth * normals[rows].T
 
+    # First these are the lengths r, from which t is made below.
     t = _lengths(field, start, len(heights), ways, report)
     if limit:
         # A ray that grazes its own cell by rounding has not been occluded.
@@ -259,10 +265,12 @@ def _lengths(
 ) -> Array:
     """Return the lengths inside the solid of rays, whose starts (3, N) a function of rows gives."""
     length = np.empty(count)
+    # Asked once for the rays of all blocks, which are then all followed in one way.
     fast = walks.walk.pays(walks.SAVED * count)
 
     def work(rows: Slice) -> int:
         places = start(rows)
+        # A slice of an array is a view of it: the block writes into the result.
         _follow(field, places, *ways(places), length[rows], fast=fast)
         return int(rows.stop)
 
@@ -278,6 +286,7 @@ def _follow(
     walls = field.border == "wall"
     rays = np.ascontiguousarray(start), np.ascontiguousarray(way), reach
     if fast:
+        # Where compiling fails NumPy finds the lengths, only later.
         with contextlib.suppress(_compiled.FailedError):
             walks.walk(*rays, *field.edges, field.corners, field.bounds, walls, out)
             return

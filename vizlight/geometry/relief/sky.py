@@ -111,6 +111,7 @@ def sky(
     (1 + cos b) / 2. A compiled azimuth takes about 220 ns per node; NumPy takes ten times as long.
     """
     error = _check.number("error", error, low=LEAST, high=LARGEST)
+    # With the other border holes would be filled, and so block the sky.
     field = height_field.make(x, y, np.asarray(z), border="wall")
     there, done = np.isfinite(field.heights), 0
     fast = _compiled.active() and azimuth.pays(SAVED * FEWEST * there.size)
@@ -118,6 +119,7 @@ def sky(
     random = np.random.default_rng(0)
     # Nodes at the crossings of some rows and columns, so that NumPy can take them at once.
     rows, columns = (np.sort(random.choice(n, min(n, SAMPLES), replace=False)) for n in there.shape)
+    # All of them may lie in holes; then a single node stands for the field.
     if not there[np.ix_(rows, columns)].any():
         known = np.argwhere(there)
         rows, columns = known[len(known) // 2][:, np.newaxis]
@@ -139,6 +141,7 @@ def sky(
             progress(done)
         return total
 
+    # The reference of the error: at a few nodes, through every cell or in much finer steps.
     wanted = np.zeros((len(rows), len(columns)))
     count = REFERENCE if fast else REFERENCE // 4
     view = _View(field, slopes, near)
@@ -156,6 +159,7 @@ def sky(
         found = float(missed[len(missed) - 1 - int(0.05 * len(missed) / 2)])
         if found <= error or count >= (MOST if fast else 4 * FEWEST):
             break
+        # What error remains is put down to the scan lines, which more near columns replace.
         if found > STALLED * last and 0 < near < FARTHEST_NEAR:
             near, last = 2 * near, math.inf
             total = sums(count, 0.0)
@@ -180,12 +184,16 @@ def _seen(t: Array, p: Array, q: Array, way: tuple[float, float], openness: bool
 
     The integral over elevation from the horizon up is closed.
     """
+    # The sky ends at the level plane, also where a horizon is lower.
     t = np.maximum(t, 0.0)
     if openness:
         return np.asarray(np.arctan2(1.0, t))
+    # Slope of the ground along the azimuth: what rises toward it hides the sky below its own plane.
     rise = p * way[0] + q * way[1]
     t = np.maximum(t, rise)
     square = 1 / (1 + t * t)
+    # Twice the integral of (n . w) cos(e) over elevations e above the horizon, so that the mean of
+    # all azimuths is V.
     value = (square - rise * (np.arctan2(1.0, t) - t * square)) / np.sqrt(1 + p * p + q * q)
     return np.asarray(value)
 
@@ -207,7 +215,9 @@ def _by_steps(
         i, u = _between(field.x, field.x[columns] + distance * way[0])
         across = _mixed(heights[j], heights[j + 1], v[:, np.newaxis])
         height = _mixed(across[:, i], across[:, i + 1], u)
+        # fmax passes over NaN: a hole blocks nothing.
         np.fmax(t, (height - z) / distance, out=t)
+        # Far away slopes change less along the ray, so that steps may grow with the distance.
         step = step if distance < NEAR * cell else distance * (growth - 1)
         distance += step
     return t
@@ -239,16 +249,19 @@ class _View:
         """Turn the field to an azimuth, if it is not."""
         field = self.field
         widths = [axis[-1] / (len(axis) - 1) for axis in (field.x, field.y)]
+        # Compared in cells per length, since the cells of a field need not be square.
         swap = bool(abs(way[1]) * widths[0] > abs(way[0]) * widths[1])
         turn = (swap, 1 if way[0] >= 0 else -1, 1 if way[1] >= 0 else -1)
         rates = abs(way[0]), abs(way[1])
         self.slope = rates[0] / rates[1] if swap else rates[1] / rates[0]
+        # Azimuths of one octant share the turned field, and only the slope differs.
         if turn != self.turn:
             self.turn = turn
             axes = _padded(field.x, turn[1], self.near), _padded(field.y, turn[2], self.near)
             # Near cells beyond the border exist, so that a walk through them asks for no bounds.
             turned = np.ascontiguousarray(self.of(field.heights))
             self.z = np.pad(turned, self.near, mode="edge")
+            # Along an axis that is turned over slopes change their signs.
             rises = [turn[k] * self.of(self.slopes[k - 1]) for k in (1, 2)]
             self.x, self.y = axes[::-1] if swap else axes
             self.p, self.q = map(np.ascontiguousarray, rises[::-1] if swap else rises)
@@ -258,6 +271,7 @@ class _View:
         """Return values of the nodes of the field as the view has them."""
         assert self.turn is not None
         swap, right, up = self.turn
+        # A view and no copy, through which sums are added to the nodes in their own order.
         turned = values[::up, ::right]
         return turned.T if swap else turned
 
@@ -273,6 +287,7 @@ class _View:
         crowd = int(np.max(last - np.arange(rows))) + 1
         out, part = self.of(total), np.zeros(self.p.shape, np.float32)
 
+        # Each node lies between one pair of lines, so that threads write to different nodes.
         def work(lines: Slice) -> int:
             azimuth(
                 self.z, self.x, self.y, self.p, self.q, self.slope, (first, mean),
@@ -324,6 +339,7 @@ def tangent(hx: Array, hz: Array, top: int, at: float, height: float) -> float:
     if top < 0:
         return NONE
     b = top
+    # Most horizons are near: the nearest vertices are tried first, one by one.
     best = float((hz[b] - height) / (hx[b] - at))
     tried = 0
     while b > 0:
@@ -348,6 +364,8 @@ def tangent(hx: Array, hz: Array, top: int, at: float, height: float) -> float:
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
 def pushed(hx: Array, hz: Array, top: int, px: float, pz: float) -> int:
     """Add a point before all others to a hull, and return the index of its last vertex."""
+    # A vertex that is not above the line from the new point to the vertex behind it leaves the
+    # hull.
     while top >= 1 and (hz[top] - pz) * (hx[top - 1] - px) <= (hz[top - 1] - pz) * (hx[top] - px):
         top -= 1
     hx[top + 1], hz[top + 1] = px, pz
@@ -370,6 +388,7 @@ def beyond(
     """Return the largest slope to the nodes of the last row or column, where a ray leaves it."""
     for m in range(first, end):
         place = heights[m]
+        # False for NaN alone: a hole blocks nothing.
         if place == place:
             t = max(t, (place - here) / ((nodes[m] - origin) * scale))
     return t
@@ -387,11 +406,14 @@ def arc(
     before, now = ends
     last, place = heights
     width = now - before
+    # At a distance s along x the arc is c0 + c1 s + c2 s^2 above the node.
     c2 = bend / (width * width)
     c1 = (place - last) / width - c2 * (before + now)
+    # From the node itself the slope only falls along the arc: it is largest at its start.
     if before == 0:
         return max(t, c1 / length)
     c0 = last - here - before * (c1 + before * c2)
+    # The slope c0 / s + c1 + c2 s is largest at s = sqrt(c0 / c2), where it is c1 + 2 c2 s.
     if c0 < 0:
         peak = math.sqrt(c0 / c2)
         if before < peak < now:
@@ -413,6 +435,7 @@ def crossed(
     a, b, u, v, before, last = i, j, 0.0, 0.0, 0.0, here
     rows = len(y)
     while a < end and b < rows - 1:
+        # Distances are along x here; those along the ray are longer by the factor ``length``.
         to_column = x[a + 1] - x[i]
         to_row = (y[b + 1] - y[j]) * inverse if slope > 0 else math.inf
         z00, z01, z10, z11 = z[b, a], z[b, a + 1], z[b + 1, a], z[b + 1, a + 1]
@@ -420,6 +443,7 @@ def crossed(
             now, u1 = to_column, 1.0
             v1 = min((y[j] + now * slope - y[b]) / (y[b + 1] - y[b]), 1.0) if slope > 0 else 0.0
             place = between(z01, z11, v1)
+        # Through a node: its height alone counts, as one of its neighbours may be a hole.
         elif to_column == to_row:
             now, u1, v1, place = to_column, 1.0, 1.0, z11
         else:
@@ -437,8 +461,10 @@ def crossed(
             a, u = a + 1, 0.0
         if to_row <= to_column:
             b, v = b + 1, 0.0
+        # From here on not even the largest height of the field rises above the horizon.
         if (top - here) < t * before * length:
             break
+    # Beyond the border heights stay as they are there: the ray goes on over those of the last row.
     if b == rows - 1:
         return beyond(z[b], x, a + 1, end + 1, x[i], length, here, t)
     if a == len(x) - 1 and slope > 0:
@@ -479,12 +505,17 @@ def azimuth(
     # The hull of the heights along the last column, which begins where a line leaves the field.
     bx, bz = np.empty(rows), np.empty(rows)
     edge, edge_row = -1, rows - 1
+    # Horizons on the line above, in the order in which the line below asks for them.
     upper = np.empty((2, crowd * columns))
+    # Nodes between two lines take their horizon from both, so there is one line more than gaps.
     for line in range(some[1], some[0] - 1, -1):
         start = first + line * spacing
         leaves = start + slope * x[columns - 1]
+        # Lines come from above, so that the hull of the last column grows by the nodes between two.
         while edge_row >= 0 and y[edge_row] > leaves:
             place = z[edge_row, columns - 1]
+            # Along an axis a line goes on over one height beyond the border, and passes no other
+            # node there.
             if place == place and slope > 0:
                 edge = pushed(bx, bz, edge, y[edge_row], place)
             edge_row -= 1
@@ -498,6 +529,7 @@ def azimuth(
         for i in range(columns - 1 - near, near - 1, -1):
             m = i + near
             side = min(max(start + slope * x[m], y[0]), y[rows - 1])
+            # A line falls from column to column on the way back, so that its row never rises.
             while r > 0 and y[r] > side:
                 r -= 1
             # Heights on the line, between the two nodes of a column.

@@ -55,11 +55,16 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     times = _check.floats("hours", hours).astype(np.float64)
     if not np.all((times >= 0) & (times <= 24)):
         raise ValueError(_check.message("hours", "hours from 0 to 24", _check.describe(hours)))
+    # Angle since the start of the year; a tropical year has 365.2422 days.
     year = 2 * np.pi * (day - 1 + times / 24) / 365.2422
+    # Mean anomaly and mean longitude, whose values at the start of the year are in degrees.
     anomaly = np.radians(357.21) + year
     longitude = np.radians(280.50) + year
+    # Equation of the centre: near perihelion, in January, the earth goes faster than its mean.
     longitude += np.radians(1.9147 * np.sin(anomaly) + 0.0200 * np.sin(2 * anomaly))
+    # The earth's axis leans by the obliquity of the ecliptic, 23.4367 degrees.
     declination = np.arcsin(np.sin(np.radians(23.4367)) * np.sin(longitude))
+    # Hour angle: 0 at true noon, and positive in the afternoon, when the sun is in the west.
     angle = (times - 12) * np.pi / 12
     sine, cosine = np.sin(declination), np.cos(declination)
     east = -cosine * np.sin(angle)
@@ -100,6 +105,7 @@ def toward(azimuth: ArrayLike, altitude: ArrayLike, /) -> Array:
     if not np.all(np.abs(above) <= 90):
         expected = "degrees from -90 to 90"
         raise ValueError(_check.message("altitude", expected, _check.describe(altitude)))
+    # Whole turns are taken off in degrees: in radians they are no floating-point number.
     turn, rise = _check.together(azimuth=np.radians(around % 360), altitude=np.radians(above))
     east, north = np.cos(rise) * np.sin(turn), np.cos(rise) * np.cos(turn)
     return np.stack([east, north, np.sin(rise)], axis=-1)
@@ -132,6 +138,7 @@ def disc(direction: VectorLike, diameter: float, count: int, /) -> Array:
     count = _check.integer("count", count, low=1)
     side, other = axial.frame(axis)
     k = np.arange(count)
+    # In the plane that touches the sphere of directions at the centre of the disc.
     radius = np.tan(diameter / 2) * np.sqrt((k + 0.5) / count)
     angle = k * np.pi * (3 - np.sqrt(5))
     spread = np.outer(np.cos(angle) * radius, side)

@@ -49,8 +49,11 @@ def march(
     # Above the highest node there is nothing to meet. With a rise near 0 its distance exceeds FAR.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         place = (top - start[2]) / way[2]
+    # A falling ray begins where it comes down to that height, a rising one ends where it reaches
+    # it.
     first = np.where(way[2] < 0, np.maximum(place, 0.0), 0.0)
     end = np.where(way[2] > 0, np.minimum(place, reach), reach)
+    # A level ray never reaches that height: above all nodes it is left out.
     row = np.flatnonzero((first < end) & ~((way[2] == 0) & (start[2] >= top)))
     rays = _Rays(start[:, row], way[:, row], first[row], end[row], (x, y), corners, bounds, walls)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -58,6 +61,7 @@ def march(
             # Each ray has its own row, so no addition is lost.
             out[row] += rays.step()
             going = rays.s < rays.end
+            # To drop rays copies all that is kept of the others, so it waits until a fifth is done.
             if np.count_nonzero(going) < 0.8 * len(row):
                 rays.keep(going)
                 row = row[going]
@@ -76,6 +80,7 @@ class _Rays:
         self.top = len(bounds.offset) - 1
         self.level = np.zeros(len(s), np.int32)
         place = start[:2] + s * way[:2]
+        # The outermost edges are infinite; the number of inner ones before a place is its cell.
         inner = [np.searchsorted(edges[a][1:-1], place[a], side="right") for a in (0, 1)]
         self.cell = np.stack(inner).astype(np.int32)
         #: Whether rays run in a plane of nodes, and so beside cells of which one may be empty.
@@ -92,14 +97,17 @@ class _Rays:
         (x, y), (i, j), level, s = self.way[:2], self.cell, self.level, self.s
         cross_x, cross_y = self._cross(0), self._cross(1)
         by_x = cross_x <= cross_y
+        # Never backwards: rounding may put an edge just behind the ray that has crossed it.
         leave = np.minimum(np.maximum(np.where(by_x, cross_x, cross_y), s), self.end)
         z0 = self.start[2] + s * self.way[2]
         z1 = self.start[2] + leave * self.way[2]
         own = self._own_cell()
         at = self.bounds.offset[level] + own[1] * self.bounds.columns[level] + own[0]
+        # A ray is straight, so that its heights at both ends of the way are its bounds.
         below = np.maximum(z0, z1) <= self.bounds.least[at]
         clear = below | (np.minimum(z0, z1) >= self.bounds.largest[at])
         inside = np.where(below, leave - s, 0.0)
+        # A single cell that the ray is neither above nor below: its surface itself is looked at.
         leaf = np.flatnonzero(~clear & (level == 0))
         inside[leaf] = self._in_cell(leaf, own[:, leaf], leave[leaf])
 
@@ -124,6 +132,8 @@ class _Rays:
         """Return the squares of rays; in a plane of nodes the one beside it that is not empty."""
         found: Indices = self.cell.astype(np.intp)
         rows = np.flatnonzero(self.beside.any(axis=0))
+        # Up to four cells meet at a vertical ray through a node; they are tried until one has a
+        # solid.
         for back in ((0, 0), (1, 0), (0, 1), (1, 1)):
             i, j = found[:, rows]
             empty = np.isneginf(self.bounds.largest[j * self.bounds.columns[0] + i])
@@ -135,6 +145,8 @@ class _Rays:
     def _cross(self, axis: int) -> Array:
         """Return the distances at which rays leave their square along an axis."""
         way, edges = self.way[axis], self.edges[axis]
+        # The number of an edge of a wide square, in cells; the last square may reach past the
+        # field.
         out = np.minimum((self.cell[axis] + (way >= 0)) << self.level, len(edges) - 1)
         return np.where(way == 0, np.inf, (edges[out] - self.start[axis]) / way)
 
@@ -144,6 +156,8 @@ class _Rays:
             edges = self.edges[axis]
             place = self.start[axis, which] + self.s[which] * self.way[axis, which]
             left = self.cell[axis, which] << 1
+            # Where a square reaches past the field its middle may be infinite: the first half has
+            # the ray.
             middle = edges[np.minimum((left + 1) << level, len(edges) - 1)]
             self.cell[axis, which] = left + (place >= middle)
         self.level[which] = level
@@ -157,6 +171,7 @@ class _Rays:
         a, b = corners[j, i + 1] - z00, z10 - z00
         c = (corners[j + 1, i + 1] - z10) - a
         z = self.start[2, which] + s * self.way[2, which]
+        # With s from the place where the ray enters the cell, h - z is f0 + f1 s + f2 s^2.
         f0 = (z00 - z) + u * a + v * (b + u * c)
         f1 = du * (a + v * c) + dv * (b + u * c) - self.way[2, which]
         return _positive(f0, f1, du * dv * c, leave - s)
@@ -180,6 +195,7 @@ def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
     q = -0.5 * (f1 + np.copysign(np.sqrt(np.maximum(square, 0)), f1))
     one, other = (np.minimum(np.maximum(root, 0), end) for root in (f0 / q, q / (f2 + 0.0)))
     between = np.abs(one - other)
+    # A parabola that opens upward is positive outside its roots, any other between them.
     length = np.where(f2 >= 0, end - between, between)
     # Without a root, or for a constant f, the sign is the same everywhere.
     whole = (square < 0) | (q == 0)
@@ -190,6 +206,7 @@ def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
 def positive(f0: float, f1: float, f2: float, end: float) -> float:
     """Return the length of the part of [0, end] where f0 + f1 s + f2 s^2 > 0."""
     square = f1 * f1 - 4 * f0 * f2
+    # Both terms have one sign, so that no digits cancel; the roots are f0 / q and q / f2.
     q = -0.5 * (f1 + math.copysign(math.sqrt(max(square, 0.0)), f1))
     if (square < 0) | (q == 0):
         return end if max(f0, f0 + f2) > 0 else 0.0
@@ -244,6 +261,7 @@ def beside(largest: Array, at: int, before_x: int, before_y: int) -> tuple[int, 
         return 1, 0
     if before_y > 0 and largest[at - before_y] > -math.inf:
         return 0, 1
+    # Of the four cells at a vertical ray through a node the one across is left.
     return (1, 1) if before_x > 0 and before_y > 0 else (0, 0)
 
 
@@ -261,10 +279,13 @@ def walk(
         # Above the highest node there is nothing to meet.
         place = (top - pz) / wz if wz != 0 else 0.0
         s, end = max(place, 0.0) if wz < 0 else 0.0, reach[ray]
+        # A level ray above all nodes ends at 0, so that nothing is walked.
         if wz > 0 or (wz == 0 and pz >= top):
             end = min(end, place)
         # A ray begins in its own cell and climbs to larger squares as it goes.
         i, j, level, length = locate(x, px + s * wx), locate(y, py + s * wy), 0, 0.0
+        # Steps back to the cell before a plane of nodes, in the flat array of level 0: 1 along x,
+        # and a whole row along y.
         before_x = 1 if walls and wx == 0 and px == x[i] else 0
         before_y = columns[0] if walls and wy == 0 and py == y[j] else 0
         # A ray in a plane of nodes goes from cell to cell.
@@ -272,6 +293,7 @@ def walk(
         while s < end:
             # The nearer of the two edges of the square is where the ray leaves it.
             cross_x, cross_y = crossing(x, i, level, px, wx), crossing(y, j, level, py, wy)
+            # Never backwards: rounding may put an edge just behind the ray that has crossed it.
             leave = min(max(min(cross_x, cross_y), s), end)
             z, last = pz + s * wz, pz + leave * wz
             at = offset[level] + j * columns[level] + i
@@ -288,6 +310,7 @@ def walk(
                     i = child(x, i, level, px + s * wx)
                     j = child(y, j, level, py + s * wy)
                     continue
+                # The crossing with the bilinear surface of a single cell, as for many rays at once.
                 column, row = i - back_x, j - back_y
                 u, du = relative(x, column, px + s * wx, wx)
                 v, dv = relative(y, row, py + s * wy, wy)
@@ -303,6 +326,8 @@ def walk(
             # On into the next square, or one twice as wide if both begin at the same place.
             if cross_x <= cross_y:
                 i += 1 if wx > 0 else -1
+                # A ray that goes forward enters a pair of squares at its even number, another at
+                # its odd one.
                 rise = (i ^ int(wx < 0)) & 1 == 0
             else:
                 j += 1 if wy > 0 else -1
