@@ -114,6 +114,7 @@ def read(
         inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)
     source = Source(mesh, inputs, part.options, options, None, inside, shares)
+    # Only normals whose side depends on the eye are turned again as it moves.
     turned = sided is not None and (
         source.facing == "eye" or (source.facing == "auto" and sided.any_open)
     )
