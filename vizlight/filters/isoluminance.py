@@ -197,6 +197,7 @@ def _make(
     blocks.check(given)
     if not any(block.n_points for block in blocks.all_blocks(mesh)):
         return _of_mesh(pv.PolyData(), light)
+    # Blocks are joined, so that all have the same contours.
     return _of_mesh(blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh, light)
 
 

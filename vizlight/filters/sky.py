@@ -212,6 +212,7 @@ def _split(mesh: pv.DataSet, asked: SkyOptions) -> pv.DataSet:
 
 def _error(meshes: Sequence[pv.DataSet], errors: tuple[float, float]) -> float:
     """Return the error for meshes, the second one if they are lines."""
+    # True counts as 1: meshes of lines alone have the second error.
     return errors[all(has_lines_only(mesh) for mesh in meshes)]
 
 
@@ -238,6 +239,8 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
     for mesh in meshes:
         record = records.read(mesh, name) or {}
         source = record.get("source")
+        # Without a source there is nothing to compare, and an array that was changed is the user's
+        # own.
         if source in (None, _source(mesh)) or name not in records.made(mesh, name):
             continue
         remedy = f"vizlight.sky(mesh, name={name!r})" if name != SKY else "vizlight.sky(mesh)"
@@ -245,6 +248,7 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
             f"the points or the faces have changed since their sky {name!r} was found; "
             f"{remedy} finds it anew"
         )
+        # One warning stands for all blocks.
         return
 
 
@@ -259,6 +263,7 @@ def _found_finer(
         _finer(mesh) if made.between > BENT else mesh
         for mesh, made in zip(meshes, found, strict=True)
     ]
+    # Where no mesh became finer the first skies stand.
     if all(one is other for one, other in zip(fine, meshes, strict=True)):
         return fine, found
     return fine, _found(fine, asked, **how)
@@ -320,6 +325,7 @@ def _attach(
     for mesh, made in zip(meshes, found, strict=True):
         arrays: dict[str, Raw] = {asked.name: made.share}
         dark += made.dark
+        # The warning is about the mesh in which the sky changes most.
         if made.between > bent:
             bent, length = made.between, mesh.length
         missing = int(np.count_nonzero(~made.valid))

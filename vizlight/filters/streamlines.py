@@ -486,6 +486,7 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
         if name not in mesh.point_data:
             raise _no_vectors(mesh, name)
         array = array_of(mesh, "vectors", name)
+        # Eigenvectors of tensors have no sign, whatever the option says.
         if array.shape[1] in (6, 9) and not pair:
             return name, True
         vectors_of(mesh, "vectors", name, 3)

@@ -154,6 +154,7 @@ def tint(
         below_color=below_color,
     )  # fmt: skip
     record = _record(table, scalars, light, component)
+    # The points were lit before: a report counts the light on their colours apart.
     with report.tinted():
         lights = _light_of(lit, own, light)
     made = [
@@ -255,6 +256,7 @@ def color_table(
     cmap, nan_color = default_map(cmap), default_nan_color(nan_color)
     # Rows of several components are colours already.
     values = [part for part in values if part.ndim == 1]
+    # The mapper below does not see all values, and the range is that of all blocks.
     if clim is None and not isinstance(cmap, pv.LookupTable):
         clim = _range(values)
     if isinstance(clim, int | float):
@@ -319,6 +321,7 @@ def default_map(cmap: ColorMap) -> ColorMap:
     # Loading the module makes its names known.
     from vizlight import maps
 
+    # A theme that someone has changed is a choice, and PyVista's own default is none.
     chosen = cmap is not None or pv.global_theme.cmap != _own_theme().cmap
     return cmap if chosen else maps.even
 
@@ -423,6 +426,7 @@ def _light_of(
 
 def _colored(scene: Scene) -> bool:
     """Return whether light has a colour, on a material that has none."""
+    # Colours of the data stand for the material's, which has no part in this.
     return scene.replace(material=dataclasses.replace(scene.material, color=None)).colored
 
 
@@ -437,6 +441,8 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     if light in ours and not material.specular and material.ambient >= display.LEAST:
         return np.asarray(mesh.point_data[light]), valid
     names = [part_name(light, part) for part in ("ambient", "diffuse")]
+    # Terms are stored without the cue, and where they are not stored the highlight stays in the
+    # sum.
     if scene.depth_cue is not None or not material.ambient or not set(names) <= ours:
         return None
     ambient, diffuse = (np.asarray(mesh.point_data[name]) for name in names)

@@ -333,6 +333,8 @@ def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | No
     found = work.each(task.look, [(piece, job) for piece in parts], "sides")
     looks = {i: one for i, one in enumerate(found) if one is not None}
     if sharp:
+        # The angle is one for all pieces: their common borders would not fit if some were split
+        # alone.
         angle = SHARP if looks and sides.creases([*looks.values()]) else None
         job = dataclasses.replace(job, options={**job.options, "feature_angle": angle})
     if asked.facing == "auto" and looks:
@@ -350,6 +352,7 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
         if not isinstance(given, Path):
             continue
         source = given.resolve()
+        # A source that is named like a piece may be taken for one of an earlier run, and removed.
         if source in taken or (source.parent == folder and own.fullmatch(source.name)):
             expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))

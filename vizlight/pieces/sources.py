@@ -150,6 +150,7 @@ class GridPiece:
         # Over the cells x runs fastest, so that the mask has the axes z, y and x; a flat axis has
         # one layer.
         outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        # Nodes of the piece, counted from the first that was read.
         own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
         outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
         mesh.cell_data[GHOST] = outside.ravel()
@@ -352,6 +353,7 @@ def _of_file(path: Path, slab: float) -> list[Piece]:
         found = pv.wrap(reader.GetOutputDataObject(0))
         is_grid = isinstance(found, pv.ImageData)
         if isinstance(found, pv.PartitionedDataSet):
+            # Each partition of a VTKHDF file is a piece.
             count = found.n_partitions
             return [FilePiece(f"{path}[{i}]", path, i, count) for i in range(count)]
     return [*_boxes(path, *_size(path), slab)] if is_grid else [FilePiece(str(path), path)]
@@ -403,6 +405,7 @@ def _boxes(
 def _parts(first: int, last: int, most: int) -> list[tuple[int, int]]:
     """Return the ends of parts of at most so many steps, but of one at least."""
     count = max(math.ceil((last - first) / max(most, 1)), 1)
+    # Even parts, so that none is left as a thin rest.
     ends = [first + (last - first) * i // count for i in range(count + 1)]
     return list(itertools.pairwise(ends))
 

@@ -236,6 +236,7 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
             valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
             done.invalid = int(np.count_nonzero(~valid & ~inside))
             suffix = SUFFIX[type(lit).__name__]
+            # An index has pieces of one type of mesh, which its suffix names.
             if suffix != job.suffix:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))

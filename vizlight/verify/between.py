@@ -47,6 +47,7 @@ class Places(NamedTuple):
 
 def measurable(inputs: ShadingInputs) -> bool:
     """Return whether light between the points follows from what the inputs hold at the points."""
+    # What only the points have, such as their share of a shadow, is not known between them.
     given = inputs.shadow is None and inputs.fur_height is None
     given = given and inputs.transmittance is None and inputs.occlusion is None
     return given and inputs.repeat == 1
@@ -253,6 +254,7 @@ def mean_spaces(frames: Array, places: Places) -> Array:
         return found
     parts = [places.weights[:, i : i + 1] * frames[places.corners[:, i], 0] for i in range(s)]
     if s == 2:
+        # Of two vectors the second is turned over where they point apart.
         turned = [np.ones(m), np.where(_dots(*parts) < 0, -1.0, 1.0)]
     else:
         a, b, c = parts
@@ -304,6 +306,7 @@ def random_places(
         # dimension.
         square = square * _dots(sides[1], sides[1]) - _dots(*sides) ** 2
     total = np.cumsum(np.sqrt(np.maximum(np.nan_to_num(square), 0)))
+    # Cells of no area, or of one that is not finite, have no places.
     if not (len(total) and 0 < total[-1] < np.inf):
         return Places(cells[:0], np.empty((0, s))), np.empty(0, np.intp)
     # One place in each of as many equal parts of the area.
@@ -351,6 +354,7 @@ def measure(
         return np.empty(0)
     # Only the corners of the cells that were drawn are looked at.
     used, corner = np.unique(places.corners, return_inverse=True)
+    # From here on corners count among the points that are taken.
     places = Places(corner.reshape(places.corners.shape), places.weights)
     return error_between(
         Between(_taken(inputs, used), scene, options), columns(shading, used), places

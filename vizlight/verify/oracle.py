@@ -198,6 +198,7 @@ class Oracle:
         scale = self.number(light.intensity)
         if distance is not None:
             scale *= self.attenuation(distance, light.attenuation)
+        # For tangents within a base its diffuse term takes the part of the self-shadow.
         if place.base:
             scale *= self.across(wi, place.base) ** place.base_exponent
         if place.fur and place.normal is not None and place.wo is not None:
@@ -361,6 +362,7 @@ class Oracle:
         """Return S I + (1 - S) Icue, of the Lecture; ``grey`` is the cue's own colour."""
         low, high, back = map(self.number, (cue.back_scale, cue.front_scale, cue.back or 0.0))
         t = (depth - back) / (self.number(cue.front or 0.0) - back)
+        # Before its front and behind its back the cue stays as it is there.
         t = min(max(t, self.number(0.0)), self.number(1.0))
         share = low + (high - low) * (self.smooth(t) if cue.smooth else t)
         return share * light + (1 - share) * cue.cue * grey
@@ -409,6 +411,7 @@ class Oracle:
             largest = max(map(abs, v))
             if not 0 < largest < math.inf or size != size:
                 return None
+            # Divided by the largest component, the squares are within range.
             v = [x / largest for x in v]
             size = self.hypot(*v)
         return [x / size for x in v]

@@ -111,6 +111,7 @@ class Run:
     @property
     def missed(self) -> float:
         """Share of the points that may be worse than the sample, with a confidence of 95 %."""
+        # A sample of all points that could be lit has missed none.
         return 0.0 if self.sample + self.invalid >= self.points else unseen(self.sample)
 
     @property
