@@ -24,10 +24,12 @@ def folder(*parts: str) -> Path | None:
 @lru_cache(maxsize=512)
 def _writable(path: Path) -> Path | None:
     """Return a folder, made if it was not there; None if no file can be written to it."""
+    # By the specification of XDG a relative path is invalid.
     if not path.is_absolute():
         return None
     try:
         path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        # A file is made, because permissions do not tell of a full or a read-only disk.
         with tempfile.TemporaryFile(dir=path):
             return path
     except OSError:

@@ -65,6 +65,7 @@ def warn(text: str, category: type[Warning] = UserWarning) -> None:
 
 def choice(name: str, value: object, allowed: Sequence[str], *, optional: bool = False) -> None:
     """Check that a value is one of the allowed strings, or with ``optional=True`` None."""
+    # An array would be compared element by element, so that anything but a text is ruled out first.
     if not (isinstance(value, str) and value in allowed) and not (optional and value is None):
         *others, last = (repr(text) for text in (*allowed, *([None] if optional else [])))
         raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
@@ -85,6 +86,7 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
 
 def flags(frozen: Foreign) -> None:
     """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
+    # Annotations are texts in modules that postpone them.
     fields(frozen, boolean, *[one.name for one in dataclasses.fields(frozen) if one.type == "bool"])
 
 
@@ -129,11 +131,13 @@ def floats(name: str, value: object) -> Array:
     float64 stay. Masked elements become NaN.
     """
     array = reals(name, value)
+    # The square of 256 is beyond the range of float16.
     if array.dtype == np.float16:
         return array.astype(np.float32)
     if array.dtype.kind != "f" or array.dtype.itemsize > 8:
         with np.errstate(over="ignore"):
             return array.astype(np.float64)
+    # Compiled code and VTK take the byte order of the machine, which files may not have.
     return array.astype(array.dtype.newbyteorder("="), copy=False)
 
 
@@ -191,6 +195,7 @@ def unmasked(value: object) -> object:
         return value
     if not np.ma.is_masked(value):
         return value.data
+    # Integers and booleans have no NaN.
     kind = value.dtype if value.dtype.kind == "f" else np.float64
     return np.ma.filled(value.astype(kind), np.nan)
 
@@ -222,6 +227,7 @@ def cells(
 def indices(name: str, value: object, limit: int) -> Indices:
     """Return ``value`` as a row of indices from 0 to ``limit - 1``."""
     array = reals(name, value)
+    # NumPy makes an empty list one of floats.
     if array.size == 0:
         array = array.astype(np.intp)
     if array.dtype.kind not in "iu":
@@ -235,6 +241,7 @@ def indices(name: str, value: object, limit: int) -> Indices:
 def number(name: str, value: object, *, low: float = -math.inf, high: float = math.inf) -> float:
     """Return ``value`` as a finite float in the closed range [low, high]."""
     value = _scalar(value)
+    # To Python True is the number 1; as an option it is a mistake.
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(message(name, "a number", describe(value)))
     try:
@@ -277,6 +284,7 @@ def text(name: str, value: object, *, expected: str = "text") -> str:
     """Return a string without a null character, at which VTK and files end names."""
     if not isinstance(value, str):
         raise TypeError(message(name, expected, describe(value)))
+    # Half of a surrogate pair has no bytes in UTF-8, in which VTK takes names.
     if "\0" in value or value != value.encode("utf-8", "ignore").decode():
         raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
     return str(value)
@@ -302,6 +310,7 @@ def path(name: str, value: object) -> Path:
 
 def iterable(name: str, value: object, expected: str) -> None:
     """Check that a value holds others, as a text and a dict do not; ``expected`` says which."""
+    # An array without axes has the method ``__iter__``, but nothing to iterate over.
     flat = getattr(value, "ndim", 1) != 0
     if isinstance(value, str | bytes | dict) or not (flat and hasattr(value, "__iter__")):
         raise TypeError(message(name, expected, describe(value), "put a single one in a list"))

@@ -129,6 +129,7 @@ def could_pay(saved: float, missed: float = 0.0) -> bool:
     It would save ``saved`` seconds now, and would have saved ``missed`` seconds before. Ask
     :meth:`Kernel.pays` with ``counted=True`` after it.
     """
+    # The seconds of all kernels are added up, since they share the start-up.
     _Account.missed += saved
     return wanted() == "1" or (saved + missed >= READ and _Account.missed >= preparation() + READ)
 
@@ -259,6 +260,7 @@ class Kernel(Generic[P, R]):
         folder = self._folder()
         if folder is None:
             return self.seconds
+        # numba names the files of its index after the function and the line on which it begins.
         name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
         return READ if any(folder.rglob(f"*{name}")) else self.seconds * SHARED
 
@@ -275,8 +277,11 @@ class Kernel(Generic[P, R]):
         if _unusable():
             raise FailedError(_check.message(name, "numba, see Kernel.pays", _unusable()))
         try:
+            # A function that has run once is called without the lock, so that threads run it at the
+            # same time.
             if self._proven and self._compiled is not None:
                 return self._compiled(*args, **kwargs)
+            # Others wait, in place of compiling the same function again.
             with _LOCK:
                 result = self._first(*args, **kwargs)
                 self._proven = _Account.prepared = True
@@ -294,6 +299,7 @@ class Kernel(Generic[P, R]):
         except _DAMAGED:
             # A file of the cache is damaged, or the function itself fails, which it does again.
             if (folder := self._folder()) is not None:
+                # What is damaged goes, and the function is compiled anew.
                 shutil.rmtree(folder, ignore_errors=True)
             self._compiled = None
             return self._dispatcher()(*args, **kwargs)
@@ -321,14 +327,19 @@ class Kernel(Generic[P, R]):
         )
         copy.__module__, copy.__qualname__ = own.__module__, own.__qualname__
         options = {
+            # Threads run a kernel at the same time.
             "nogil": True,
+            # Divisions by 0 give infinity or NaN, as in NumPy, and no exception.
             "error_model": "numpy",
             "fastmath": set(self.rounding),
             "forceinline": self.inline,
+            # An inlined function is kept as a part of those that call it.
             "cache": folder is not None and not self.inline,
         }
         if self.apart:
             options["pipeline_class"] = _apart()
+        # numba takes its folder from a setting of the process, which the user's own functions need
+        # back.
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = "" if folder is None else str(folder)
         try:
@@ -345,12 +356,16 @@ class Kernel(Generic[P, R]):
 
     def _folder(self) -> Path | None:
         """Return the folder of this function's code as it stands, or None where none is kept."""
+        # numba finds what it keeps by the file of a function, and keeps nothing of one without a
+        # file.
         if not Path(self.function.__code__.co_filename).is_file():
             return None
         return _cache.folder(KERNELS, _key(self._sources()))
 
     def _sources(self) -> tuple[str, ...]:
         """Return the texts that make the code: its own file and its helpers' texts."""
+        # numba itself looks at the function's own file alone, and would keep code with old kernels
+        # inside.
         texts = [
             _text(self.function.__code__.co_filename),
             str(sorted(self.rounding)),
@@ -368,6 +383,7 @@ def _apart() -> type:
 
     class Apart(Compiler):  # type: ignore[misc]
         def __init__(self, *args: object) -> None:
+            # The sixth argument of numba's compiler has its flags.
             flags = args[5]
             flags.noalias = True  # type: ignore[attr-defined]
             super().__init__(*args)

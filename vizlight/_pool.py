@@ -73,5 +73,6 @@ def run(work: Callable[[Slice], int], parts: list[Slice]) -> Iterator[int]:
     if count <= 1:
         yield from map(work, parts)
         return
+    # NumPy and compiled code let go of Python's lock, so that threads share the processors.
     with ThreadPoolExecutor(count) as pool:
         yield from pool.map(work, parts)

@@ -97,11 +97,13 @@ def stage(
     place = temporary and str(Path(temporary).absolute())
     said = {"doing": doing, "path": os.fspath(path), "temporary": place, "seconds": seconds}
     os.write(_channel, json.dumps(said).encode() + b"\n")
+    # The system's timer ends the process also inside a library of C, where handlers of Python wait.
     left = signal.setitimer(signal.ITIMER_REAL, seconds)[0] if seconds else 0.0
     try:
         yield
     finally:
         if seconds:
+            # A stage around this one goes on with the time that it had left.
             signal.setitimer(signal.ITIMER_REAL, left)
         os.write(_channel, b"{}\n")
 
@@ -123,21 +125,28 @@ def run(main: Callable[[], int]) -> int:
         drew a picture or computed.
     """
     global _channel  # noqa: PLW0603 - a process has one parent
+    # A fork copies the calling thread alone: locks that other threads hold would never be free
+    # again.
     if not sys.platform.startswith("linux") or len([*Path("/proc/self/task").iterdir()]) > 1:
+        # Until now Ctrl-C ended the process without a traceback; the command line reports it.
         if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:
             signal.signal(signal.SIGINT, signal.default_int_handler)
         return main()
     _open_standard_streams()
     reader, writer = os.pipe()
+    # Text that is still in a buffer would be written by both processes.
     sys.stdout.flush()
     sys.stderr.flush()
+    # A signal between the fork and the handlers waits until both processes can take it.
     signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     parent, child = os.getpid(), os.fork()
     if child:
+        # The pipe ends for the reader when no process can write to it any more.
         os.close(writer)
         return _wait(child, reader)
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
         signal.signal(signal.SIGINT, _interrupt_once)
+    # The limit of a stage ends the process by what the system does at this signal.
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
     os.close(reader)
@@ -180,6 +189,7 @@ def end_with(parent: int) -> None:
     """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
+    # The parent may have ended before it was asked for this.
     if os.getppid() != parent:
         os._exit(LACKING)
 
@@ -188,6 +198,7 @@ def _limit_memory() -> None:
     """Refuse to allocate more than the machine has: counts in damaged files ask for any amount."""
     import resource
 
+    # Linux promises more memory than there is, and kills a process only when it uses that.
     total = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
     given = [total, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
@@ -200,11 +211,13 @@ def _wait(child: int, reader: int) -> int:
 
     def on_signal(number: int, _frame: FrameType | None) -> None:
         ended_by.append(signal.Signals(number))
+        # A terminal tells the child, too, which may then end by itself before the timer rings.
         if number == signal.SIGINT:
             signal.setitimer(signal.ITIMER_REAL, PASS_ON, PATIENCE)
         else:
             os.kill(child, signal.SIGKILL)
 
+    # The first alarm passes Ctrl-C on, and the next one kills.
     hasten = iter((signal.SIGINT, signal.SIGKILL))
     # What the caller ignores, as a shell does for jobs in the background, stays ignored.
     for name in _PASSED_ON:
@@ -213,6 +226,7 @@ def _wait(child: int, reader: int) -> int:
     signal.signal(signal.SIGALRM, lambda *_: os.kill(child, next(hasten, signal.SIGKILL)))
     stages: list[Keywords] = []
     for line in _lines(reader):
+        # An empty object says that the innermost stage is over.
         if said := json.loads(line):
             stages.append(said)
         else:
@@ -223,6 +237,7 @@ def _wait(child: int, reader: int) -> int:
     signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     if os.WIFEXITED(status):
         return os.WEXITSTATUS(status)
+    # A child that was killed could not remove its temporary folders.
     for one in stages:
         if one["temporary"]:
             shutil.rmtree(one["temporary"], ignore_errors=True)
@@ -238,6 +253,7 @@ def _lines(reader: int) -> Iterator[bytes]:
     wait by a pipe of its own.
     """
     wake, woken = os.pipe()
+    # Python's handler writes to this pipe, and must not wait for a reader.
     os.set_blocking(woken, False)
     signal.set_wakeup_fd(woken)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
@@ -248,7 +264,9 @@ def _lines(reader: int) -> Iterator[bytes]:
             os.read(wake, 1)
         if reader in ready:
             if not (text := os.read(reader, 1 << 16)):
+                # No bytes are the end of the pipe: the child has closed it.
                 return
+            # The last part may be the beginning of a line.
             *lines, begun = (begun + text).split(b"\n")
             yield from lines
 
@@ -260,6 +278,7 @@ def _what_happened(
     if ended_by:
         ended = "interrupted" if ended_by[-1] == signal.SIGINT else "ended"
         return f"{ended} by {ended_by[-1].name}; no partial file is left", BAD_INPUT
+    # The system kills by this signal when memory runs out.
     reason = " (out of memory?)" if by == signal.SIGKILL else ""
     if not stages:
         return f"the process was ended by {by.name}{reason}", LACKING

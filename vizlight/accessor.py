@@ -47,6 +47,7 @@ class _Method(Generic[Options, Result]):
         def method(self: Accessor, /, *args: Options.args, **kwargs: Options.kwargs) -> Result:
             return function(self._mesh, *args, **kwargs)
 
+        # The filter takes the place of this loader, so that it is found without it from then on.
         setattr(owner, self._name, method)
         made: Callable[Options, Result] = getattr(
             owner if accessor is None else accessor, self._name

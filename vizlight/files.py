@@ -160,10 +160,13 @@ def read(
             raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
+    # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
+    # none.
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
         expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
         raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
     reason, mesh = "no points", None
+    # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
     limit = _supervise.read_limit(path.stat().st_size)
@@ -172,6 +175,7 @@ def read(
         try:
             found: Foreign = _found(path, time)
             for block in blocks.all_blocks(found):
+                # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
             mesh = _whole(found, path.suffix.lower(), overlays)
         except series.NoStepError:
@@ -181,6 +185,7 @@ def read(
             reason = f"{kind}{_first_line(error)}"
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
+    # A directive that VTK does not know costs a field of an OpenFOAM case, and not the case.
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
     harmless = _DIRECTIVE.search, _HARMLESS.search
     errors = [error for error in errors if not any(search(error) for search in harmless)]
@@ -188,6 +193,7 @@ def read(
         reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
+    # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
@@ -230,6 +236,8 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
 def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
     """Return one upright mesh of what a file of a suffix holds, with the values over it."""
     mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+    # These formats may have points for each face or colour; an overlay has a row for each point,
+    # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
         mesh = normals.welded(blocks.surface(mesh, "file"))
     for path in overlays:
@@ -237,6 +245,7 @@ def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
             mesh.point_data[name] = rows
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
+    # Points that only a colour tells apart have the normals of the surface, if it has no creases.
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
@@ -264,6 +273,8 @@ def _found(path: Path, time: object) -> pv.DataObject:
     found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
     if path.suffix.lower() in _MESHERS:
+        # As a block it is reduced to its cells of the highest dimension, see
+        # :func:`.blocks.one_grid`.
         found = pv.MultiBlock({"cells of lower dimension": found})
     if isinstance(found, pv.PartitionedDataSet):
         data, found = found.field_data, pv.MultiBlock(list(found))
@@ -277,6 +288,8 @@ def _path(name: str, value: object) -> Path:
     try:
         path.stat()
     except OSError as error:
+        # Other errors, as of a name that is too long, come from the system; a missing file is told
+        # of later.
         if error.errno not in (errno.ENOENT, errno.ENOTDIR, errno.EACCES):
             got = f"{_check.describe(str(path))} ({error.strerror})"
             raise FileError(_check.message(name, "a path that the system takes", got)) from error
@@ -319,6 +332,7 @@ def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
     """Return the names of blocks that are not in a grid and are no side sets of it."""
     kept = grid.distinct_cell_types
     lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
+    # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
     return ", ".join(
         path.lstrip("/")
@@ -345,6 +359,8 @@ class _Messages:
         thread = threading.get_ident()
         errors: list[str] = []
         with self._lock:
+            # The first that listens puts its window in place of the user's, and the last one puts
+            # that back.
             if self._replaced is None:
                 self._replaced = (
                     vtkOutputWindow.GetInstance(),
@@ -355,7 +371,9 @@ class _Messages:
                 for event in ("ErrorEvent", "WarningEvent"):
                     listening.AddObserver(event, heard)  # type: ignore[arg-type]
                 vtkOutputWindow.SetInstance(listening)
+                # VTK's logger would print each message to standard error beside that.
                 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+            # One thread may listen in several contexts, of which the innermost hears.
             self._heard.setdefault(thread, []).append(errors)
         try:
             yield errors
@@ -455,6 +473,7 @@ def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
     every = names.split(",")
     if len(every) not in (2, 3):
         raise ValueError(_check.message("names", "two or three names", repr(names)))
+    # The array is attached to a shallow copy, so that the caller's mesh does not get it.
     found = records.averaged(mesh, *every).copy(deep=False)
     columns = [_scalars(found, "names", name) for name in every]
     columns += [np.zeros_like(columns[0])] * (3 - len(columns))
@@ -492,6 +511,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         rows = np.asarray(_scalars(mesh, "warp", name))[:, np.newaxis]
     holes = ~np.isfinite(rows).all(axis=1)
     factor = _check.number("exaggeration", factor)
+    # Over degrees, each some 111 km, heights in metres would stand as needles.
     mesh = georeference.in_metres(mesh)
     if holes.all():
         raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
@@ -499,12 +519,15 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     if is_grid or rows.shape[1] == 3:
         # VTK raises grids to float32, which is coarse far from the origin.
         points = np.array(mesh.points, dtype=np.float64)
+        # Heights move the last axis, and vectors move all three.
         points[:, -rows.shape[1] :] += factor * rows
         moved: Foreign = mesh.cast_to_structured_grid() if is_grid else mesh.copy(deep=False)
+        # A shallow copy has the points of the mesh itself, and gets others in their place.
         moved.SetPoints(pv.vtk_points(points))
     else:
         moved = mesh.warp_by_scalar(name, factor=factor)
     found: pv.DataSet = moved
+    # Cells at a hole go, whatever their other points are.
     return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
 
 
@@ -636,6 +659,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         _check_names(block, legacy=path.suffix.lower() == ".vtk")
     if path.suffix.lower() == ".vtu" and isinstance(mesh, pv.PolyData):
         mesh = mesh.cast_to_unstructured_grid()
+    # STL has no cells but triangles.
     if path.suffix.lower() == ".stl":
         mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
@@ -647,6 +671,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         own = blocks.like(mesh, map(_to_save, blocks.all_blocks(mesh)))
         with captured_errors() as errors:
             own.save(draft)
+        # VTK writes the files of the blocks to a folder that has the name of the draft.
         files = sorted(Path(draft).with_suffix("").glob("*"))
         _check_drafts([Path(draft), *files], errors)
         for file in files:
@@ -671,6 +696,7 @@ def _solid(field: pv.ImageData) -> pv.PolyData:
     top = warped(field, name, 1.0).extract_surface(algorithm="dataset_surface")
     base = top.bounds.z_min - BASE * max(field.bounds_size[:2])
     middle = (top.center[0], top.center[1], base)
+    # The plane is larger than the field on all sides, so that all walls end at it.
     plane = pv.Plane(center=middle, i_size=3 * top.length, j_size=3 * top.length)
     solid: pv.PolyData = top.extrude_trim((0, 0, -1), plane).clean().triangulate()
     return solid
@@ -719,6 +745,8 @@ def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
             try:
                 os.posix_fallocate(file.fileno(), 0, size)
             except OSError as error:
+                # By these errors a file system says that it cannot reserve space; the free space is
+                # asked for below.
                 if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
                     expected = f"{size / 1e6:.1f} MB of free disk"
                     got = f"'{draft.parent.parent}' ({error.strerror})"
@@ -749,6 +777,7 @@ def _sweep(place: Path) -> None:
         with contextlib.suppress(OSError), _opened(folder) as opened:
             # An error says that it is locked, another's, or gone.
             fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # A folder without a lock may be that of a writer that has just made it.
             if time.time() - os.fstat(opened).st_mtime > ABANDONED:
                 shutil.rmtree(folder)
 
@@ -760,6 +789,8 @@ def _locked(folder: Path) -> Iterator[None]:
         yield
         return
     with _opened(folder) as opened:
+        # Who sweeps asks for the lock that excludes others, which is refused while a writer holds
+        # this one.
         with contextlib.suppress(OSError):  # the file system has none
             fcntl.flock(opened, fcntl.LOCK_SH)
         yield
@@ -820,8 +851,11 @@ def replace_file(
                 with _locked(folder):
                     draft = folder / f"{path.stem}{path.suffix.lower()}"
                     write(str(draft))
+                    # A file that is replaced hands on its permissions.
                     if target.exists():
                         draft.chmod(target.stat().st_mode)
+                    # Within a file system a file is moved at once: readers see the old one or the
+                    # new one.
                     draft.replace(target)
             finally:
                 shutil.rmtree(folder)

@@ -76,10 +76,12 @@ def bas_relief(
         height = _check.number("height", height, low=0.0)
     _check.array_name("name", name)
 
+    # Points that no face uses are not seen, and do not count for the extent.
     used = np.unique(triangles)
     if not len(used):
         raise ValueError(_check.message("mesh", "faces of some area", "none"))
     centre = (vertices[used].min(axis=0) + vertices[used].max(axis=0)) / 2
+    # From here on x is to the right, y up and z toward the eye.
     places = (vertices - centre) @ frame.T
     low, high = places[used].min(axis=0), places[used].max(axis=0)
     side = float((high - low)[:2].max())
@@ -90,6 +92,7 @@ def bas_relief(
     # The tolerance prevents an additional node by rounding.
     count = np.ceil(((high - low)[:2] + 2 * margin * side) / step - 1e-6).astype(int) + 1
     count = np.maximum(count, 2)
+    # The nodes stand evenly about the middle of the extent.
     first = ((low + high)[:2] - (count - 1) * step) / 2
     x, y = (first[k] + step * np.arange(count[k]) for k in (0, 1))
     with _progress.progress("depth", 100, show=progress_bar) as report:
@@ -100,6 +103,7 @@ def bas_relief(
     if not there.any():
         expected, got = "a surface wider than a node", "a thinner one"
         raise ValueError(_check.message("mesh", expected, got, "raise resolution"))
+    # The farthest place that is seen has height 0, level with the ground beside the shape.
     depth -= depth[there].min()
     depth[~there] = 0
     tall = float(depth.max())
@@ -115,6 +119,7 @@ def _eye_frame(direction: VectorLike, up: VectorLike | None) -> Array:
     """Return the unit vectors to the right, up and toward the eye as rows."""
     toward = _check.unit("direction", direction)
     if up is None:
+        # Straight along z the z axis has no direction on the screen.
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
     right = np.cross(_check.unit("up", up), toward)
     if np.linalg.norm(right) < 1e-6:

@@ -68,6 +68,8 @@ class FurOptions(Options):
         _check.flags(self)
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
         if isinstance(self.bundle, Bundle):
+            # A bundle dims by the fibres that lie in the way: a share of absorption beside it would
+            # count them twice.
             if self.absorption is not None or self.density is not None:
                 expected = "no absorption or density"
                 remedy = "set the diameter of a vizlight.Bundle"
@@ -101,6 +103,7 @@ class FurOptions(Options):
     @property
     def lost(self) -> float:
         """Share of light that is lost over a unit of height, or over the fur's own length."""
+        # In a bundle each light has a transmittance of its own, and Banks (7) and (8) are left out.
         if self.bundle:
             return 0.0
         if self.density is not None:
@@ -214,6 +217,8 @@ def fur(
     scene = Scene(material=MATERIAL) if scene is None else as_scene(scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
+    # Splitting at sharp edges makes more points, and only arrays that the mesh carries go with
+    # them.
     if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(options.length)
@@ -227,6 +232,7 @@ def fur(
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
         raise ValueError(_check.message("surface", "faces of some area", "none"))
     hairs, inside = coat.fibres()
+    # The skin is a surface of its own, which light reaches through the fur above it.
     below = ShadingInputs(
         points=np.asarray(skin.points),
         normals=np.asarray(skin.point_data[NORMALS]),
@@ -236,10 +242,14 @@ def fur(
     points = np.asarray(hairs.points)
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
+        # The lines of the bundle are in the space of the surface, and the fibres are less the
+        # origin.
         lines = _mesh(points + np.array(coat.origin) if any(coat.origin) else points, hairs.repeat)
         (hairs, below), dimmings = lighting.dimmed(
             [lines, surface], [hairs, below], scene, options.bundle, name, show=progress_bar
         )
+        # Ambient light comes from all sides: its share in the fur is found in the medium of the
+        # fibres.
         medium = bundles.medium_of(bundles.joined([lines]), options.bundle)
         sides = np.asarray(skin.point_data[NORMALS])
         shares = in_medium(lines, medium, None), in_medium(skin, medium, sides)
@@ -257,6 +267,7 @@ def fur(
     # What the light was computed from is freed before the cells of the lines are made.
     parts.clear()
     if any(coat.origin):
+        # The engine lit points less the origin; the mesh has them where its surface is.
         points += np.array(coat.origin)
     if inside:
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
@@ -276,6 +287,7 @@ class _Coat:
         self.origin = blocks.near_origin(skin)
         #: Type of the points.
         self.kind = np.dtype(np.float64)
+        # Near the origin float32 is enough, unless the surface itself has more digits.
         if not any(self.origin):
             self.kind = np.result_type(skin.points.dtype, np.float32)
         size = float(skin.length)
@@ -283,6 +295,8 @@ class _Coat:
             remedy = "scale the mesh"
             raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
+        # Along a Hilbert curve neighbouring seeds are neighbouring places, so that fibres stand
+        # evenly whatever the order of the faces.
         order, self.total = geometry.laid(np.asarray(skin.points), faces)
         self.faces = faces.take(order, axis=0)
         self.normals = np.asarray(skin.point_data[NORMALS], dtype=np.float32)
@@ -293,6 +307,7 @@ class _Coat:
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"
                 _check.warn(f"{lost} of {len(given)} of {what}")
+            # Of length 1, so that long vectors do not prevail where they are interpolated.
             self.vectors = kernels.unit_rows(given).astype(np.float32)
         self.toward = _toward(surface, options.toward)
         self.length: Array | float = (
@@ -303,10 +318,13 @@ class _Coat:
         self.unit = mean if options.density is None and mean > 0 else 1.0
         # All that is interpolated stands in one table, so that it is looked up once.
         with np.errstate(invalid="ignore"):
+            # The origin goes before the numbers are rounded to float32, which far away has few
+            # digits.
             local = np.asarray(skin.points) - np.array(self.origin)
         parts: list[Array] = [local.astype(np.float32), self.normals]
         if self.vectors is not None:
             parts.append(self.vectors)
+        # One direction for all is the same at every place, and is not interpolated.
         if self.toward is not None and len(self.toward) > 1:
             parts.append(self.toward)
         if isinstance(self.length, np.ndarray):
@@ -342,6 +360,8 @@ class _Coat:
                 at = slice(block.start + part.start, block.start + part.stop)
                 phase = None if phases is None else phases[part]
                 root, normal, way, offsets, inside = self._grown(face[part], weights[part], phase)
+                # The points are stored fibre by fibre; offsets have the points first and the fibres
+                # last.
                 np.add(root, offsets, out=points[at].transpose(1, 2, 0))
                 along = way if options.straight else geometry.tangents(offsets, way)
                 np.moveaxis(tangents[at], 0, -1)[...] = along
@@ -354,6 +374,8 @@ class _Coat:
                 reversed_ += inside
             return reversed_
 
+        # Threads share blocks of seeds, each with a generator of its own: the fur does not depend
+        # on their number.
         inside = sum(_pool.run(work, _pool.blocks(count, geometry.SEED_BLOCK)))
         made = ShadingInputs(
             points=points.reshape(-1, 3),
@@ -361,6 +383,8 @@ class _Coat:
             normals=normals,
             fur_height=None if heights is None else heights.reshape(-1),
             fur=options.lost,
+            # One row of normals, and of tangents of straight fibres, serves all m points of a
+            # fibre.
             repeat=m,
             origin=self.origin,
         )
@@ -379,6 +403,7 @@ class _Coat:
             corner *= weights[:, i : i + 1]
             found += corner
         columns = iter(np.split(np.ascontiguousarray(found.T), self._cuts))
+        # Between corners the mean of unit normals is shorter than 1.
         root, normal = next(columns), kernels.unit(next(columns))[0]
         way, inside = self._ways(normal, None if self.vectors is None else next(columns))
         toward = None if self.toward is None else self.toward.T
@@ -392,7 +417,9 @@ class _Coat:
         if vector is None:
             return normal, 0
         way, size = kernels.unit(vector)
+        # A fibre without a direction of its own, as at a vector of 0, stands along the normal.
         way = np.where(size > 0, way, normal)
+        # What would grow into the surface is turned over, and counted for the warning.
         inside = kernels.dot(way, normal) < 0
         way[:, inside] *= -1
         return way, int(np.count_nonzero(inside))
@@ -414,6 +441,7 @@ class _Coat:
 
     def skin_heights(self) -> Array:
         """Return the height of a fibre that stood on each point of the skin."""
+        # A fibre is grown on each point of the skin, to know how much fur covers it.
         normal = kernels.unit(np.ascontiguousarray(self.normals.T))[0]
         way, _ = self._ways(normal, None if self.vectors is None else self.vectors.T)
         toward = None if self.toward is None else self.toward.T
@@ -422,6 +450,8 @@ class _Coat:
 
     def _heights(self, offsets: Array, normal: Array) -> Array:
         """Return heights of points over the surface at the root, in units."""
+        # Heights are along the normal; the engine divides them by the sine of the way of the light
+        # (Banks 7, 8).
         height: Array = np.einsum("jib,ib->jb", offsets, normal)
         height /= np.float32(self.unit)
         return height

@@ -211,6 +211,8 @@ def parts_of(
     # Points are split first: normals, sky and light then belong to the points of the result.
     split = [_split(block, path, options) for block, path in named]
     own = [block for block, _ in split]
+    # A sky that is named and missing is found for all blocks at once, since they hide it from one
+    # another.
     taken = with_sky(own, options.occlusion, finer=options.feature_angle is not None)
     # Where the sky asked for smaller triangles, their points have normals of their own.
     known = [
@@ -250,6 +252,8 @@ def light_parts(
         scene,
         progress_bar=progress_bar,
     )
+    # Of normals that do not stay with a mesh only the facts are kept, which the warnings below
+    # need.
     sides = [normals.to_keep(own, part.sided) for own, part in zip(taken, parts, strict=True)]
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
@@ -258,6 +262,7 @@ def light_parts(
     for block, kept in zip(lit, sides, strict=True):
         if kept is not None:
             normals.keep(block, kept)
+        # The error that an earlier refinement measured is not that of this light.
         refining.forget(block, options.name)
     inside = sum(sided.inside for sided in sides if sided is not None)
     lighting.finish(
@@ -286,6 +291,7 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataS
     angle = options.feature_angle
     if angle is None or not uses_normals(mesh, options):
         return mesh, None
+    # Normals that are given say themselves where edges are sharp: there is nothing to split.
     if not normals.are_computed(mesh, options):
         if options.normals is None:
             normals.warn_of_idle(mesh, angle)
@@ -296,6 +302,7 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataS
         remedy = "take the mesh's extract_surface()"
         raise ValueError(where + _check.message("feature_angle", expected, got, remedy))
     given: object = options.tangents
+    # An array without a name has no rows for the points that are split off.
     if given is not None and not isinstance(given, str):
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(given)
@@ -308,11 +315,13 @@ def _warn_of_normals(
 ) -> None:
     """Warn if normals were averaged across many sharp edges, or come from rounded places."""
     known = [(mesh, own) for mesh, own in zip(meshes, sides, strict=True) if own is not None]
+    # With an angle the sharp edges are split already, and nothing is averaged across them.
     if options.feature_angle is None:
         splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
         sharp = max((float(own.sharp) for _, own in known), default=0.0)
         normals.warn_of_edges(sharp, splits)
     normals.warn_of_rounding([mesh for mesh, own in known if own.computed])
+    # Normals may belong to positions in n-space, and faces in 3-space say nothing of those.
     if options.positions is None:
         given = [mesh for mesh, own in known if not own.computed]
         normals.warn_of_contradiction(given, options.normals)

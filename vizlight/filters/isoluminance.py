@@ -70,6 +70,7 @@ class ContourOptions(Options):
     @property
     def light(self) -> LightOptions:
         """The options of the light."""
+        # Contour points are found by bracketing, for which float32 has too few digits.
         return LightOptions.of(vars(self) | {"precision": "float64"})
 
 
@@ -155,11 +156,14 @@ def isoluminance(
     """
     asked = ContourOptions.of(locals())
     start = time.perf_counter()
+    # The many places that are lit on the way are no result, and no report counts them.
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
         made, bands, light = _make(mesh, scene, asked, lambda share: show(int(100 * share)))
         show(100)
     seconds = time.perf_counter() - start
     if report.is_open():
+        # With tangents the luminance is interpolated, and its middles have no light of their own to
+        # compare.
         _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
     return made
 
@@ -193,6 +197,7 @@ def _make(
     blocks.check(given)
     if not any(block.n_points for block in blocks.all_blocks(mesh)):
         return _of_mesh(pv.PolyData(), light)
+    # Blocks are joined, so that all have the same contours.
     return _of_mesh(blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh, light)
 
 
@@ -222,6 +227,7 @@ class _Light:
 
     def record(self) -> Record:
         """Return the provenance of the bands."""
+        # Where nothing was lit, one place makes the plan that the record names.
         last = self.last or self.lit(np.zeros((1, 3)), np.array([[0.0, 0, 1]]))
         return of_light(last, "isoluminance", self.scene, self.options)
 
@@ -236,6 +242,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     found: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
+        # A light that follows the view has a fixed direction or position only in that view.
         (lamp,) = (light.seen_from(scene.view) for light in scene.lights)
         source: Keywords = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
@@ -244,12 +251,14 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
         }  # fmt: skip
         if isinstance(solid, Sphere):
             found = closed.sphere(solid.center, solid.radius, **source)
+        # A frustum has a closed form for parallel light alone.
         if isinstance(solid, Frustum) and lamp.direction is not None:
             found = closed.truncus(
                 solid.center, solid.axis, solid.radii, height=solid.height, **source
             )
     if isinstance(found, banding.Bands):
         return found
+    # Without a closed form the bands are refined on triangles of the exact surfaces.
     light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
     return refinement.draw(
         light.shape, light, asked.levels, low=low if dull else None, progress=light.progress
@@ -262,12 +271,15 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     asked = options.light
     angle = options.feature_angle
     if angle is not None and normals.are_computed(mesh, asked) and mesh.n_points:
+        # Points are split below, and only arrays that the mesh carries go with them.
         if not isinstance(options.tangents, str | None):
             expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
             raise TypeError(_check.message("tangents", expected, got, "attach the array"))
         whole = mesh if isinstance(mesh, pv.PolyData) else blocks.outer_surface(mesh)[0]
         mesh = normals.split_edges(whole, angle)
     surface, triangles, used, ids = _surface(mesh)
+    # The surface of another mesh numbers its points anew: arrays without a name are taken there
+    # too.
     if ids is not None:
         asked = dataclasses.replace(
             asked,
@@ -275,10 +287,12 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
         )
     inputs = lighting.part_of(surface, "", scene, asked).inputs
+    # This light says which points can be lit, and with tangents it is itself what is cut.
     (lit,), fitted = lighting.light([(inputs, asked)], scene, progress_bar=False)
     invalid = int(np.count_nonzero(~lit.valid[used]))
     if invalid:
         _check.warn(unlit(invalid, len(used)))
+    # Where triangles are cut, values are interpolated: labels, which are integers, cannot be.
     carried = {
         str(name): value.reshape(len(value), -1)
         for name, value in surface.point_data.items()
@@ -294,23 +308,30 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         valid = lit.valid
         # Points whose normal was turned to the eye.
         averted: Bools = np.einsum("ij,ij->i", unit, shown) < 0
+        # Columns 3 to 5 are the normals, by which new points are lit; all columns are interpolated
+        # along edges.
         columns = [surface.points, unit, *carried.values()]
         if averted.any():
             # Of an open piece each triangle shows one side, also where the normals between its
             # corners would turn over.
             other = np.count_nonzero(averted[triangles], axis=1) > 1
+            # Each point is there twice, with both normals, and a triangle takes all its corners
+            # from one half.
             columns = [np.concatenate([column, column]) for column in columns]
             columns[1][len(unit) :] *= -1
             valid = np.tile(valid, 2)
             triangles = triangles + len(unit) * other[:, np.newaxis]
         rows = np.concatenate(columns, axis=1, dtype=np.float64)
+        # What is in ``rows`` is not kept twice, since the notes bound the memory.
         del unit, shown, averted, columns
         lit_facets = refinement.LitTriangles(rows, triangles, light, valid)
         del rows, triangles
         bands = refinement.refine(lit_facets, levels, progress=light.progress)
     else:
+        # With tangents the luminance itself is linear in a triangle, and no new points are lit.
         values = np.asarray(lit.luminance, dtype=np.float64)
         low, high = values[triangles].min(), values[triangles].max()
+        # Contours of a linear luminance are straight: no part of the error is reserved for chords.
         steps = spacing.steps(levels, float(low), float(high), exact=True)
         # Colours are interpolated like the luminance.
         light_columns = [lit.luminance[:, np.newaxis], *([] if lit.rgb is None else [lit.rgb])]
@@ -319,6 +340,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         cut, _ = banding.cut(rows, triangles, values, steps)
         bands = dataclasses.replace(cut, error=steps.error)
         if lit.rgb is not None:
+            # Column 3 is the luminance and 4 to 6 are the colour, behind the place.
             middles = cut.middles()
             rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
     record = of_light(lit, "isoluminance", fitted, options)
@@ -346,6 +368,7 @@ def _normals(
     """Return unit normals of a surface, and normals on the sides that are lit."""
     found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene), warn=warn)
     assert inputs.normals is not None
+    # The inputs have the normals on the side that the eye sees.
     shown = np.asarray(inputs.normals[0 : len(found)], dtype=np.float64)
     return kernels.unit_rows(np.asarray(found, dtype=np.float64)), shown
 
@@ -357,6 +380,7 @@ def _on_surface(
     if value is None or isinstance(value, str):
         return value
     rows = array_of(mesh, name, value)
+    # Points that the surface has beside the mesh's own, as of curved cells, have the value 0.
     return np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
 
 
@@ -377,6 +401,7 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
     triangles, _ = subdivision.triangles(surface)
     used = np.zeros(surface.n_points, np.bool_)
     used[triangles] = True
+    # A triangle with a corner that is nowhere has neither place nor contours.
     finite: Bools = np.isfinite(np.asarray(surface.points)).all(axis=1)
     if not finite.all():
         triangles = triangles[finite[triangles].all(axis=1)]
@@ -406,10 +431,12 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
 def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
     """Return the centres of polygons, on the exact surface if known, and unit normals there."""
     middle, shape = bands.middles(), light.shape
+    # The middle of a flat polygon is not on a curved surface: place and normal are taken from that.
     if shape is not None:
         patches = np.stack([bands.patch, bands.patch], axis=1)
         places = exact_surfaces.onto(shape.surfaces, (middle - shape.shift) / shape.scale, patches)
         return shape.world(places), triangle_mesh.normals_of(shape, places, bands.patch)
+    # Bands of a mesh carry its interpolated normals; others have the normals of their polygons.
     normals = kernels.unit_rows(middle[:, 3:6]) if middle.shape[1] >= 6 else bands.normals()
     return middle[:, :3], normals
 
@@ -424,6 +451,7 @@ def _rgb(bands: Bands, light: _Light) -> Array | None:
 
 def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
     """Return colours scaled from their luminance to the luminance of each polygon's band."""
+    # Hue and saturation of the light stay, and its brightness becomes that of the band.
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(rgb * share[:, np.newaxis])
 
@@ -452,6 +480,7 @@ def _blocks(
     records.write(surface, name, record)
     lines = pv.PolyData()
     if len(bands.lines):
+        # The lines have only the points of the bands that a contour runs through.
         used, ends = np.unique(bands.lines, return_inverse=True)
         ends = ends.reshape(-1, 2)
         lines = pv.PolyData(

@@ -205,18 +205,23 @@ def colors_of(
     if question == "value":
         table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
         at = np.rint((x + 1) / 2 * (len(table) - 1)).astype(int)
+        # The bar runs from the least light below to full light above.
         darkest = max(seen.material.ambient * seen.ambient_intensity, LEAST)
         return on_colors(table[at], darkest + (1 - darkest) * (y / BAR + 1) / 2)
     radius = np.hypot(x, y)
+    # On a ball of radius 1, z = sqrt(1 - x^2 - y^2), a place and its normal are the same vector.
     depth = np.sqrt(np.maximum(1 - radius**2, 0.0))
     toward_eye = np.broadcast_to((0.0, 0.0, 1.0), (len(x), 3))
     vectors = np.stack([x, y, depth], axis=1)
     if question == "direction":
+        # Tangents lie in the plane of the screen and run from the centre.
         vectors = np.stack([x, y, 0 * x], axis=1)
     elif question == "slope":
+        # From 0, across the view, to 90 degrees, toward the eye.
         angle = (x + 1) * np.pi / 4
         vectors = np.stack([np.cos(angle), 0 * x, np.sin(angle)], axis=1)
     surface = question == "shape"
+    # Lights and eye are at infinity: the place of a point is of no account.
     shading = engine.shade(
         np.zeros((len(x), 3)), None if surface else vectors, seen,
         normals=vectors if surface else toward_eye if conditioned else None,
@@ -269,6 +274,7 @@ def key_picture(
     across = (np.arange(fine) + 0.5) / fine * 2 - 1
     tall = FINE * max(round(width * BAR), 1) if bar else fine
     down = ((np.arange(tall) + 0.5) / tall * 2 - 1) * (BAR if bar else 1.0)
+    # Rows of a picture run downward, and y upward.
     x, y = (part.ravel() for part in np.meshgrid(across, -down))
     radius = np.hypot(x, y)
     inside = np.ones(len(x), dtype=np.bool_) if bar else radius <= 1
@@ -297,10 +303,12 @@ def _in_frame_of_eye(scene: Scene) -> Scene:
         if light.position is not None:
             expected, remedy = "lights at infinity for a key", "give them directions"
             raise ValueError(_check.message("scene", expected, light, remedy))
+        # A light that follows the view is given in the frame of the eye already.
         if not light.follows_view and light.direction is not None:
             unit = np.divide(light.direction, np.abs(light.direction).max())
             light = dataclasses.replace(light, direction=tuple(view.axes() @ unit))
         lights.append(light)
+    # A flat key has no depth by which a cue could fade it.
     return scene.replace(lights=lights, view=View(direction=(0, 0, 1)), depth_cue=None)
 
 
@@ -311,6 +319,7 @@ def _disc(hole: float) -> tuple[Array, Array, NDArray[np.int64]]:
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     x, y = np.outer(radii, np.cos(angles)), np.outer(radii, np.sin(angles))
     at = np.arange(x.size).reshape(x.shape)
+    # The first column stands behind the last one, too, and closes the rings.
     return x.ravel(), y.ravel(), _quads(np.hstack([at, at[:, :1]]))
 
 

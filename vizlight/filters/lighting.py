@@ -50,6 +50,7 @@ def part_of(
         kept_tangents=subdivision.kept_tangents,
         told=told,
     )
+    # Triangles are found only where something asks for them, such as a report between the points.
     cells = lambda: subdivision.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))
 
@@ -97,6 +98,7 @@ def with_depth_ends(scene: Scene, ranges: Sequence[tuple[float, float]]) -> Scen
     """Return a scene whose depth cue has ends, those that are not given from ranges of depth."""
     cue = scene.depth_cue
     assert cue is not None
+    # The range of a mesh without points is (inf, -inf).
     near = min((near for near, _ in ranges if np.isfinite(near)), default=0.0)
     far = max((far for _, far in ranges if np.isfinite(far)), default=1.0)
     # An end that is given may lie beyond all points: the other is then put beyond it.
@@ -162,6 +164,7 @@ def finish(
     Points inside volumes, ``inside`` in number, have no normal and are not counted.
     """
     shared: dict[tuple[object, ...], str] = {}
+    # Points inside volumes are among those without light, but nobody sees them.
     invalid = -inside
     for i, (mesh, shading) in enumerate(zip(meshes, results, strict=True)):
         plan = shading.plan.dtype, shading.plan.terms, shading.plan.exponent

@@ -103,5 +103,6 @@ def manifold(
     else:
         mesh = polydata(points, shape.cells)
     mesh.point_data[POSITION] = shape.points
+    # Rows of a frame stand one behind the other, since an array of VTK has one axis of components.
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
     return project(mesh, scene=scene, progress_bar=progress_bar, **asked)

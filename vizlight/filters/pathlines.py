@@ -180,6 +180,8 @@ def pathlines(
     seeds = _seeds(first, steps.vectors(0, vectors), asked)
     asked = dataclasses.replace(asked, vectors=vectors)
 
+    # A generator of its own: arguments are checked at the call, and not when the first frame is
+    # asked for.
     def lit() -> Iterator[pv.PolyData]:
         with _progress.progress("carry", len(steps.times) - 1, show=progress_bar) as report:
             for lines, light in _lines(steps, seeds, asked, report):
@@ -217,6 +219,8 @@ def _lines(
     """Yield the lines of each step, and how they are lit."""
     name, streaks = str(options.vectors), options.kind == "streaklines"
     light = LightOptions.of(vars(options))
+    # A pathline follows one particle, whose velocity is the tangent; a streak joins several
+    # particles.
     if not streaks:
         light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
     carrier, times = Carrier(steps.mesh(0)), steps.times
@@ -228,6 +232,7 @@ def _lines(
         before, start, duration = after, float(times[i - 1]), float(times[i] - times[i - 1])
         if i == 1:
             rows = rows.joined(Rows(seeds[None], carrier.at(seeds, 0.0)[None], np.array([start])))
+        # Of a streak all points move, of a pathline only the newest.
         here = rows.places.reshape(-1, 3) if streaks else rows.places[-1]
         count = carrier.count(here, duration, options.step)
         if streaks and count > MOST_STEPS:
@@ -236,10 +241,13 @@ def _lines(
         for j in range(count):
             moved = carrier.moved(here, j / count, 1 / count, duration / count)
             share = (j + 1) / count
+            # The last time of the step is the given one, to the bit.
             time = float(times[i]) if j + 1 == count else start + share * duration
             if streaks:
                 # What has left the mesh stays as a gap in the streak.
                 rows = Rows(moved.reshape(-1, *seeds.shape), rows.vectors, rows.times).thinned(MOST)
+                # Vectors of a streak are looked up once, when it has arrived at the end of the
+                # step.
                 none = np.full((1, *seeds.shape), np.nan)
                 rows = rows.joined(Rows(seeds[None], none, np.array([time])))
                 here = rows.places.reshape(-1, 3)

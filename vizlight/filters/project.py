@@ -188,6 +188,7 @@ def project(
     blocks.check(mesh)
     _check.instance("scene", scene, Scene, optional=True)
     if scene is None:
+        # Without a scene nothing is lit, and an option of the light would be ignored in silence.
         for option in asked.changed():
             if option in LIGHT_ALONE:
                 expected = "an option of project, or scene= beside an option of illuminate"
@@ -219,14 +220,17 @@ def project(
             if limit is not None:
                 records.attach_rows(block, frame, limit)
         made = light_mesh(shown, scene, asked.by(frame, positions))
+        # The frame of the result is the projected one, which loses rank at the folds.
         for block, rows in zip(blocks.all_blocks(made), found, strict=True):
             records.attach_rows(block, frame, rows)
         return made
 
+    # Each point counts twice: when it is turned and when it is projected.
     total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))
     with _progress.progress("project", total, show=progress_bar) as report:
         done = Counter(report)
         lost = Counter(lambda _: None)
+        # Between these two steps the mesh has its turned positions of n components.
         out = lit(_each(mesh, lambda block: job.turned(block, done, lost)), "before")
         out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:

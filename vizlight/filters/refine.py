@@ -151,6 +151,7 @@ def refine(
     """
     asked = RefineOptions.of(locals())
     scene = as_scene(scene)
+    # Of cells that fill space the outer surface is lit.
     faces = [
         blocks.surface(block, "mesh") if block.GetMaxSpatialDimension() == 3 else block
         for block, _ in blocks.check(mesh)
@@ -159,6 +160,7 @@ def refine(
     # The sky that new points see is that of the refined mesh.
     early = dataclasses.replace(asked, occlusion=None)
     taken, parts = parts_of(whole, scene, early)
+    # The cue spans the points that there are: new ones lie between them.
     fitted = lighting.fit_depth_cue(scene, [part.inputs.points for part in parts])
     # Each mesh is refined alone.
     made = [

@@ -101,10 +101,13 @@ def relief_day(
             raise ValueError(_check.message("sun", expected, "both"))
         directions = own["directions"] = _from_angles(sun)
     toward = _directions(latitude, day, hours, directions)
+    # A sun below the horizon lights nothing: its hours keep a column of 0.
     up = [way for way in toward if way[2] > 0]
     if not up:
         given = "hours" if directions is None else "directions"
         raise ValueError(_check.message(given, "the sun above the horizon", "night"))
+    # Each hour with sun is one light of the scene; only t is asked for, in which a highlight has no
+    # part.
     scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
     found = relief_shadow(
         mesh,
@@ -123,6 +126,7 @@ def relief_day(
         arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
     record = records.provenance(found, name)
     record["filter"] = "relief_day"
+    # The record is a call of this filter, which has none of these options.
     for other in ("lit", "components", "occlusion"):
         del record["options"][other]
     record["options"] |= plain(own)

@@ -201,12 +201,15 @@ def relief_shadow(
     scene = as_scene(scene)
     if sun is not None:
         scene = scene.replace(lights=[Light(direction=sun_direction(sun))])
+    # A light that is off casts no shadow and has no weight in the mean.
     lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
     if not lights:
         raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
+    # A raster is sampled from above, and does not need the points of edges apart.
     own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
+    # What is sampled from above has its sky above alone.
     (sunlit,) = with_sky(
         [own], asked.occlusion, elevation=asked.elevation, factor=asked.exaggeration,
         up=None if asked.raster is None else ABOVE,
@@ -234,6 +237,7 @@ def relief_shadow(
     )  # fmt: skip
     shading, share = None, share_of(sunlit, asked.occlusion)
     if asked.lit:
+        # The engine multiplies each light by its own column of t, in this order.
         fixed = fit_depth_cue(scene.replace(lights=lights), [shadow.points])
         shading = engine.shade(
             shadow.points, None, fixed, normals=shadow.normals, shadow=t,
@@ -267,6 +271,7 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         return
     corners, unit = triangles(mesh), blocks.box(mesh)[1]
     with np.errstate(all="ignore"):
+        # In units of the box products of lengths neither overflow nor vanish.
         points = np.asarray(mesh.points, np.float64)[corners] / unit
         sides = points - np.roll(points, 1, axis=1)
         area = np.nan_to_num(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)) / 2
@@ -274,6 +279,7 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         across = (np.ptp(t[corners], axis=1) > 1 / 2).any(axis=1)
         long = LONG
         if raster is not None:
+            # A raster of 0 stands for the root of the mean area per point.
             long = WIDE * (raster / unit or (area.sum() / mesh.n_points) ** 0.5)
         across &= np.linalg.norm(sides, axis=2).max(axis=1) > long
         share = float(area[across].sum() / area.sum()) if area.any() else 0.0

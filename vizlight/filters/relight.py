@@ -76,6 +76,7 @@ def from_options(
 ) -> list[Source]:
     """Return what :func:`vizlight.illuminate` lights on a mesh, one source for each block."""
     chosen = [*blocks.named_blocks(mesh)]
+    # One sky for all blocks, since they hide it from one another.
     meshes = with_sky([block for block, _ in chosen], options.occlusion)
     return [
         read(block, path, scene, options, own)
@@ -114,6 +115,7 @@ def read(
         inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)
     source = Source(mesh, inputs, part.options, options, None, inside, shares)
+    # Only normals whose side depends on the eye are turned again as it moves.
     turned = sided is not None and (
         source.facing == "eye" or (source.facing == "auto" and sided.any_open)
     )
@@ -227,6 +229,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: S
 def _refuse_described(made: str, options: Mapping[str, object]) -> None:
     """Refuse options that the record describes instead of holding them."""
     for option, value in options.items():
+        # Meshes and large arrays are described in a record by words like these.
         if isinstance(value, str) and (
             value.startswith("an array of shape") or value.endswith(" points")
         ):
@@ -241,6 +244,7 @@ def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
 
     beside = "Normals" in mesh.point_data
     light = dict(options)
+    # Lines beside a surface have its normals, and are conditioned by default.
     if light.get("conditioned") is None:
         light["conditioned"] = beside
     if light["conditioned"] is True and light.get("normals") is None:
@@ -256,9 +260,11 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
     """Return the options of light in n-space before a projection, or in 3-space after it."""
     from vizlight.filters.project import ProjectOptions
 
+    # The mesh of the record is turned and cut already.
     kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
     asked = ProjectOptions.of(kept)
     before = asked.light == "before"
+    # After the projection the light is that of the frame in 3-space, which has another name.
     frame = None if asked.frame is None else f"{'' if before else PROJECTED}{asked.frame}"
     return asked.by(frame, asked.positions if before else None)
 

@@ -112,6 +112,7 @@ def satin(
     field = LightOptions.of(vars(asked) | {"conditioned": False})
     panels = {
         "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),
+        # Beside tangents without a self-shadow normals and sides would be refused.
         "field": dataclasses.replace(field, normals=None, facing="auto"),
         "conditioned": dataclasses.replace(field, conditioned=True),
     }

@@ -192,6 +192,7 @@ def with_sky(
         _warn_if_stale(meshes, occlusion)
     if occlusion != SKY or all(SKY in mesh.point_data for mesh in meshes):
         return list(meshes)
+    # Edges are not split here: the caller has done so where it wants that.
     asked = SkyOptions(error=_error(meshes, FOR_LIGHT), up=up, feature_angle=None)
     taken, found = _found_finer(
         meshes, asked, finer=finer, show=False, elevation=elevation, factor=factor
@@ -204,12 +205,14 @@ def with_sky(
 def _split(mesh: pv.DataSet, asked: SkyOptions) -> pv.DataSet:
     """Return a mesh with points split at its sharp edges; of a volume the edges are told."""
     if asked.feature_angle is not None and mesh.GetMaxSpatialDimension() == 3:
+        # This is called for its warning: points of a volume cannot be split.
         normals.normals_of(mesh, None, 3, None, warn=True)
     return normals.split_where_computed(mesh, asked.feature_angle)
 
 
 def _error(meshes: Sequence[pv.DataSet], errors: tuple[float, float]) -> float:
     """Return the error for meshes, the second one if they are lines."""
+    # True counts as 1: meshes of lines alone have the second error.
     return errors[all(has_lines_only(mesh) for mesh in meshes)]
 
 
@@ -236,6 +239,8 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
     for mesh in meshes:
         record = records.read(mesh, name) or {}
         source = record.get("source")
+        # Without a source there is nothing to compare, and an array that was changed is the user's
+        # own.
         if source in (None, _source(mesh)) or name not in records.made(mesh, name):
             continue
         remedy = f"vizlight.sky(mesh, name={name!r})" if name != SKY else "vizlight.sky(mesh)"
@@ -243,6 +248,7 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
             f"the points or the faces have changed since their sky {name!r} was found; "
             f"{remedy} finds it anew"
         )
+        # One warning stands for all blocks.
         return
 
 
@@ -257,6 +263,7 @@ def _found_finer(
         _finer(mesh) if made.between > BENT else mesh
         for mesh, made in zip(meshes, found, strict=True)
     ]
+    # Where no mesh became finer the first skies stand.
     if all(one is other for one, other in zip(fine, meshes, strict=True)):
         return fine, found
     return fine, _found(fine, asked, **how)
@@ -269,16 +276,21 @@ def _finer(mesh: pv.DataSet) -> pv.DataSet:
     """
     if not isinstance(mesh, pv.PolyData):
         return mesh
+    # The second bound keeps the number of points to about MOST.
     side = max(mesh.length / ACROSS, 2 * (mesh.area / MOST) ** 0.5)
     sided = normals.kept(mesh) or computed_normals(mesh)
     bare = mesh.copy(deep=False)
+    # As a point array the normals are interpolated with the points; computed anew they would be
+    # those of flat triangles.
     bare.point_data[normals.KEPT] = np.concatenate([sided.vectors, sided.facts()], axis=1)
     fine = subdivision.with_sides(bare, side)
     if fine.n_points == mesh.n_points:
         return mesh
     rows = np.asarray(fine.point_data.pop(normals.KEPT), dtype=np.float64)
     vectors, lean = kernels.unit_rows(rows[:, :3]).astype(np.float32), rows[:, 3]
+    # Numbers of pieces are interpolated too, and rounded back to integers.
     number = np.rint(rows[:, 4]).astype(np.intp)
+    # Normals that count as kept would not be attached to a mesh.
     made = dataclasses.replace(sided, vectors=vectors, lean=lean, open=number, kept=False)
     normals.keep(fine, made)
     return fine
@@ -313,6 +325,7 @@ def _attach(
     for mesh, made in zip(meshes, found, strict=True):
         arrays: dict[str, Raw] = {asked.name: made.share}
         dark += made.dark
+        # The warning is about the mesh in which the sky changes most.
         if made.between > bent:
             bent, length = made.between, mesh.length
         missing = int(np.count_nonzero(~made.valid))

@@ -54,5 +54,6 @@ def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
         triangles = np.asarray(made.triangles, dtype=int)
         mesh = pv.PolyData.from_regular_faces(points, triangles)
         mesh.cell_data["patch"] = np.asarray(made.patch)
+    # The bound is in the unit of the tessellation, which is ``scale`` units of the solid.
     mesh.field_data["volume_error"] = [made.volume_error * made.scale**3]
     return mesh

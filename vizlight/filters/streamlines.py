@@ -252,10 +252,13 @@ def light_lines(
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)
+    # Lines beside a surface have its self-shadow unless it is switched off (Banks 6).
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
     normals = "Normals" if conditioned is True else None
     light = dataclasses.replace(made, tangents=tangents, conditioned=conditioned, normals=normals)
+    # The lines are new and nobody else's, and need no copy.
     lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
+    # The record names the vectors that were found, since the active ones of a mesh may change.
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
@@ -310,11 +313,13 @@ def _traced(
 ) -> tuple[pv.PolyData, str]:
     """Return the lines, and the name of their array of tangents."""
     confined = bool(options.confined)
+    # Light of an earlier result is no datum, and is not carried along the lines.
     surface, traced, own = None, mesh, all_made(mesh)
     if options.surface is not None:
         own |= all_made(options.surface)
         surface = with_normals(options.surface, onlooker(scene), options.feature_angle)
     vectors = _field(mesh, surface if confined else None, options)
+    # Confined lines are traced in the triangles of the surface, which have the normals.
     if confined and surface is not None:
         traced = surface
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
@@ -335,8 +340,10 @@ def _traced(
             # Between corners, interpolated directions lean out of the surface.
             tangents -= np.einsum("ij,ij->i", tangents, normals)[:, np.newaxis] * normals
         else:
+            # A line in space is conditioned by the nearest place of the surface.
             normals = closest_normals(surface, places)
         lines.point_data["Normals"] = normals.astype(np.float32)
+    # These two served the tracer; the lines have normals and tangents under names of their own.
     for key in (NORMALS, TRACED):
         if key in lines.point_data:
             del lines.point_data[key]
@@ -350,6 +357,8 @@ def _traced(
     lines.point_data[name] = tangents.astype(np.float32)
     if isinstance(options.vectors, str):
         rows = np.asarray(lines.point_data[options.vectors])
+        # The mask tells points without a first eigenvector from those whose tangent is a direction
+        # of the field.
         if rows.ndim == 2 and rows.shape[1] in (6, 9):
             isotropic = ~np.any(tracers.principal_directions(rows), axis=1)
             if isotropic.any():
@@ -359,6 +368,8 @@ def _traced(
     exact = size * places + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
     if confined:
+        # The exact places lie on their triangles to rounding in float64: what is measured is the
+        # type of the points.
         drift = np.abs(np.asarray(lines.points, dtype=np.float64) - exact).max()
         lines.field_data["drift"] = [drift]
     return lines, name
@@ -378,10 +389,13 @@ def _lines(
         length = 4 * float(mesh.length)
     else:
         length = _check.number("max_length", length, low=np.finfo(float).tiny) / size
+    # No step is longer than ``step`` cell lengths: their number bounds a line to REACH of these.
     how = Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
     count, places = _seeds(options.seeds, origin, size)
+    # Free lines in space are left to VTK; all others go from cell to cell here.
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
+    # In triangles and tetrahedra, unlike in other cells, interpolated vectors are linear.
     cells: pv.PolyData | pv.UnstructuredGrid = (
         mesh if isinstance(mesh, pv.PolyData) and mesh.is_all_triangles else mesh.triangulate()
     )
@@ -394,10 +408,12 @@ def _lines(
     given = None if places is None else tracer.located(places)
     if options.spacing is None:
         start = tracer.random(count, options.seed) if given is None else given
+        # For seeds that are given no others are drawn where a line fails.
         wanted = count if given is None else None
         lines = tracer.lines(tracer.traced(start, how, wanted, report), unsigned)
         _warn_of_fewer(lines, wanted)
         return lines
+    # The spacing is scaled like the mesh, whose longest side is 1 here.
     spacing = options.spacing / size
     tracers.check_spacing(tracer, spacing, size)
     curves, facts = tracer.even(given, how, spacing, report)
@@ -438,7 +454,10 @@ def _in_space(
 def _flowing(vectors: Array) -> Indices:
     """Return the points where the flow is: all, or those that move where most are at rest."""
     speed = np.linalg.norm(vectors, axis=1)
+    # The fast points give the scale of the flow: a median would be small where most points hardly
+    # move.
     fast = speed > RESTING * np.percentile(speed[speed > 0], 95) if speed.any() else speed > 0
+    # Where most points move, any of them may be a seed.
     return np.flatnonzero(fast if 0 < fast.sum() < len(fast) / 2 else fast | True)
 
 
@@ -467,6 +486,7 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
         if name not in mesh.point_data:
             raise _no_vectors(mesh, name)
         array = array_of(mesh, "vectors", name)
+        # Eigenvectors of tensors have no sign, whatever the option says.
         if array.shape[1] in (6, 9) and not pair:
             return name, True
         vectors_of(mesh, "vectors", name, 3)
@@ -534,14 +554,17 @@ def _on_surface(
         field = pv.PolyData(surface.points).sample(source)
         if unsigned:
             found = np.asarray(field.point_data[TRACED])
+            # The eigenvector has length 1, and the sampled length makes a vector of it again.
             array = tracers.principal_directions(found[:, :9])
             surface.point_data[name] = array * found[:, 9:]
         else:
             rows = np.asarray(field.point_data[name])
             surface.point_data[name] = rows
             array = _directions(rows)
+    # Lines end where vectors are zero, as they do where none is known.
     array[~np.all(np.isfinite(array), axis=1)] = 0
     normal = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
+    # What leads out of the surface is taken away: v - (v . n) n.
     return np.asarray(array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal)
 
 
@@ -549,6 +572,7 @@ def _directions(rows: Array) -> Array:
     """Return vectors as they are, and tensors as their first eigenvectors."""
     if rows.shape[1] in (6, 9):
         found = tracers.principal_directions(np.asarray(rows, dtype=np.float64))
+        # A tensor of zeros stands for no data, and is not counted.
         lost = int(np.count_nonzero(~np.any(found, axis=1) & np.any(rows, axis=1)))
         if lost:
             _check.warn(
@@ -582,6 +606,7 @@ def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None
         count = _check.integer("seeds", seeds, low=1)
         _check.holds("seeds", (count, 3))
         return count, None
+    # Seeds are moved and scaled as the mesh was.
     places = (_check.vectors("seeds", given, n=3) - origin) / size
     if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3), one or more"

@@ -139,12 +139,14 @@ def tint(
     inplace = _check.boolean("inplace", inplace)
     own = [block for block, _ in every]
     _check.array_name("name", name)
+    # Colours that came with the light may be replaced by those of the data under the same name.
     if not _holds_light(own, name):
         records.refuse_overwriting(every, name, [name])
     component = None if component is None else _check.integer("component", component, low=0)
     split = [_split(mesh, scalars) for mesh in own]
     meshes = [mesh for mesh, _ in split]
     values = [values_of(mesh, scalars, component) for mesh in meshes]
+    # One table for all blocks, so that equal values have equal colours.
     table = color_table(
         values,
         cmap=cmap, clim=clim, n_colors=n_colors, categories=categories, log_scale=log_scale,
@@ -152,12 +154,14 @@ def tint(
         below_color=below_color,
     )  # fmt: skip
     record = _record(table, scalars, light, component)
+    # The points were lit before: a report counts the light on their colours apart.
     with report.tinted():
         lights = _light_of(lit, own, light)
     made = [
         display.on_colors(
             map_colors(table, value, components=3),
             share[origin],
+            # A point that was split off has the light of the point that it was.
             None if valid is None else valid[origin],
         )
         for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True)
@@ -195,6 +199,7 @@ def values_of(
     """Return the values that are coloured, one per point, or bytes that are colours already."""
     if scalars is None:
         scalars = mesh.point_data.active_scalars_name
+        # On a lit mesh the light itself is active, which is no datum to be coloured by.
         if scalars is None or scalars in records.all_made(mesh):
             own = [key for key in mesh.point_data if key not in records.all_made(mesh)]
             expected = f"the name of a point array, {_check.one_of(own)}"
@@ -216,6 +221,7 @@ def values_of(
         if component is None and are_colors(array):
             return array
         if component is None:
+            # In float64, since squares of integers may overflow.
             return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
         column = _check.integer("component", component, low=0)
         if column >= array.shape[1]:
@@ -250,6 +256,7 @@ def color_table(
     cmap, nan_color = default_map(cmap), default_nan_color(nan_color)
     # Rows of several components are colours already.
     values = [part for part in values if part.ndim == 1]
+    # The mapper below does not see all values, and the range is that of all blocks.
     if clim is None and not isinstance(cmap, pv.LookupTable):
         clim = _range(values)
     if isinstance(clim, int | float):
@@ -265,6 +272,7 @@ def color_table(
     sample: Raw = np.zeros(1)
     if categories is True and any(len(part) for part in values):
         sample = np.unique(np.concatenate([np.unique(part) for part in values]))
+    # PyVista's own mapper makes the table, so that the colours are those of ``add_mesh``.
     mapper = pv.DataSetMapper(pv.PolyData(np.zeros((len(sample), 3))))
     try:
         mapper.set_scalars(
@@ -280,6 +288,7 @@ def color_table(
             **known,
         )
     except (KeyError, TypeError, ValueError) as error:
+        # The check of this option has said already what is wrong with it.
         if "n_colors" in str(error):
             raise
         expected = "a colour map or colours that PyVista knows"
@@ -298,6 +307,7 @@ def _range(values: Sequence[Raw]) -> tuple[float, float]:
     """Return the smallest and the largest finite value, (0, 1) without any."""
     ends = []
     for part in values:
+        # The ends are NaN or infinite where some value is: only then is a mask made of all.
         pair = (part.min(), part.max()) if len(part) else ()
         if not np.all(np.isfinite(pair)):
             finite = part[np.isfinite(part)]
@@ -311,6 +321,7 @@ def default_map(cmap: ColorMap) -> ColorMap:
     # Loading the module makes its names known.
     from vizlight import maps
 
+    # A theme that someone has changed is a choice, and PyVista's own default is none.
     chosen = cmap is not None or pv.global_theme.cmap != _own_theme().cmap
     return cmap if chosen else maps.even
 
@@ -344,12 +355,15 @@ def map_colors(table: pv.LookupTable, values: Raw, *, components: Literal[3, 4] 
     """Return the colours of values, or colours as they are, as bytes of 3 or 4 components."""
     if not len(values):
         return np.zeros((0, components), np.uint8)
+    # Bytes that are colours are not mapped, and are opaque where they have no opacity.
     if values.ndim == 2:
         opaque = np.full((len(values), 1), 255, np.uint8)
         return np.hstack([values, opaque])[:, :components].astype(np.uint8)
     plain = np.ascontiguousarray(values)
     if plain.dtype == np.bool_:
         plain = plain.astype(np.uint8)
+    # VTK keeps the colours of NaN and of values out of range behind the table, where only this puts
+    # them.
     table.BuildSpecialColors()
     # By default VTK takes unsigned bytes for colours and does not map them.
     mapped = table.MapScalars(pv.convert_array(plain), 1, -1, components)
@@ -398,10 +412,12 @@ def _light_of(
             sources, scene, _ = relight.terms_from_record(lit, light)
         return [*light_on_colors(sources, scene)]
     sources, scene, again = relight.terms_from_record(lit, light)
+    # Colours of data never have less ambient light, so that they can be read in the shade.
     least = max(scene.material.ambient, display.LEAST) * scene.ambient_intensity
     found: list[tuple[Array, Bools | None]] = []
     for source, shading in zip(sources, again, strict=True):
         share = source.inputs.occlusion
+        # What hides the sky from a point dims the ambient light alone.
         ambient = least if share is None else least * np.asarray(share[:])
         valid = shading.valid if shading.invalid else None
         found.append((ambient + np.asarray(shading.diffuse), valid))
@@ -410,6 +426,7 @@ def _light_of(
 
 def _colored(scene: Scene) -> bool:
     """Return whether light has a colour, on a material that has none."""
+    # Colours of the data stand for the material's, which has no part in this.
     return scene.replace(material=dataclasses.replace(scene.material, color=None)).colored
 
 
@@ -420,9 +437,12 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     valid = np.asarray(mesh[light + VALID], np.bool_) if light + VALID in ours else None
     if _colored(scene):
         return None
+    # Without a highlight, and with ambient light enough, the luminance is what colours need.
     if light in ours and not material.specular and material.ambient >= display.LEAST:
         return np.asarray(mesh.point_data[light]), valid
     names = [part_name(light, part) for part in ("ambient", "diffuse")]
+    # Terms are stored without the cue, and where they are not stored the highlight stays in the
+    # sum.
     if scene.depth_cue is not None or not material.ambient or not set(names) <= ours:
         return None
     ambient, diffuse = (np.asarray(mesh.point_data[name]) for name in names)

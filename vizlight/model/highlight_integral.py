@@ -56,7 +56,8 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
         place = np.abs(z)
         place *= scale
         with np.errstate(invalid="ignore"):
-            cell = np.minimum(place.astype(np.int32), last)
+            # NaN takes the last cell, and stays NaN.
+            cell = np.fmin(place, last).astype(np.int32)
         place -= cell
         # Beyond the table G no longer grows: such z are taken to the end of the last cell.
         np.minimum(place, 1, out=place)

@@ -42,7 +42,10 @@ def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
         del mesh.point_data[GHOSTS]
     if GHOSTS not in mesh.cell_data:
         return mesh
+    # The lowest bit of VTK's flags marks duplicate cells; the others, as of hidden cells, mark no
+    # copies.
     own = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
+    # A structured grid keeps all of its cells.
     return some_cells(mesh, own) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
 
 
@@ -90,6 +93,7 @@ class _Places:
             wanted = others[near]
             keys = place_numbers(wanted)
             at = self._first[np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)]
+            # Two places may have one number: the coordinates decide.
             found[near] = np.where(np.all(self._points[at] == wanted, axis=1), at, -1)
         return found
 
@@ -99,6 +103,7 @@ def _touched(mesh: pv.DataSet, touching: Foreign) -> Foreign:
     masks = [np.empty(0, dtype=np.bool_)]
     for cells in cell_arrays(mesh):
         ids, starts = connectivity(cells)
+        # A cell is touched if the running count of such corners rises along its own.
         sums = np.concatenate([[0], np.cumsum(touching[ids])])
         masks.append(sums[starts[1:]] > sums[starts[:-1]])
     return np.concatenate(masks)
@@ -117,9 +122,11 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     known = _Places(places).of(places[mesh.n_points :])
     index[mesh.n_points :] = np.where(known < 0, index[mesh.n_points :], known)
     own_cells = cell_arrays(found)
+    # A polyhedron has the points of its faces in an array of its own.
     if isinstance(found, pv.UnstructuredGrid) and (faces := found.GetPolyhedronFaces()) is not None:
         own_cells.append(faces)
     for cells in own_cells:
+        # This is VTK's own memory, which is changed in place.
         ids = pv.convert_array(cells.GetConnectivityArray())
         ids[:] = index[ids]
     found.Modified()

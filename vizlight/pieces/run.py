@@ -192,8 +192,11 @@ def light(
         scene=scene,
         filter=filter,
         options=options,
+        # Streamlines end where their piece ends, and need no cells of others.
         ghost=ghost if filter == "illuminate" else 0,
         suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
+        # Where it pays for one worker it may not pay for another, and the two would round
+        # differently.
         compiled="1" if _compiled.wanted() == "1" else "0",
         # Workers share the processors.
         threads=_pool.workers() if map is builtins.map else 1,
@@ -201,6 +204,7 @@ def light(
     work = Work(map, retries, progress_bar)
     parts = pieces_of(sources, _check.positive("slab", slab))
     folder = path.with_suffix("")
+    # The pieces are written here, and moved to their place when all of them are whole.
     drafts = folder / f".vizlight-{uuid.uuid4().hex[:12]}"
     files.make_folder("out", drafts)
     try:
@@ -217,12 +221,15 @@ def light(
         if not full:
             raise _nothing_found(parts, job, work)
         first, made = full[0]
+        # The index states the arrays of the first piece for all of them.
         for piece, one in full[1:]:
             _check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+        # Read before the index is replaced.
         earlier = _named_by(path, folder)
         for _, one in full:
             (drafts / one.file).replace(folder / one.file)
         _write_index(path, [one for _, one in full], folder.name, job.name)
+        # Pieces that only the earlier index named belong to no mesh any more.
         for name in earlier - {one.file for _, one in full}:
             (folder / name).unlink()
     finally:
@@ -278,6 +285,7 @@ def camera_on(
         pairs = _surveyed(parts, job, work)
         job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
     calls = [(piece, job, direction, up, aspect) for piece in parts]
+    # Each worker sends only the few points on which a camera depends.
     found = work.each(task.outermost, calls, "camera")
     points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
     if not len(points):
@@ -307,6 +315,7 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
         remedy = "what is closed faces outward by facing='auto'"
         expected = "'auto', 'eye' or 'as given'"
         raise ValueError(_check.message("facing", expected, "'outward'", remedy))
+    # At a border without neighbours the gradient would be that of one side.
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
 
@@ -318,11 +327,14 @@ def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | No
     sharp = asked.feature_angle == "auto"
     if not job.ghost or not (asked.facing == "auto" or sharp):
         return job, told  # without neighbours each piece is a whole
+    # What is lit by tangents alone has no sides.
     if asked.tangents is not None and asked.conditioned is not True:
         return job, told
     found = work.each(task.look, [(piece, job) for piece in parts], "sides")
     looks = {i: one for i, one in enumerate(found) if one is not None}
     if sharp:
+        # The angle is one for all pieces: their common borders would not fit if some were split
+        # alone.
         angle = SHARP if looks and sides.creases([*looks.values()]) else None
         job = dataclasses.replace(job, options={**job.options, "feature_angle": angle})
     if asked.facing == "auto" and looks:
@@ -340,6 +352,7 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
         if not isinstance(given, Path):
             continue
         source = given.resolve()
+        # A source that is named like a piece may be taken for one of an earlier run, and removed.
         if source in taken or (source.parent == folder and own.fullmatch(source.name)):
             expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))
@@ -371,6 +384,7 @@ def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
         # Of the shape of the whole a single piece knows too little.
         if 2 * count > len(full):
             _check.warn(f"{note} ({count} of {len(done)} pieces)")
+    # Weighed by cells, the mean is nearly the share of the whole.
     sharp = sum((one.sharp or 0.0) * one.cells for one in full)
     sharp /= max(sum(one.cells for one in full), 1)
     normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
@@ -403,6 +417,7 @@ def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Jo
     """Return pieces that know their neighbours, and a job without a question left open."""
     cue = job.scene.depth_cue
     open_cue = cue is not None and (cue.front is None or cue.back is None)
+    # Pieces of files find their neighbours by their boxes, which are not known before a reading.
     loose = any(isinstance(piece, FilePiece) for piece in parts)
     if not (loose or open_cue or (job.contour is not None and job.level is None)):
         return parts, job
@@ -410,6 +425,7 @@ def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Jo
     boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
     if job.contour is not None and job.level is None:
         job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
+    # The depth is that of the isosurface, if there is one, whose level is known by now.
     if open_cue:
         calls = [(piece, job) for piece, _ in pairs]
         ends = work.each(task.depths, calls, "depth")
@@ -446,6 +462,7 @@ def _by_faces(job: Job) -> bool:
 def _ends(found: Sequence[Found], contour: str) -> tuple[float, float]:
     """Return the range of the contoured array over all pieces."""
     arrays = found[0].arrays
+    # A key is "point NAME", and the type of several components has their number behind an x.
     names = [key[6:] for key in arrays if key.startswith("point ") and " x " not in arrays[key]]
     ends = [one.ranges[contour] for one in found if contour in one.ranges]
     if contour not in names or not ends:
@@ -475,6 +492,7 @@ def _neighbours(parts: list[Piece], boxes: Foreign, ghost: int) -> list[Piece]:
         if not isinstance(piece, FilePiece):
             found.append(piece)
             continue
+        # Boxes that only touch may have points in common on their border.
         touch = np.all((boxes[:, :, 0] <= boxes[i, :, 1]) & (boxes[:, :, 1] >= boxes[i, :, 0]), 1)
         beside = [parts[j] for j in np.flatnonzero(touch) if j != i]
         own = tuple(one for one in beside if isinstance(one, FilePiece))
@@ -486,8 +504,10 @@ def _write_index(path: Path, pieces: Sequence[Found], folder: str, scalars: str)
     """Write the file that names lit pieces, which VTK and ParaView read as one mesh."""
     first = pieces[0]
     suffix = Path(first.file).suffix
+    # The parallel types of VTK's XML are the serial ones with a P before them.
     kind = "P" + next(kind for kind, own in SUFFIX.items() if own == suffix)
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian")
+    # Ghost cells were cut off before the pieces were written.
     grid = ET.SubElement(root, kind, GhostLevel="0")
     for name, data in (("point", "PPointData"), ("cell", "PCellData")):
         element = ET.SubElement(grid, data, {"Scalars": scalars} if name == "point" else {})
@@ -501,11 +521,13 @@ def _write_index(path: Path, pieces: Sequence[Found], folder: str, scalars: str)
         for axis in "xyz":
             _array(axes, axis, "float64")
     if first.extent:
+        # An extent is the first and the last node along each axis in turn.
         whole = [
             (min, max)[i % 2](piece.extent[i] for piece in pieces if piece.extent) for i in range(6)
         ]
         grid.set("WholeExtent", " ".join(map(str, whole)))
         for name, values in first.grid.items():
+            # ``repr`` keeps all digits of a float, so that the pieces fit each other.
             grid.set(name, " ".join(map(repr, values)))
     for piece in pieces:
         element = ET.SubElement(grid, "Piece", Source=f"{folder}/{piece.file}")

@@ -84,6 +84,8 @@ class FilePiece:
             found = pv.wrap(reader.GetOutputDataObject(0))
             mesh = found[self.partition] if isinstance(found, pv.PartitionedDataSet) else found
             if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
+                # An error with these words counts the piece as one without points, as parallel
+                # writers make them.
                 got = f"{self.name!r} (no points)"
                 raise files.FileError(_check.message("sources", "pieces with points", got))
         else:
@@ -97,6 +99,7 @@ class FilePiece:
             return mesh
         mesh = mesh if isinstance(mesh, pv.PolyData) else mesh.cast_to_unstructured_grid()
         others: Iterable[pv.DataSet] = (piece.load() for piece in self.beside)
+        # Each round adds a layer; the rest of the others is needed again unless it was the last.
         for more in reversed(range(ghost)):
             mesh, others = with_layer(mesh, others, keep=more > 0)
         return mesh
@@ -127,6 +130,7 @@ class GridPiece:
 
     def read(self, ghost: int) -> pv.DataSet:
         """See :class:`FilePiece`."""
+        # First nodes have even places and last nodes odd ones; ghosts end where the grid does.
         grown = tuple(
             min(node + ghost, self.whole[i]) if i % 2 else max(node - ghost, self.whole[i])
             for i, node in enumerate(self.extent)
@@ -138,10 +142,15 @@ class GridPiece:
             reader = _grid_reader(self.source)
             reader.UpdateExtent(grown)
             mesh = pv.wrap(reader.GetOutputDataObject(0))
+            # The reader stays with its thread, and would hold the data of this box.
             reader.GetOutputDataObject(0).ReleaseData()
             mesh = without_ghosts(mesh)
+        # The box that was read, in nodes of the whole grid.
         found = mesh.GetExtent()
+        # Over the cells x runs fastest, so that the mask has the axes z, y and x; a flat axis has
+        # one layer.
         outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        # Nodes of the piece, counted from the first that was read.
         own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
         outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
         mesh.cell_data[GHOST] = outside.ravel()
@@ -149,10 +158,13 @@ class GridPiece:
 
     def own(self, mesh: Foreign) -> pv.DataSet:
         """See :class:`FilePiece`."""
+        # An isosurface is no grid any more, and its triangles have the mark of the cells that they
+        # lie in.
         if not hasattr(mesh, "GetExtent"):
             return own_cells(mesh)
         if tuple(mesh.GetExtent()) != self.extent:
             own = pv.wrap(cropped(mesh, self.extent))
+            # Records are field data, and are carried by hand.
             for name in mesh.field_data:
                 own.field_data[name] = mesh.field_data[name]
             mesh = own
@@ -235,6 +247,7 @@ class Slabs:
         for name, array in self.arrays.items():
             is_mapped = isinstance(array, functools.partial)
             found: Foreign = array() if is_mapped else array
+            # Rows are sliced only where some are left out: some arrays know slices along z alone.
             wide = rows.stop - rows.start < found.shape[1]
             part = found[slices, rows] if wide else found[slices]
             if hasattr(part, "compute"):
@@ -242,7 +255,10 @@ class Slabs:
 
                 # In this process; the name "sync" in place of the function warns in old versions.
                 part = part.compute(scheduler=dask.get)
+            # A copy, so that the file is not mapped as long as the mesh is there.
             box = np.array(part) if is_mapped else np.asarray(part)
+            # The last axis, x, runs fastest in memory, as it does over the points of an image in
+            # VTK.
             mesh.point_data[name] = box.reshape(-1, *found.shape[3:])
         return mesh
 
@@ -337,6 +353,7 @@ def _of_file(path: Path, slab: float) -> list[Piece]:
         found = pv.wrap(reader.GetOutputDataObject(0))
         is_grid = isinstance(found, pv.ImageData)
         if isinstance(found, pv.PartitionedDataSet):
+            # Each partition of a VTKHDF file is a piece.
             count = found.n_partitions
             return [FilePiece(f"{path}[{i}]", path, i, count) for i in range(count)]
     return [*_boxes(path, *_size(path), slab)] if is_grid else [FilePiece(str(path), path)]
@@ -358,6 +375,7 @@ def _size(path: Path) -> tuple[Extent, float]:
         raise PieceError(_check.message("sources", "a file that can be read", f"'{path}'"))
     arrays = [*mesh.point_data.values(), *mesh.cell_data.values()]
     each = sum(array.itemsize * math.prod(array.shape[1:]) for array in arrays)
+    # A structured grid stores three coordinates of 8 bytes for each node beside its arrays.
     points = 24 if isinstance(mesh, pv.StructuredGrid) else 0
     return tuple(whole), float(max(each + points, 1))
 
@@ -387,6 +405,7 @@ def _boxes(
 def _parts(first: int, last: int, most: int) -> list[tuple[int, int]]:
     """Return the ends of parts of at most so many steps, but of one at least."""
     count = max(math.ceil((last - first) / max(most, 1)), 1)
+    # Even parts, so that none is left as a thin rest.
     ends = [first + (last - first) * i // count for i in range(count + 1)]
     return list(itertools.pairwise(ends))
 
@@ -406,6 +425,7 @@ def index_files(path: Path) -> list[Path]:
         raise PieceError(_check.message("sources", "an index in XML", got)) from error
     found = []
     for element in root.iter():
+        # Indices of parallel files name their pieces by one attribute, multiblock files by another.
         name = element.get({"Piece": "Source", "DataSet": "file"}.get(element.tag, ""))
         if name:
             found.append(path.parent / name)
@@ -422,6 +442,7 @@ def _grid_reader(path: Path) -> Foreign:
     it, which would take longer than to read a slab.
     """
     status = path.stat()
+    # A file that was written again is another one.
     stamp = (str(path.resolve()), status.st_size, status.st_mtime_ns)
     if getattr(_LAST, "stamp", None) != stamp:
         _LAST.reader, _LAST.stamp = _informed(path), stamp

@@ -218,6 +218,7 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
         ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
         with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
             warnings.simplefilter("always", UserWarning)
+            # A piece alone does not know what other pieces hide of the sky.
             share = job.options.get("occlusion")
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
@@ -235,6 +236,7 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
             valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
             done.invalid = int(np.count_nonzero(~valid & ~inside))
             suffix = SUFFIX[type(lit).__name__]
+            # An index has pieces of one type of mesh, which its suffix names.
             if suffix != job.suffix:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
                 raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
@@ -264,6 +266,7 @@ def _lit(
         # They belong to the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]
         del lit.field_data[record_key(stale)]
+    # Found while the ghost cells are there: where they are cut off no surface of the whole begins.
     if not isinstance(lit, pv.PolyData) and hull.dimension(lit) == 3:
         inside = np.ones(lit.n_points, dtype=np.bool_)
         on_surface = hull.outer_surface(lit)[1]
@@ -271,11 +274,13 @@ def _lit(
         lit.point_data[INSIDE] = inside
     own = piece.own(lit) if job.filter == "illuminate" else lit
     valid = f"{job.name}_valid"
+    # All pieces of an index have the same arrays, so that each has the mask.
     if valid not in own.point_data:
         own.point_data[valid] = np.ones(own.n_points, dtype=np.bool_)
     if own.n_points:
         own.set_active_scalars(job.name)
         assert record is not None
+        # The arrays are recorded without digests, which would not hold where pieces are joined.
         records.write(own, job.name, record, dict.fromkeys((*made, valid)))
     return own, sharp
 

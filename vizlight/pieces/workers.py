@@ -69,10 +69,12 @@ class Work:
             try:
                 for number, arguments in enumerate(calls):
                     with _naming(arguments[0].name):
+                        # A map may fail as soon as it is called, and then the first piece is named.
                         if not number:
                             call = functools.partial(repeated, function, self.retries)
                             results = iter(start(call, calls, **more))
                         value = next(results)
+                        # Dask returns futures, and the map of an executor results.
                         found.append(value.result() if hasattr(value, "result") else value)
                     report(len(found))
             finally:
@@ -89,6 +91,7 @@ def repeated(function: Callable[..., T], retries: int, arguments: tuple[Foreign,
             return function(*arguments)
         except PieceError as error:
             cause: BaseException | None = error
+            # The error of a piece may be caused by one of the system, which may pass.
             while cause is not None and not isinstance(cause, OSError):
                 cause = cause.__cause__
             if cause is None:
@@ -102,6 +105,7 @@ def _naming(name: str) -> Iterator[None]:
     try:
         yield
     except (ValueError, TypeError):
+        # These name their piece or their argument already.
         raise
     except Exception as error:
         text = f"{type(error).__name__}: {error}"
@@ -156,11 +160,13 @@ class Processes:
         while left:
             try:
                 if self._pool is None:
+                    # Spawned, because a fork has no threads but copies the locks that they hold.
                     spawn = multiprocessing.get_context("spawn")
                     self._pool = ProcessPoolExecutor(self.count, spawn, _begin, (os.getpid(),))
                 with _main_apart():
                     found = self._pool.map(function, left)
                 for value in found:
+                    # What is done is not done again when a process ends.
                     left.pop(0)
                     lost = 0
                     yield value
@@ -202,6 +208,7 @@ def _main_apart() -> Iterator[None]:
     if path is None or getattr(main, "__spec__", None) is not None:
         yield
         return
+    # Without a file a spawned process finds no script to import.
     del main.__file__
     try:
         yield

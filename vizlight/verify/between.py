@@ -47,6 +47,7 @@ class Places(NamedTuple):
 
 def measurable(inputs: ShadingInputs) -> bool:
     """Return whether light between the points follows from what the inputs hold at the points."""
+    # What only the points have, such as their share of a shadow, is not known between them.
     given = inputs.shadow is None and inputs.fur_height is None
     given = given and inputs.transmittance is None and inputs.occlusion is None
     return given and inputs.repeat == 1
@@ -92,6 +93,8 @@ class Between:
         self.facts: Array = np.empty((len(self.points), 0))
         if inputs.normals is not None:
             given: ArraySource = inputs.normals
+            # Normals are interpolated before they are turned, as the side that is seen may change
+            # within a cell.
             if self._sides is not None:
                 given, self.facts = self._sides.normals, self._sides.facts
             self.vectors["normals"] = kernels.unit_rows(_rows(given))[:, np.newaxis]
@@ -155,6 +158,7 @@ class Between:
                 own["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
             own["points"] = points
             inputs = dataclasses.replace(self.inputs, **own)  # type: ignore[arg-type]
+            # What is lit here measures an error, and is no run that a report counts.
             with engine.observed(None):
                 lit = engine.run(inputs, self.scene, self.options)
             found[block] = columns(lit)
@@ -178,6 +182,7 @@ class Between:
         surface = "tangents" not in self.vectors and self.points.shape[1] == 3
         if not material.specular or view is None or not (lines or surface):
             return []
+        # The points are less an origin, and lights and eye are moved likewise.
         moved = self.inputs.origin
         scene = self.scene if moved is None else self.scene.moved([-x for x in moved])
         rows = self.points[cells]
@@ -187,6 +192,7 @@ class Between:
             at = cells.ravel()
             normals = self.vectors["normals"][at, 0]
             turned = self.turned(kernels.unit_rows(normals), self.facts[at], self.points[at])
+            # The lengths stay: normals of added points are shorter, and the weights depend on that.
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             given = (length * turned).reshape(rows.shape)
         if lines and self.inputs.line_field:
@@ -198,8 +204,11 @@ class Between:
         for light in scene.lights:
             if light.intensity > 0:
                 weights = np.full(cells.shape, 1 / cells.shape[1])
+                # From near lights and eyes the half vector depends on the place: first it is that
+                # of the centre, then of the place found there.
                 for _ in range(2):
                     middle = np.einsum("ms,msn->mn", weights, rows)
+                    # The sum of both unit directions; its length is of no account.
                     half = _toward(light.seen_from(view), middle) + _toward(view, middle)
                     weights = solve(given, half)
                 found.append(weights)
@@ -245,10 +254,13 @@ def mean_spaces(frames: Array, places: Places) -> Array:
         return found
     parts = [places.weights[:, i : i + 1] * frames[places.corners[:, i], 0] for i in range(s)]
     if s == 2:
+        # Of two vectors the second is turned over where they point apart.
         turned = [np.ones(m), np.where(_dots(*parts) < 0, -1.0, 1.0)]
     else:
         a, b, c = parts
         ab, ac, bc = _dots(a, b), _dots(a, c), _dots(b, c)
+        # Up to a common sign there are four choices, and the longest sum has the largest sum of
+        # products.
         scores = np.stack([ab + ac + bc, ab - ac - bc, ac - ab - bc, bc - ab - ac])
         best = np.argmax(scores, axis=0)
         signs = np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1]], dtype=np.float64)
@@ -285,17 +297,22 @@ def random_places(
     ndarray of int, shape (count,)
     """
     s = cells.shape[1]
+    # In units of the extent squares of lengths neither overflow nor vanish.
     unit = float(np.ptp(points, axis=0).max(initial=0)) or 1.0
     sides = [(points[cells[:, i]] - points[cells[:, 0]]) / unit for i in range(1, s)]
     square = _dots(sides[0], sides[0])
     if s == 3:
+        # |a|^2 |b|^2 - (a . b)^2 is the squared area of the parallelogram, in a space of any
+        # dimension.
         square = square * _dots(sides[1], sides[1]) - _dots(*sides) ** 2
     total = np.cumsum(np.sqrt(np.maximum(np.nan_to_num(square), 0)))
+    # Cells of no area, or of one that is not finite, have no places.
     if not (len(total) and 0 < total[-1] < np.inf):
         return Places(cells[:0], np.empty((0, s))), np.empty(0, np.intp)
     # One place in each of as many equal parts of the area.
     at = (np.arange(count) + random.random(count)) / count * total[-1]
     cell = np.minimum(np.searchsorted(total, at, side="right"), len(cells) - 1)
+    # With ones for all corners Dirichlet's distribution is uniform over the cell.
     weights = random.dirichlet(np.ones(s), count)
     return Places(cells[cell], weights), cell
 
@@ -337,6 +354,7 @@ def measure(
         return np.empty(0)
     # Only the corners of the cells that were drawn are looked at.
     used, corner = np.unique(places.corners, return_inverse=True)
+    # From here on corners count among the points that are taken.
     places = Places(corner.reshape(places.corners.shape), places.weights)
     return error_between(
         Between(_taken(inputs, used), scene, options), columns(shading, used), places
@@ -397,6 +415,7 @@ def _dots(a: Array, b: Array) -> Array:
 
 def _toward(end: Light | View, points: Array) -> Array:
     """Return unit directions from points to a light or an eye."""
+    # A parallel view with a position sees along its direction all the same.
     if end.direction is not None and (end.position is None or getattr(end, "parallel", False)):
         return kernels.unit_rows(np.array([end.direction], dtype=np.float64))
     return kernels.unit_rows(np.asarray(end.position, dtype=np.float64) - points)
@@ -405,11 +424,14 @@ def _toward(end: Light | View, points: Array) -> Array:
 def _across(lines: Array, half: Array) -> Array:
     """Return weights where interpolated lines are normal to a half vector, or most nearly so."""
     m, s, _ = lines.shape
+    # A highlight on a line is brightest where the tangent is normal to the half vector: t . h = 0,
+    # linear in the weights.
     along = np.einsum("msn,mn->ms", lines, np.broadcast_to(half, (m, lines.shape[2])))
     low, high = along.argmin(axis=1), along.argmax(axis=1)
     rows = np.arange(m)
     gap = along[rows, high] - along[rows, low]
     share = np.divide(-along[rows, low], gap, out=np.full(m, 0.5), where=gap > 0)
+    # Where the tangents of all corners lie on one side of that, the place is the nearest corner.
     share = np.clip(share, 0, 1)
     weights = np.zeros((m, s))
     weights[rows, high] = share
@@ -424,12 +446,17 @@ def _toward_half(normals: Array, half: Array) -> Array:
     if s == 2:
         a, b = normals[:, 0], normals[:, 1]
         aa, ab, bb, ah, bh = _dots(a, a), _dots(a, b), _dots(b, b), _dots(a, half), _dots(b, half)
+        # The least squares solution of x a + y b = h by its normal equations, but for a common
+        # factor.
         shares = np.stack([bb * ah - ab * bh, aa * bh - ab * ah], axis=1)
     else:
         a, b, c = (normals[:, i] for i in range(3))
+        # The solution of x a + y b + z c = h by Cramer's rule; of the determinant only the sign is
+        # needed.
         sides = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
         shares = np.einsum("msn,mn->ms", sides, half)
         shares *= np.where(_dots(a, sides[:, 0]) < 0, -1.0, 1.0)[:, np.newaxis]
+    # A peak outside of the cell is moved to its border.
     shares = np.maximum(shares, 0)
     total = shares.sum(axis=1, keepdims=True)
     return np.asarray(np.divide(shares, total, out=np.full_like(shares, 1 / s), where=total > 0))

@@ -151,9 +151,11 @@ class Oracle:
         frame, base, up = frames
         # Without a view the eye is along (1, ..., 1), and there is no highlight.
         eye = View.isometric(n) if view is None else view
+        # A surface of n-space has n - 1 tangents, which its normal stands for.
         place = _Place(
             normal=up[0] if up else None, frame=frame, base=base,
             wo=self.toward(eye, at)[0], exponent=self._power(len(frame) or n - 1, n, exponent),
+            # A given exponent is that of the tangents: the base then has 1.
             base_exponent=self._power(len(base), n, exponent if isinstance(exponent, str) else 1),
             shininess=scene.material.shininess, model=model, conditioned=conditioned,
             two_sided=two_sided, fur=fur, fur_height=fur_height,
@@ -161,6 +163,7 @@ class Oracle:
         parts: list[tuple[Light, Real, Real]] = []
         for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
             wi, distance = self.toward(light.seen_from(eye), at)
+            # A light at the point itself has no direction, and adds nothing.
             if wi is not None:
                 scale = self._arriving(wi, distance, light, place)
                 if transmittance is not None:
@@ -195,9 +198,11 @@ class Oracle:
         scale = self.number(light.intensity)
         if distance is not None:
             scale *= self.attenuation(distance, light.attenuation)
+        # For tangents within a base its diffuse term takes the part of the self-shadow.
         if place.base:
             scale *= self.across(wi, place.base) ** place.base_exponent
         if place.fur and place.normal is not None and place.wo is not None:
+            # Light passes the fur on its way in and again on its way out to the eye.
             for way in (wi, place.wo):
                 sine = abs(self.dot(place.normal, way))
                 scale *= self.fur(place.fur_height, sine, place.fur)
@@ -209,9 +214,12 @@ class Oracle:
         ``passed`` is t of the light's cos-theta shadow, which takes the place of the cosine.
         """
         if place.normal is None:
+            # Without a normal there is neither a side nor a self-shadow.
             return self._manifold(wi, place)
         cosine = self.dot(place.normal, wi)
         facing = abs(cosine) if place.two_sided else max(cosine, self.number(0.0))
+        # Conditioned tangents inherit the self-shadow of the surface, the cosine to its normal
+        # (Banks 6).
         if place.frame:
             terms = self._manifold(wi, place)
             scale = facing if passed is None else passed
@@ -219,6 +227,8 @@ class Oracle:
         specular = self._surface_specular(wi, cosine, place.normal, place)
         if passed is None:
             return facing**place.exponent, specular
+        # The highlight in a cos-theta shadow keeps min(1, t / cos); a light behind the surface has
+        # none.
         return passed, specular * min(passed / facing, self.number(1.0)) if facing else facing
 
     def _manifold(self, wi: Vector, place: _Place) -> tuple[Real, Real]:
@@ -242,6 +252,8 @@ class Oracle:
             base = none if half is None else self.dot(normal, half)
             base = abs(base) if two_sided else base
         else:
+            # R . E = 2 (N . wi)(N . wo) - wi . wo; without a side it is |wi_N||wo_N| - wi_T . wo_T,
+            # as of a manifold (Banks 3).
             both = cosine * self.dot(normal, wo)
             base = (abs(both) if two_sided else both) + both - self.dot(wi, wo)
         value: Real = max(base, none) ** place.shininess
@@ -260,6 +272,7 @@ class Oracle:
         if scene.colored:
             color, gloss = material.color or WHITE, material.specular_color or WHITE
             for i, tint in enumerate(scene.ambient_color or WHITE):
+                # The light's own colour tints both terms, and the material has a colour for each.
                 own = ((one.color or WHITE, color[i] * d + gloss[i] * s) for one, d, s in parts)
                 rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in own))
         luminance, *rgb = self._faded([ambient + diffuse + specular, *rgb], at, scene)
@@ -273,6 +286,7 @@ class Oracle:
         origin = self.vector(view.position or [0.0] * len(at))
         away = [a - b for a, b in zip(origin, at, strict=True)]
         axis = None if view.direction is None else self.unit(self.vector(view.direction))
+        # A view without a direction has no axis: depth is the distance from its place.
         depth = self.hypot(*away) if axis is None else self.dot(axis, away)
         grey = (1.0, *(cue.color or WHITE))
         return [self.depth_cue(v, depth, cue, g) for v, g in zip(values, grey, strict=False)]
@@ -303,6 +317,7 @@ class Oracle:
         """
         across_i, across_o = self.rest(wi, [line]), self.rest(wo, [line])
         size = self.hypot(*across_i)
+        # Light along the line arrives at no side of the cylinder.
         if not size:
             return self.number(0.0), self.number(0.0)
         if not self.hypot(*across_o):
@@ -318,6 +333,7 @@ class Oracle:
         whole = sum(self.cosine_integral(quarter - angle, p) for angle in (beta, gamma))
         ends = self.sin(beta) ** p - self.sin(gamma) ** p
         mean = self.cos(beta) * whole + self.sin(beta) * ends / p
+        # This is |h_N|, the length of the part of the half vector across the line.
         scale = self.hypot(*both) / self.hypot(*(x + y for x, y in zip(wi, wo, strict=True)))
         return diffuse, scale**shininess * mean / 2
 
@@ -336,6 +352,7 @@ class Oracle:
         """Return (1 - rho)^(h / sin a), of Banks (7) and (8): the share that passes once."""
         if height == 0:
             return self.number(1.0)
+        # A way along the surface never leaves the fur.
         if sine == 0:
             return self.number(0.0)
         share: Real = (1 - self.number(density)) ** (self.number(height) / sine)
@@ -345,6 +362,7 @@ class Oracle:
         """Return S I + (1 - S) Icue, of the Lecture; ``grey`` is the cue's own colour."""
         low, high, back = map(self.number, (cue.back_scale, cue.front_scale, cue.back or 0.0))
         t = (depth - back) / (self.number(cue.front or 0.0) - back)
+        # Before its front and behind its back the cue stays as it is there.
         t = min(max(t, self.number(0.0)), self.number(1.0))
         share = low + (high - low) * (self.smooth(t) if cue.smooth else t)
         return share * light + (1 - share) * cue.cue * grey
@@ -364,6 +382,7 @@ class Oracle:
         """Return the p of a mean brightness of 1/2, by bisection to the last digit."""
         if (k, n) not in self._exponents:
             low, high = self.number(0.0), self.number(1.0)
+            # The mean falls as p grows: a bound above is found by doubling, and p lies below it.
             while self.mean_intensity(k, n, high) > 0.5:
                 high *= 2
             while low < (middle := (low + high) / 2) < high:
@@ -392,6 +411,7 @@ class Oracle:
             largest = max(map(abs, v))
             if not 0 < largest < math.inf or size != size:
                 return None
+            # Divided by the largest component, the squares are within range.
             v = [x / largest for x in v]
             size = self.hypot(*v)
         return [x / size for x in v]
@@ -403,6 +423,8 @@ class Oracle:
     def angle(self, u: Vector, v: Vector) -> Real:
         """Return the angle between two vectors, without loss where it is near 0 or pi."""
         a, b = self.hypot(*u), self.hypot(*v)
+        # The angle is 2 atan2(|a - b|, |a + b|) of vectors of one length; an arc cosine loses
+        # digits near 0 and pi.
         pairs = [(x * b, y * a) for x, y in zip(u, v, strict=True)]
         apart, near = (self.hypot(*(x + s * y for x, y in pairs)) for s in (-1, 1))
         return 2 * self.atan2(apart, near)

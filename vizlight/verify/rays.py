@@ -54,6 +54,7 @@ def relief_ratio(
         # There is no solid above the highest node.
         along = along * (highest / along[2])
     bounds = ((x, start[0], along[0]), (y, start[1], along[1]), ([base], start[2], along[2]))
+    # Shares of the ray at which it crosses a plane of nodes, or the base.
     cuts = [(np.asarray(at) - first) / step for at, first, step in bounds if step]
     known = np.concatenate([[0.0, 1.0], *cuts])
     ends = np.unique(known[(known >= 0) & (known <= 1)])
@@ -73,9 +74,11 @@ def relief_ratio(
         above = _above(x, y, z, three, *cells, wall=wall)
         better = np.isfinite(above).all(axis=0) & ~np.isfinite(f)
         parts[:, better], f[better] = above[:, better], 0.0
+    # Where no cell has a surface the ray is outside of the solid.
     share = _positive(*np.where(np.isfinite(f), parts, -1.0))
     share[~(middle[:, 2] > base)] = 0
     inside = float(share @ (high - low)) * math.hypot(*along)
+    # t = d / r, and 1 where r is less than d (cos-theta, section 3).
     return float(depth / max(inside, depth))
 
 
@@ -84,23 +87,29 @@ def _above(
 ) -> Array:
     """Return the height of the surface of some cells above places of shape (3, M, 3)."""
     across, up = places[..., 0], places[..., 1]
+    # Without a wall the heights of the border go on beyond it.
     if not wall:
         across, up = np.clip(across, x[0], x[-1]), np.clip(up, y[0], y[-1])
     u, v = (across - x[i]) / (x[i + 1] - x[i]), (up - y[j]) / (y[j + 1] - y[j])
     low = (1 - u) * z[j, i] + u * z[j, i + 1]
     high = (1 - u) * z[j + 1, i] + u * z[j + 1, i + 1]
+    # The middle of a part of the ray is within a cell; its ends may be on a border, beside it by
+    # rounding.
     within = (np.abs(u[1] - 0.5) <= 0.5) & (np.abs(v[1] - 0.5) <= 0.5)
     return np.asarray(np.where(within, (1 - v) * low + v * high - places[..., 2], np.nan))
 
 
 def _positive(first: Array, middle: Array, last: Array) -> Array:
     """Return the share of [0, 1] where the quadratics through three places are positive."""
+    # The quadratic is first + one s + two s^2, through the three values at s = 0, 1/2 and 1.
     two, one = 2 * (first - 2 * middle + last), 4 * middle - 3 * first - last
+    # q / two and first / q are both roots, without the difference in which digits cancel.
     q = -0.5 * (one + np.copysign(np.sqrt(np.maximum(one * one - 4 * two * first, 0)), one))
     with np.errstate(all="ignore"):
         roots = np.clip(np.nan_to_num(np.stack([q / two, first / q]), nan=0.0), 0, 1)
     roots[:, one * one < 4 * two * first] = 0
     ends = np.sort(np.concatenate([np.zeros((1, len(one))), roots, np.ones((1, len(one)))]), axis=0)
+    # Between two roots the sign in the middle is the sign throughout.
     at = (ends[:-1] + ends[1:]) / 2
     return np.asarray(np.sum(np.diff(ends, axis=0) * (first + at * (one + at * two) > 0), axis=0))
 
@@ -131,6 +140,8 @@ def solid_ratio(
     start = place - depth * normal
     inside: list[tuple[float, int]] = []
     for corners in bodies:
+        # The test of Moeller and Trumbore: u and v are barycentric, and s is the distance along the
+        # ray.
         a, e, f = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         p = np.cross(way, f)
         scale = np.einsum("ij,ij->i", e, p)
@@ -148,6 +159,7 @@ def solid_ratio(
         inside += [
             (float(at), 1 if side < 0 else -1) for at, side in zip(s[hit], scale[hit], strict=True)
         ]
+    # From the light, which is outside of all bodies, back to the start.
     length, depth_in, far = 0.0, 0, reach
     for at, change in sorted(inside, reverse=True):
         length += far - at if depth_in > 0 else 0.0

@@ -111,6 +111,7 @@ class Run:
     @property
     def missed(self) -> float:
         """Share of the points that may be worse than the sample, with a confidence of 95 %."""
+        # A sample of all points that could be lit has missed none.
         return 0.0 if self.sample + self.invalid >= self.points else unseen(self.sample)
 
     @property
@@ -200,6 +201,7 @@ def unseen(count: int) -> float:
 
     A fault in a share p of the points is missed by n of them with probability ``(1 - p)^n``.
     """
+    # 1 - DOUBT^(1/n), by functions that keep its digits where it is small.
     return float(-np.expm1(np.log(DOUBT) / count)) if count else 1.0
 
 
@@ -347,11 +349,13 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             return
         count = shading.luminance.size
         drawn = np.sort(_drawn(active, count, count))
+        # A tangent counts as dependent from the same share on as in the type of the engine.
         apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
         reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
         got = between.columns(shading, drawn)
         true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(got.shape)
         valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
+        # Points that one of both calls invalid have no difference; they are counted as disagreed.
         both = valid & known
         off = np.abs(got[both] - true[both]).max(axis=1, initial=0.0)
         places: Array = np.empty(0)
@@ -433,7 +437,9 @@ def note_ratio(
         if active is None:
             return
         good, lights = np.flatnonzero(valid), t.shape[1]
+        # A ray costs ``effort`` tests, and all rays together TRIALS at most.
         rays = min(RAYS, max(TRIALS // effort, 1)) if effort else 0
+        # A pair of a point and a light is drawn as one number.
         at = [divmod(int(k), lights) for k in _drawn(active, good.size * lights, rays)]
         off = np.array([abs(t[good[i], k] - reference(int(good[i]), k)) for i, k in at])
         _add(
@@ -553,8 +559,10 @@ def _reference(
     normal: Sequence[float] | None = numbers(given.normals)
     if given.dimensions is not None:
         dimension = numbers(given.dimensions)
+        # A point alone is lit as if it faced the eye.
         if dimension == [0]:
             normal = oracle.FLOATS.toward(scene.view or View.isometric(n), point)[0]
+        # A point of a line is lit by its tangent, and any other by its normal.
         tangents, normal = (tangents, None) if dimension == [1] else (None, normal)
     (height,), (occlusion,) = numbers(given.fur_height) or [0.0], numbers(given.occlusion) or [1.0]
     return oracle.light(
