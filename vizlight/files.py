@@ -373,7 +373,7 @@ class _Messages:
                 vtkOutputWindow.SetInstance(listening)
                 # VTK's logger would print each message to standard error beside that.
                 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-            # One thread may listen in several contexts, of which the innermost hears.
+            # One thread may listen in several contexts: the innermost hears.
             self._heard.setdefault(thread, []).append(errors)
         try:
             yield errors
@@ -777,7 +777,7 @@ def _sweep(place: Path) -> None:
         with contextlib.suppress(OSError), _opened(folder) as opened:
             # An error says that it is locked, another's, or gone.
             fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # A folder without a lock may be that of a writer that has just made it.
+            # A folder without a lock may belong to a writer that has just made it.
             if time.time() - os.fstat(opened).st_mtime > ABANDONED:
                 shutil.rmtree(folder)
 

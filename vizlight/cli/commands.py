@@ -305,7 +305,7 @@ def _tips(mesh: Step, length: float | str | None) -> Step:
 
 
 def _is_field(mesh: Step, shape: Shape) -> bool:
-    """Tell whether a mesh, of which no part is taken, is a grid of one layer."""
+    """Tell whether a mesh, taken whole, is a grid of one layer."""
     sizes: tuple[int, ...] = getattr(mesh.run(), "dimensions", ())
     whole = shape.contour is None and shape.slice is None
     return whole and sum(size > 1 for size in sizes) == 2

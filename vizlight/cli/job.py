@@ -139,7 +139,7 @@ def carry_out(
                 else:
                     codes.append(_run(job, last, out))
         except (TypeError, ValueError, OSError) as error:
-            # The error of a single file is that of the command.
+            # The error of a single file becomes the command's.
             if len(files_) == 1:
                 raise
             complain(f"{path}: {one_line(error)}")
@@ -294,7 +294,7 @@ def _light(job: Job, out: Output) -> pv.DataSet:
     """Light the mesh and print how."""
     from vizlight.mesh.blocks import all_blocks
 
-    # What is read and cut comes before, so that the time is that of the light.
+    # What is read and cut comes before, so that the time is the light's alone.
     for value in job.lit.parts():
         if isinstance(value, Step):
             value.run()

@@ -523,7 +523,7 @@ def takes(
         # Cyclopts reads the annotations, and this class was made just now.
         command.__annotations__["how"] = own
         types, signature = get_type_hints(command), inspect.signature(command)
-        # A group of which no option is given has its defaults.
+        # A group without a given option has its defaults.
         command.__kwdefaults__ = {
             name: types[name]() if one.default is one.empty else one.default
             for name, one in signature.parameters.items()

@@ -147,7 +147,7 @@ def _outermost(points: Array, axes: Array, aspect: float) -> Array:
     if not len(found):
         return found
     along, (z, sides) = np.concatenate([np.eye(3), axes]), (axes[2], _sides(axes, aspect))
-    # A camera is made of maxima along these rows, each of which a single point attains.
+    # A camera is made of maxima along these rows, and a single point attains each.
     rows = np.concatenate([along, -along, z + sides, z - sides])
     return found[[int(np.argmax(found @ row)) for row in rows]]
 

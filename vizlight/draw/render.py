@@ -208,7 +208,7 @@ def make_plotter(
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:
         _check.coordinates("panels", common_bounds("panels", [meshes]))
-        # All panels have one size, of which this is the aspect.
+        # All panels have one size, with this aspect.
         camera = camera_on(meshes, aspect=pixels[0] * rows / (pixels[1] * columns))
     ink = ink_on(back)
     with window_class(choose_backend(backend)):

@@ -67,7 +67,7 @@ def plot(
     jupyter_backend : str, optional
         Backend of a notebook; ``"html"`` shows the page of :func:`vizlight.live_html` in a frame.
     sky : bool, default: False
-        Whether the ambient light is that of a sky: ``occlusion="sky"``.
+        Whether the ambient light comes from a sky: ``occlusion="sky"``.
     **options
         Keywords of ``pyvista.plot``, such as ``cpos``, ``zoom``, ``background``, ``off_screen`` and
         ``text``, and of ``plotter.vizlight.add_mesh``: options of :func:`vizlight.illuminate` and

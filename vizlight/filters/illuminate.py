@@ -262,7 +262,7 @@ def light_parts(
     for block, kept in zip(lit, sides, strict=True):
         if kept is not None:
             normals.keep(block, kept)
-        # The error that an earlier refinement measured is not that of this light.
+        # An earlier refinement measured the error of another light.
         refining.forget(block, options.name)
     inside = sum(sided.inside for sided in sides if sided is not None)
     lighting.finish(

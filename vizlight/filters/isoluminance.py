@@ -451,7 +451,7 @@ def _rgb(bands: Bands, light: _Light) -> Array | None:
 
 def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
     """Return colours scaled from their luminance to the luminance of each polygon's band."""
-    # Hue and saturation of the light stay, and its brightness becomes that of the band.
+    # Hue and saturation of the light stay, and it becomes as bright as the band.
     share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(rgb * share[:, np.newaxis])
 

@@ -157,7 +157,7 @@ def refine(
         for block, _ in blocks.check(mesh)
     ]
     whole = blocks.like(mesh, iter(faces))
-    # The sky that new points see is that of the refined mesh.
+    # New points see the sky of the refined mesh.
     early = dataclasses.replace(asked, occlusion=None)
     taken, parts = parts_of(whole, scene, early)
     # The cue spans the points that there are: new ones lie between them.

@@ -264,7 +264,7 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
     kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
     asked = ProjectOptions.of(kept)
     before = asked.light == "before"
-    # After the projection the light is that of the frame in 3-space, which has another name.
+    # After the projection the frame in 3-space gives the light, which has another name.
     frame = None if asked.frame is None else f"{'' if before else PROJECTED}{asked.frame}"
     return asked.by(frame, asked.positions if before else None)
 

@@ -256,7 +256,7 @@ def color_table(
     cmap, nan_color = default_map(cmap), default_nan_color(nan_color)
     # Rows of several components are colours already.
     values = [part for part in values if part.ndim == 1]
-    # The mapper below does not see all values, and the range is that of all blocks.
+    # The mapper below does not see all values, and the range covers all blocks.
     if clim is None and not isinstance(cmap, pv.LookupTable):
         clim = _range(values)
     if isinstance(clim, int | float):

@@ -157,8 +157,7 @@ class Turning:
             return cut(mesh, heights)
         out = cut(mesh, heights, spaces={self.frame: n})
         tangents = np.asarray(out.point_data[self.frame])
-        # By the digits of the array: its rounding hides a rank, not that of the float64 computed
-        # in.
+        # By the digits of the array, whose rounding hides a rank; the work is in float64.
         rtol = default_rtol(n, tangents.dtype)
         rows = _blocks(
             lambda x: slices.slice_frame(x.reshape(-1, k, n), normal, rtol=rtol), tangents, k - 1, n

@@ -133,7 +133,7 @@ def _ply(file: BinaryIO) -> str:
             kinds = words[2:-1] if words[1] == "list" else words[1:-1]
             if len(kinds) != (2 if words[1] == "list" else 1):
                 raise ValueError(" ".join(words))
-            # A list has two: the type of its count and that of its numbers.
+            # A list has two: the types of its count and of its numbers.
             elements[-1][1].append([_SIZES.get(kind, 4) for kind in kinds])
     if form != "ascii":
         order: Literal["big", "little"] = "big" if "big" in form else "little"

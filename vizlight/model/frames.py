@@ -164,7 +164,7 @@ def as_frame(frame: ArrayLike) -> Array:
     # Rows past the rank are zero: their diagonal is 0, not 1.
     off = np.abs(gram - np.eye(k) * np.where(diagonal == 0, 0, 1)[..., np.newaxis])
     worst = float(off.max()) if off.size else 0.0
-    # Negated, since a row that is not finite gives NaN, of which no comparison holds.
+    # Negated, since a row that is not finite gives NaN, for which no comparison holds.
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
         remedy = "call vizlight.model.frames.orthonormalize first"
         got = f"rows off by {worst:.2g}"

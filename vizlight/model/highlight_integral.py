@@ -38,7 +38,7 @@ def half_integral(shininess: float, dtype: DTypeLike = np.float64) -> Callable[[
     loses for large powers (5e-10 at 1e6).
     """
     if shininess < TABLE_FROM:
-        # With u^2 as the variable the integrand is that of the beta function B(1/2, s/2 + 1).
+        # With u^2 as the variable the integrand belongs to the beta function B(1/2, s/2 + 1).
         order = shininess / 2 + 1
         whole = scipy.special.beta(0.5, order) / 2
 

@@ -446,7 +446,7 @@ def exchange_rate(light_eye_angle: ArrayLike, /, *, k: int = 2, n: int = 3) -> A
 
     c = n - k
     # With m = cos(u) and directions of equal weight the density is sin^(c-2) cos^(k-1).
-    # The substitution share = m^2 makes the density that of Jacobi's weights on [-1, 1].
+    # The substitution share = m^2 turns the density into Jacobi's weights on [-1, 1].
     nodes, weights = roots_jacobi(400, (c - 3) / 2, (k - 2) / 2)
     share = (1 + nodes) / 2
     log = np.log1p(-np.multiply.outer(np.square(np.sin(beta)), share))

@@ -267,7 +267,7 @@ class Cylinder(Frame):
             for rest, size in parts
         ]
         sin_b, sin_c = (minimum(cross / where(size > 0.0, size, 1.0), 1.0) for size in sizes)
-        # Along the line Blinn's lobe is that of a frame; the integral over the arc is the mean
+        # Along the line Blinn's lobe is a frame's; the integral over the arc is the mean
         # across.
         value = formulas.blinn(self._both(lit, eye), normal_square, s)
         integrals = w.integral(cosines[0], s) + w.integral(cosines[1], s)

@@ -315,7 +315,7 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
         remedy = "what is closed faces outward by facing='auto'"
         expected = "'auto', 'eye' or 'as given'"
         raise ValueError(_check.message("facing", expected, "'outward'", remedy))
-    # At a border without neighbours the gradient would be that of one side.
+    # At a border without neighbours the gradient would be one-sided.
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
 
@@ -425,7 +425,7 @@ def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Jo
     boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
     if job.contour is not None and job.level is None:
         job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
-    # The depth is that of the isosurface, if there is one, whose level is known by now.
+    # The depth belongs to the isosurface, if there is one, whose level is known by now.
     if open_cue:
         calls = [(piece, job) for piece, _ in pairs]
         ends = work.each(task.depths, calls, "depth")

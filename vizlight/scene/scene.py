@@ -296,7 +296,7 @@ def _of_actor(
         drawn = type(own)()
         drawn.DeepCopy(own)
         # Where data colour an actor its own colour is not drawn; SetColor sets all of its colours,
-        # so that of the highlight is put back.
+        # so the highlight's is put back.
         drawn.SetColor(1.0, 1.0, 1.0)
         drawn.SetSpecularColor(*own.GetSpecularColor())
     return Material.from_property(drawn, lights=lights, view=view, model=model)

@@ -145,7 +145,7 @@ class View:
             right = unit(np.cross(up, toward))
             return np.stack([right, np.cross(toward, right), toward])
         up = unit(_across(up, toward[np.newaxis]))
-        # The axis of which most is left gives right, so that its digits do not cancel.
+        # The axis with most left gives right, so that its digits do not cancel.
         sides = [_across(axis, np.stack([toward, up])) for axis in np.eye(n)[:3]]
         right = unit(max(sides, key=lambda side: float(np.linalg.norm(side))))
         # In the first three axes right, up and toward the eye are to be right-handed.

@@ -155,7 +155,7 @@ class Oracle:
         place = _Place(
             normal=up[0] if up else None, frame=frame, base=base,
             wo=self.toward(eye, at)[0], exponent=self._power(len(frame) or n - 1, n, exponent),
-            # A given exponent is that of the tangents: the base then has 1.
+            # A given exponent belongs to the tangents: the base then has 1.
             base_exponent=self._power(len(base), n, exponent if isinstance(exponent, str) else 1),
             shininess=scene.material.shininess, model=model, conditioned=conditioned,
             two_sided=two_sided, fur=fur, fur_height=fur_height,

@@ -545,7 +545,7 @@ def _reference(
     def numbers(rows: ArraySource | None) -> list[float] | None:
         if rows is None:
             return None
-        # Points of a fibre share rows of which there are fewer.
+        # Points of a fibre share rows, which are fewer.
         at = i if rows.shape[0] == count else i // given.repeat
         values: list[float] = np.asarray(rows[at : at + 1], dtype=np.float64).ravel().tolist()
         return values

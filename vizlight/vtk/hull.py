@@ -93,7 +93,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         take.SetNonlinearSubdivisionLevel(1)
     else:
         take = vtkGeometryFilter()
-        # VTK's own name may be that of an array of the mesh, whose surface was taken before.
+        # An array of the mesh may have VTK's own name, whose surface was taken before.
         take.SetOriginalPointIdsName(NUMBERS)
         take.PassThroughPointIdsOn()
     take.SetInputData(numbered)

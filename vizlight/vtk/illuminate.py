@@ -227,7 +227,7 @@ class Illuminate(VTKPythonAlgorithmBase):
             self.prepare()
             arrays, record = self._lit(data, pieces)
         except (TypeError, ValueError) as error:
-            # The light of an earlier run must not stay there as if it were that of this input.
+            # The light of an earlier run must not stay there as if it belonged to this input.
             made.Initialize()
             self._tell("ErrorEvent", str(error))
             return 0
@@ -276,7 +276,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         if not uses_normals(data, options):
             options = dataclasses.replace(options, facing="auto")
         elif pieces > 1:
-            # Which side is the outer one the whole surface tells, of which a piece sees a part.
+            # The whole surface tells the outer side, and a piece sees a part of it.
             if options.facing == "outward":
                 expected = "'eye' or 'as given' where the pipeline runs in several pieces"
                 raise ValueError(_check.message("facing", expected, "'outward'"))

@@ -521,7 +521,7 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     estimate = vtkPCANormalEstimation()
     estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
-    # A plane has no side: each takes that of a neighbour which was turned before.
+    # A plane has no side: each takes the side of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
     found = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))

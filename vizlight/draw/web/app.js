@@ -83,7 +83,7 @@ class App {
     this.saved = from.pop();
     this.state = JSON.parse(this.saved);
     this.lamp = Math.max(0, Math.min(this.lamp, this.lamps.length - 1));
-    // It names the colour, so that the meshes get that of the earlier state.
+    // It names the colour, so that the meshes get the colour they had then.
     this.change({ color: this.state.color }, false);
   }
 

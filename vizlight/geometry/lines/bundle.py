@@ -291,7 +291,7 @@ class Medium:
         # A point with a normal of zero faces no direction: it is not dimmed, rather than 0 / 0.
         sides[~targets.known | (total[1] == 0)] = 1
         share: Array = np.empty_like(sides)
-        # Back from the order of blocks to that of the points.
+        # Back from the order of blocks to the points' own.
         share[order] = sides
         return share
 

@@ -119,7 +119,7 @@ def summed(grid: Array) -> Array:
     # A sum is read at the middle of a voxel, before which half of its own content lies.
     half = grid * np.float32(0.5)
     np.cumsum(grid, axis=2, dtype=np.float32, out=grid)
-    # Before the halves are taken off: the last running sum is that of the whole row.
+    # Before the halves are taken off: the last running sum covers the whole row.
     total = grid[:, :, -1].copy()
     grid -= half
     return total

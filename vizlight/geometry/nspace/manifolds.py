@@ -499,7 +499,7 @@ def _check_sheets(value: Function, shape: Manifold) -> None:
         # By the trapezoidal rule the step is the mean of both slopes times the way.
         step, rises = np.abs(at_b - at_a), (b - a) * slope[ends].T
         rise = np.abs(rises).sum(axis=0) / 2
-        # Negated, since NaN, of which no comparison holds, is odd as well.
+        # Negated, since NaN, for which no comparison holds, is odd as well.
         odd = ~(np.abs(at_b - at_a - rises.sum(axis=0) / 2) <= 0.1 * (step + rise))
         a, b, at_a, at_b, whole = (x[odd] for x in (a, b, at_a, at_b, step + rise))
         if not len(a):

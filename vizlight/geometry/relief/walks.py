@@ -83,7 +83,7 @@ class _Rays:
         # The outermost edges are infinite; the number of inner ones before a place is its cell.
         inner = [np.searchsorted(edges[a][1:-1], place[a], side="right") for a in (0, 1)]
         self.cell = np.stack(inner).astype(np.int32)
-        #: Whether rays run in a plane of nodes, and so beside cells of which one may be empty.
+        #: Whether rays run in a plane of nodes, and so beside two cells, one of them perhaps empty.
         at = np.stack([edges[a][self.cell[a]] for a in (0, 1)])
         self.beside = walls & (way[:2] == 0) & (start[:2] == at)
 

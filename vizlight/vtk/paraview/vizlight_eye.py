@@ -29,7 +29,7 @@ def follow(filters=None, view=None):
     def look(*_):
         camera = view.GetActiveCamera()
         parallel = int(camera.GetParallelProjection())
-        # An eye at infinity is the direction toward it, which is against that of the projection.
+        # An eye at infinity is the direction toward it, which runs against the projection's.
         away = [-x for x in camera.GetDirectionOfProjection()]
         eye = away if parallel else [*camera.GetPosition()]
         late = [one for one in filters if (one.ParallelProjection, [*one.Eye]) != (parallel, eye)]
