@@ -288,8 +288,8 @@ def _path(name: str, value: object) -> Path:
     try:
         path.stat()
     except OSError as error:
-        # Other errors, as of a name that is too long, come from the system; a missing file is told
-        # of later.
+        # The system reports other errors, such as a name that is too long; the check for a missing
+        # file comes later.
         if error.errno not in (errno.ENOENT, errno.ENOTDIR, errno.EACCES):
             got = f"{_check.describe(str(path))} ({error.strerror})"
             raise FileError(_check.message(name, "a path that the system takes", got)) from error

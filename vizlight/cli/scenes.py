@@ -235,7 +235,7 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
         expected = f"an array, {one_of([*arrays])}, or {DIRECTION!r} for lines"
         raise ValueError(message("--scalars", expected, repr(color.scalars)))
     rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
-    # Colours are told from vectors by their type, which is bytes.
+    # The type, bytes, sets colours apart from vectors.
     bytes_ = Step("", "numpy.uint8", rgb)
     return Step("shown", "vizlight.tint", lit, bytes_, light=name, name=TINT), ""
 

@@ -92,7 +92,7 @@ def save(
     _check.iterable("frames", frames, "an iterable of meshes or Panels, or of pictures")
     drawing = _drawing(picture)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
-    # A package that is missing, or a size that does not fit, is told before anything is drawn.
+    # A missing package or a size that does not fit raises an error before anything is drawn.
     writer = _writer(path, fps, drawing["size"])
     known = len(frames) if isinstance(frames, Sized) else 0
     rest: Iterator[Foreign] = iter(frames)

@@ -165,7 +165,7 @@ def refine(
     # Each mesh is refined alone.
     made = [
         refining.refined(own, path, part, fitted, asked.error, asked.max_points)
-        for own, part, (_, path) in zip(taken, parts, blocks.check(whole), strict=True)
+        for own, part, (_, path) in zip(taken, parts, blocks.named_blocks(whole), strict=True)
     ]
     refining.warn_of_rest(made, asked.error)
     fine = with_sky([one.mesh for one in made], asked.occlusion)

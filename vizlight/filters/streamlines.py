@@ -247,7 +247,7 @@ def light_lines(
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
-    mesh = records.averaged(mesh, *_names(options.vectors or ""))
+    mesh = records.averaged(mesh, *_names(options.vectors))
     scene = as_scene(scene)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -493,8 +493,8 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
     return vectors, pair
 
 
-def _names(vectors: Vectors) -> tuple[str, ...]:
-    return (vectors,) if isinstance(vectors, str) else vectors
+def _names(vectors: Vectors | None) -> tuple[str, ...]:
+    return (vectors,) if isinstance(vectors, str) else vectors or ()
 
 
 def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
@@ -520,7 +520,7 @@ def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOpt
     They are sampled from the mesh where the surface lacks them, those without sign as tensors. The
     surface then gets the array that was sampled. A cross field has 6 components.
     """
-    names = _names(options.vectors or "")
+    names = _names(options.vectors)
     if surface is None:
         return np.hstack([_directions(np.asarray(mesh.point_data[name])) for name in names])
     return np.hstack([_on_surface(mesh, surface, name, options) for name in names])

@@ -83,10 +83,7 @@ def source(
 
 def triple(name: str, value: object) -> Array:
     """Return a finite vector of 3 components."""
-    found = _check.vector(name, value)
-    if len(found) != 3:
-        raise ValueError(_check.message(name, "3 components", len(found)))
-    return np.array(found)
+    return np.array(_check.vector(name, value, n=3))
 
 
 def frame(axis: Array, toward: Array | None = None) -> tuple[Array, Array]:

@@ -163,7 +163,7 @@ class SolidCaster:
 
     def __init__(self, mesh: pv.PolyData, scene: Scene, options: CasterOptions) -> None:
         thickness = options.thickness
-        # Whether it is closed is told before its normals are computed; a shell needs them.
+        # An open surface raises its error before normals are computed; a shell is made of these.
         if thickness is None:
             body = closed_meshes.closed(mesh)
         vectors = normals.normals_of(

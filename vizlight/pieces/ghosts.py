@@ -121,11 +121,11 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     index = np.arange(found.n_points)
     known = _Places(places).of(places[mesh.n_points :])
     index[mesh.n_points :] = np.where(known < 0, index[mesh.n_points :], known)
-    own_cells = cell_arrays(found)
+    every = cell_arrays(found)
     # A polyhedron has the points of its faces in an array of its own.
     if isinstance(found, pv.UnstructuredGrid) and (faces := found.GetPolyhedronFaces()) is not None:
-        own_cells.append(faces)
-    for cells in own_cells:
+        every.append(faces)
+    for cells in every:
         # This is VTK's own memory, which is changed in place.
         ids = pv.convert_array(cells.GetConnectivityArray())
         ids[:] = index[ids]

@@ -299,7 +299,7 @@ def decide(
     n, surface = layout.n, layout.k is None
     k = n - 1 if layout.k is None else layout.k
     unseen = scene.view is None
-    scene, diffuse, specular = _needed(scene, layout)
+    scene, diffuse, specular = _needed(scene, n)
     return Plan(
         n=n,
         k=k,
@@ -360,13 +360,13 @@ def _half(light: Light, view: View | None) -> Vector | None:
 
 # A thousand blocks of one scene ask a thousand times.
 @functools.lru_cache(maxsize=16)
-def _needed(scene: Scene, layout: Layout) -> tuple[Scene, bool, bool]:
+def _needed(scene: Scene, n: int) -> tuple[Scene, bool, bool]:
     """Return the scene with a view and the lights that have an effect, and the terms they need."""
     lights = tuple(light for light in scene.lights if light.intensity > 0)
     specular = bool(scene.material.specular > 0 and lights and scene.view is not None)
     diffuse = bool(scene.material.diffuse > 0 and lights)
     # Without a view, what needs an eye all the same, as fur and single points, has it there.
-    view = View.isometric(layout.n) if scene.view is None else scene.view
+    view = View.isometric(n) if scene.view is None else scene.view
     # Lights that follow the view get the place or direction that they have under it.
     fixed = tuple(light.seen_from(view) for light in lights) if diffuse or specular else ()
     return scene.replace(lights=fixed, view=view), diffuse, specular

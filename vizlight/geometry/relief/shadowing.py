@@ -181,9 +181,7 @@ def toward(
         raise ValueError(_check.message("direction, position", "one of them", got))
     name = "direction" if position is None else "position"
     value = direction if position is None else position
-    vector = _check.vector(name, value, direction=position is None)
-    if len(vector) != 3:
-        raise ValueError(_check.message(name, "3 components", len(vector)))
+    vector = _check.vector(name, value, direction=position is None, n=3)
     if position is None:
         # The largest component becomes 1 first, since squares of huge ones would leave float64.
         way = np.array(vector) / max(abs(c) for c in vector)
