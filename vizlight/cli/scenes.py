@@ -220,7 +220,7 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
     """
     from numpy import isfinite
 
-    from vizlight.filters.tint import are_colors
+    from vizlight.vtk.arrays import are_colors
     from vizlight.shading.display import titled
 
     found = data.run()
