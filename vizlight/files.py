@@ -232,9 +232,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         raise FileError(lacking)
 
 
-def _whole(
-    found: Foreign, suffix: str, overlays: Sequence[Path], notes: list[str]
-) -> pv.DataSet:
+def _whole(found: Foreign, suffix: str, overlays: Sequence[Path], notes: list[str]) -> Foreign:
     """Return one upright mesh of what a file of a suffix holds, with the values over it.
 
     What its reader should know is appended to ``notes``.

@@ -32,7 +32,8 @@ def test_an_array_that_a_block_lacks_is_nan_there():
     found = joining.joined([(volume(T=heat), "fluid"), (volume(10), "solid")])
     T = found.grid.point_data["T"]
     np.testing.assert_array_equal(T[:64], volume(T=heat)["T"])
-    assert np.isnan(T[64:]).all() and len(T) == 128
+    assert np.isnan(T[64:]).all()
+    assert len(T) == 128
     assert found.filled == {"T": ["solid"]}
     assert "'T' (solid)" in found.note()
 
@@ -129,7 +130,8 @@ def test_hidden_cells_of_one_block_stay_hidden():
 
 def test_cells_of_highest_dimension_alone():
     mixed = volume().merge(pv.Line((10, 0, 0), (11, 0, 0)))
-    kept = joining.highest([(mixed, "m"), (pv.Sphere(), "s"), (pv.ImageData(dimensions=(2, 2, 2)), "i")])
+    image = pv.ImageData(dimensions=(2, 2, 2))
+    kept = joining.highest([(mixed, "m"), (pv.Sphere(), "s"), (image, "i")])
     assert [name for _, name in kept] == ["m", "i"]
     assert kept[0][0].n_cells == 27
     lone = [(pv.PolyData(), ""), (pv.PointSet(np.zeros((2, 3))), "")]

@@ -17,7 +17,7 @@ from vizlight.vtk.hull import cell_types, dimension
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import AnyArray, Foreign, Indices
+    from vizlight._types import AnyArray, Foreign, RawType
 
 #: Value of a colour of bytes where a dataset has none, mid grey.
 GREY = 128
@@ -232,8 +232,8 @@ def _form(rows: AnyArray) -> tuple[bool, tuple[int, ...]]:
 
 
 def _filling(
-    name: str, kinds: Sequence[np.dtype], form: tuple[bool, tuple[int, ...]], *, whole: bool
-) -> tuple[np.dtype, object]:
+    name: str, kinds: Sequence[RawType], form: tuple[bool, tuple[int, ...]], *, whole: bool
+) -> tuple[RawType, object]:
     """Return the type that holds all rows and what stands where there are none."""
     kind = np.result_type(*kinds)
     if not form[0]:

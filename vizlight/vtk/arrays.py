@@ -239,7 +239,8 @@ def _explicit(mesh: Dataset) -> Dataset:
     append = vtkAppendFilter()
     append.SetInputData(only)
     append.Update()
-    return append.GetOutput()
+    found: vtkUnstructuredGrid = append.GetOutput()
+    return found
 
 
 def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:
