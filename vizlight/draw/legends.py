@@ -17,7 +17,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from vizlight.filters.key import NAMES, RANGE, WORDS
+from vizlight.filters.key import NAMES, RANGE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
 
@@ -221,7 +221,8 @@ class MarginKey:
         """Return the width and height in pixels that the key takes at a size of letters."""
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        self._lines = textwrap.wrap(self._title, columns, break_long_words=True)
+        parts = [textwrap.wrap(part, columns) for part in self._title.splitlines()]
+        self._lines = [line for part in parts for line in part]
         below = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
             return min(2 * self._half, width), 2 * self._half + below
@@ -281,9 +282,9 @@ def data_share(size: tuple[int, int], key: float) -> tuple[float, float]:
 
 def _marks(mesh: pv.PolyData, words: list[str]) -> tuple[list[tuple[float, str]], str]:
     """Return the words along a bar with their shares of its height, and the title of a key."""
+    title = str(mesh.field_data[TITLE][0]) if TITLE in mesh.field_data else ""
     if len(words) == 1:
-        return [], words[0]
-    title = words[1] if len(words) > 2 else ""
+        return [], f"{title}\n{words[0]}" if title else words[0]
     if NAMES in mesh.field_data:
         names = [str(name) for name in mesh.field_data[NAMES]]
         return [((i + 0.5) / len(names), name) for i, name in enumerate(names)], title

@@ -32,6 +32,8 @@ Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
 WORDS = "words"
 #: Names of the field arrays with the range of a bar of values, and the names of kinds.
 RANGE, NAMES = "range", "names"
+#: Name of the field array with what the whole key is about.
+TITLE = "title"
 #: Words beside the key of each question: below it, or at the two ends of a bar.
 TEXTS: dict[str, tuple[str, ...]] = {
     "direction": ("direction on the screen",),
@@ -83,7 +85,7 @@ def key(
     clim : (float, float), optional
         Values at the ends of that map, which become its words. Default: the ends of a lookup table.
     title : str, optional
-        What the values are, which stands above the bar.
+        What the values are, which stands above a bar, or what the light shows.
 
     Returns
     -------
@@ -122,8 +124,9 @@ def key(
         if clim is not None:
             made.field_data[RANGE] = _check.vector("clim", clim)
             words = numerals(made.field_data[RANGE])
-        words[1:1] = [_check.text("title", title)] if title else []
     made.field_data[WORDS] = words
+    if title:
+        made.field_data[TITLE] = [_check.text("title", title)]
     return made
 
 

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 SPACING = 1 / 40
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
+#: Colour map where nothing is lit, and the colour of what is missing there.
+LIGHTNESS, MISSING = "viridis", "#d9d9d9"
 #: Eye above a map.
 ABOVE = Eye((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
 #: Number of streamlines of a volume.
@@ -172,6 +174,16 @@ class Case:
         """Return the step that lights the points of a mesh."""
         return self.wishes.lit(mesh, scene, light)
 
+    def bar(self, array: Named, colors: Keywords) -> Keywords:
+        """Return the keywords of the key of an array that is shown in colours."""
+        mesh = self.data.run()
+        bar: Keywords = {"question": "value", "title": titled(mesh, array.name)}
+        if "cmap" in colors:
+            bar["cmap"] = colors["cmap"]
+        if array.role != "kinds":
+            bar["clim"] = colors.get("clim") or _range(mesh, array.name)
+        return bar
+
     @property
     def width(self) -> float:
         """Least width of lines, in pixels."""
@@ -186,14 +198,18 @@ def values(case: Case) -> Drawing:
     camera = case.camera(mesh)
     scene = case.scene(camera)
     keywords = case.wishes.colors
+    if case.question == "none":
+        # Nothing is lit: the map may run in lightness, which shows more than hues alone.
+        keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
     if array.role == "kinds":
-        keywords = _kinds(mesh, array, keywords)
+        mesh = _kept(mesh, array, case)
+        keywords = _kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":
         keywords = {"rgb": True}
     light = case.wishes.light_of_surface()
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords, **light}
     lit = case.lit(mesh, scene, **light)
-    keys = [] if array.role == "colors" else [{"question": "value"}]
+    keys = [] if array.role == "colors" else [case.bar(array, keywords)]
     return Drawing([Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys)
 
 
@@ -207,7 +223,10 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, "color": "white", **light}
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [{"scene": scene}])
+    key: Keywords = {"scene": scene}
+    if name and case.wishes.part.get("level") is not None:
+        key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key])
 
 
 def relief(case: Case) -> Drawing:
@@ -225,7 +244,7 @@ def relief(case: Case) -> Drawing:
         return _share(case, lit, camera, scene, f"shadow on {array.name}", "t", notes)
     colors = {"cmap": "gist_earth"} | case.wishes.colors
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
-    keys = [{"question": "value"}]
+    keys = [case.bar(array, colors)]
     layer = Layer(shown, {"show_scalar_bar": False})
     return Drawing(
         [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=data, name="t",
@@ -375,7 +394,7 @@ def vectors(case: Case) -> Drawing:
     if lines is not None:
         dark = {"color": "black", "opacity": 0.55, "line_width": case.width, "lighting": False}
         layers.append(Layer(lines, dark, live=False))
-    keys = [{"scene": scene}]
+    keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys)
 
 
@@ -399,7 +418,8 @@ def flow(case: Case) -> Drawing:
         Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False),
     ]
     words = f"streamlines of {array.name}"
-    return Drawing(layers, camera, scene, lit, words, [{"scene": scene}])
+    key = {"scene": scene, "title": titled(mesh.run(), array.name)}
+    return Drawing(layers, camera, scene, lit, words, [key])
 
 
 def isosurface(case: Case) -> Drawing:
@@ -414,7 +434,9 @@ def isosurface(case: Case) -> Drawing:
     words = f"isosurface {array.name} = {levels.number(level)}"
     second = contents.first("values", "kinds")
     if second is None or case.wishes.question == "shape":
-        drawing = surface(replace(case, data=mesh, contents=contents, question="shape"))
+        wishes = replace(case.wishes, part=part)
+        shape = replace(case, data=mesh, contents=contents, question="shape", wishes=wishes)
+        drawing = surface(shape)
     else:
         shown = replace(case, data=mesh, contents=contents, question="value", array=second)
         drawing = values(shown)
@@ -431,16 +453,14 @@ def slices(case: Case, contrast: float) -> Drawing:
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
     camera = case.camera(mesh)
     scene = case.wishes.scene("none", camera)
-    shown = {
-        "scene": scene, "scalars": array.name, "show_scalar_bar": False,
-        **case.wishes.colors,
-    }  # fmt: skip
+    colors = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = (
         f"three slices of {array.name}; no isosurface stands out "
         f"(the steepest is {contrast:.1f} times the mean)"
     )
-    return Drawing([Layer(mesh, shown)], camera, scene, lit, words, [{"question": "value"}])
+    return Drawing([Layer(mesh, shown)], camera, scene, lit, words, [case.bar(array, colors)])
 
 
 def lines(case: Case) -> Drawing:
@@ -460,7 +480,8 @@ def lines(case: Case) -> Drawing:
     if case.question == "value":
         array = _array(case)
         drawn |= {"scalars": array.name, "show_scalar_bar": False} | case.wishes.colors
-        keys, words = [{"question": "value"}], f"lines in the colours of {array.name}"
+        keys = [case.bar(array, case.wishes.colors)]
+        words = f"lines in the colours of {array.name}"
     lit = case.lit(mesh, scene, **light)
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys)
 
@@ -473,10 +494,19 @@ def points(case: Case) -> Drawing:
     drawn: Keywords = {"render_points_as_spheres": True, "point_size": 6.0}
     keys: list[Keywords] = []
     words = "points"
-    if case.array is not None and case.array.role != "vectors":
-        drawn |= {"scalars": case.array.name, "show_scalar_bar": False}
-        drawn |= case.wishes.colors
-        keys, words = [{"question": "value"}], f"points in the colours of {case.array.name}"
+    array = case.array
+    if array is not None and array.role != "vectors":
+        drawn |= {"scalars": array.name, "show_scalar_bar": False}
+        words = f"points in the colours of {array.name}"
+        if array.role == "colors":
+            drawn["rgb"] = True
+        else:
+            colors = {"cmap": LIGHTNESS} | case.wishes.colors
+            if array.role == "kinds":
+                colors = _kinds(mesh, array, case.wishes.colors)
+            drawn |= colors
+            # No light follows these points, so the key is that of the scene and its colours.
+            keys = [case.bar(array, colors) | {"scene": scene}]
     lit = case.lit(mesh, scene)
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys)
 
@@ -494,6 +524,29 @@ def _array(case: Case) -> Named:
         expected = f"the name of an array, {one_of(known)}"
         raise ValueError(message("array", expected, None))
     return case.array
+
+
+def titled(mesh: pv.DataSet, name: str) -> str:
+    """Return the name of an array with its unit, where the mesh says it."""
+    unit = meaning.unit_of(mesh, name)
+    return f"{name} [{unit}]" if unit else name
+
+
+def _range(mesh: pv.DataSet, name: str) -> tuple[float, float]:
+    """Return the ends of the finite values of an array."""
+    values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
+    finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    return float(finite.min()), float(finite.max())
+
+
+def _kept(mesh: Step, array: Named, case: Case) -> Step:
+    """Return the step that leaves out the ground of a volume of kinds, which is 0."""
+    if case.contents.dimension < 3 or case.contents.flat_axis is not None or array.low != 0:
+        return mesh
+    kept = Step("kept", ".threshold", case.data, 0.5, scalars=array.name)
+    if not kept.run().n_cells:
+        return mesh
+    return Step("surface", "files.surface_of", kept)
 
 
 def _kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
