@@ -190,7 +190,8 @@ def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list
     from vizlight import files
 
     paths: list[Path] = []
-    suffix = look.drawing.suffix()
+    # Light at all points of a volume is for a file that is named.
+    suffix = look.drawing.suffix() if look.wishes.surface else ""
     for path in out.output or ([] if out.paraview else [Path()]):
         endings = (suffix, ".png") if suffix else (".png",)
         paths += [path / f"{stem}{end}" for end in endings] if path.is_dir() else [path]

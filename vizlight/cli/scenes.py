@@ -87,7 +87,7 @@ def wishes_of(
     )
     view = _view_of(eye.view, scene, seen)
     return Wishes(
-        question=lights.question or question,
+        question=(lights.question or "auto") if question == "auto" else question,
         array=array,
         view=view,
         size=options.pixels(out.size),
@@ -189,7 +189,7 @@ def _scene_maker(
             fresh = known(**vars(base.material)) if changes else {}
             keep_view = base.view is not None
         else:
-            scene = plain_scene(question, view, camera, n)
+            scene = plain_scene(lights.question or question, view, camera, n)
             keep_view = True
             if changes and not fresh:
                 fresh = known(**vars(scene.run().material))

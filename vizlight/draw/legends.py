@@ -7,7 +7,6 @@ import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkRenderingCore import (
     vtkActor2D,
@@ -22,6 +21,7 @@ from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
+    import pyvista as pv
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 
     from vizlight._types import Array, Color, Keywords
@@ -231,9 +231,7 @@ class MarginKey:
         bar = 2 * BAR_WIDE * self._half
         return bar + (0.6 + LETTER * longest) * letters, tall + letters + below
 
-    def draw(
-        self, middle: tuple[float, float], box: tuple[float, float], letters: float
-    ) -> None:
+    def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""
         x, y = middle
         size = max(round(letters), 8)
@@ -247,14 +245,14 @@ class MarginKey:
             low, left = y - box[1] / 2 + letters / 2, x - box[0] / 2
             bar = 2 * BAR_WIDE * self._half
             flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
-            self._move(flat + (left + bar / 2, low + tall / 2, 0))
+            self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
             for label, (share, _) in zip(self._labels, self._marks, strict=True):
                 label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
             self._heading.SetPosition(x, y + box[1] / 2 - words)
             return
         self._heading.SetPosition(x, y - box[1] / 2)
         top = y + box[1] / 2
-        self._move(self._flat * self._half + (x, top - self._half, 0))
+        self._move(self._flat * self._half + np.array([x, top - self._half, 0]))
 
     def _move(self, places: Array) -> None:
         moved = vtkPoints()

@@ -123,7 +123,7 @@ def key(
             made.field_data[NAMES] = names
         if clim is not None:
             made.field_data[RANGE] = _check.vector("clim", clim)
-            words = numerals(made.field_data[RANGE])
+            words = numerals(_check.vector("clim", clim))
     made.field_data[WORDS] = words
     if title:
         made.field_data[TITLE] = [_check.text("title", title)]
@@ -132,11 +132,22 @@ def key(
 
 def _names_of(cmap: ColorMap) -> list[str]:
     """Return the names of the kinds of a lookup table, in the order of their numbers."""
+    return [name for _, name in _annotated(cmap)]
+
+
+def _annotated(cmap: ColorMap) -> list[tuple[float, str]]:
+    """Return the numbers and the names of the kinds of a lookup table, in their order."""
     import pyvista as pv
 
-    if not isinstance(cmap, pv.LookupTable) or not cmap.annotations:
+    if not isinstance(cmap, pv.LookupTable):
         return []
-    return [str(name) for _, name in sorted(cmap.annotations.items())]
+    count = cmap.GetNumberOfAnnotatedValues()
+    # A table of names alone has no numbers, and PyVista's own look-up fails at it.
+    names = cmap.GetAnnotations()
+    if not count or names is None or names.GetNumberOfValues() < count:
+        return []
+    rows = range(count)
+    return sorted((cmap.GetAnnotatedValue(i).ToDouble(), cmap.GetAnnotation(i)) for i in rows)
 
 
 def question_of(scene: Scene) -> Question:
@@ -223,9 +234,9 @@ def colors_of(
     seen = _in_frame_of_eye(scene)
     if question == "value":
         table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
-        if _names_of(cmap):
+        if _annotated(cmap):
             # One swatch for each kind, whatever the gaps between their numbers.
-            kinds = np.array(sorted(cmap.annotations))
+            kinds = np.array([number for number, _ in _annotated(cmap)])
             table = table[np.rint(kinds - cmap.scalar_range[0] - 0.5).astype(int)]
         at = np.minimum(((x + 1) / 2 * len(table)).astype(int), len(table) - 1)
         # The bar runs from the least light below to full light above.

@@ -221,8 +221,11 @@ class Look:
         background = wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, **keywords)
         steps = [layer.added(plotter) for layer in drawing.layers]
+        near = any(light.position is not None for light in self.scene.lights)
         if wishes.picture.get("key", True):
-            steps += [_key_step(plotter, key) for key in drawing.keys]
+            # The key of a lamp that stands somewhere differs from place to place.
+            keys = [key for key in drawing.keys if not near or key.get("question") == "value"]
+            steps += [_key_step(plotter, key) for key in keys]
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps
 

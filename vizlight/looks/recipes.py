@@ -16,6 +16,7 @@ import pyvista as pv
 from vizlight._words import message, one_of
 from vizlight.files import FORMATS
 from vizlight.filters.fur import LENGTH
+from vizlight.filters.tint import RGB
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.framing import Eye, eye_of
@@ -207,7 +208,8 @@ def values(case: Case) -> Drawing:
     elif array.role == "colors":
         keywords = {"rgb": True}
     light = case.wishes.light_of_surface()
-    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords, **light}
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
+    shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
     return Drawing([Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys)
@@ -222,11 +224,11 @@ def surface(case: Case) -> Drawing:
     lit = case.lit(mesh, scene, **light)
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
-    drawn = {"scene": scene, "color": "white", **light}
+    drawn = {"scene": scene, "color": "white", **case.wishes.drawn(light)}
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key])
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key], kind=mesh)
 
 
 def relief(case: Case) -> Drawing:
@@ -320,9 +322,9 @@ def projection(case: Case) -> Drawing:
     return Drawing([layer], camera, scene, lit, "projection", kind=lit, name=name)
 
 
-def _unlit(lit: Step, scene: Step, name: str) -> Layer:
+def _unlit(lit: Step, scene: Step, name: str, **drawing: object) -> Layer:
     """Return the layer of a light that was computed at the points, drawn as it is."""
-    drawn: Keywords = {"lighting": False, "show_scalar_bar": False}
+    drawn: Keywords = {"lighting": False, "show_scalar_bar": False, **drawing}
     if scene.run().colored:
         return Layer(lit, {"scalars": part_name(name, "rgb"), "rgb": True, **drawn}, live=False)
     return Layer(lit, {"scalars": name, "cmap": "gray", "clim": (0.0, 1.0), **drawn}, live=False)
@@ -389,13 +391,13 @@ def vectors(case: Case) -> Drawing:
     scene = case.scene(camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     lit = case.lit(mesh, scene, **light)
-    layers = [Layer(mesh, {"scene": scene, **light})]
+    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
     lines = _lines_on(mesh, scene, array)
     if lines is not None:
         dark = {"color": "black", "opacity": 0.55, "line_width": case.width, "lighting": False}
         layers.append(Layer(lines, dark, live=False))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
-    return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys)
+    return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
 
 
 def flow(case: Case) -> Drawing:
@@ -413,8 +415,13 @@ def flow(case: Case) -> Drawing:
     camera = case.camera(on if keywords.get("confined") else mesh)
     scene = case.scene(camera)
     lit = case.wishes.step("lit", "streamlines", mesh, scene, **keywords)
+    lines = Layer(lit, {"scene": scene, "line_width": case.width})
+    if "surface" in keywords:
+        # The surface that conditions the light of the lines is not drawn with them.
+        name = str(keywords.get("name", "luminance"))
+        lines = _unlit(lit, scene, name, line_width=case.width)
     layers = [
-        Layer(lit, {"scene": scene, "line_width": case.width}),
+        lines,
         Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False),
     ]
     words = f"streamlines of {array.name}"
@@ -469,21 +476,25 @@ def lines(case: Case) -> Drawing:
     camera = case.camera(mesh)
     scene = case.scene(camera)
     light = dict(case.wishes.light)
-    drawn: Keywords = {"scene": scene, "line_width": case.width, **light}
+    drawn: Keywords = {"scene": scene, "line_width": case.width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words = "lines by their heading"
     if case.wishes.picture.get("scalars") == DIRECTION:
         lit = case.lit(mesh, scene, **light)
         shown = _by_direction(lit)
-        width = {"line_width": case.width}
-        return Drawing([Layer(shown, width)], camera, scene, lit, "lines by their direction")
+        by_direction = {"scalars": RGB, "rgb": True, "lighting": False, "line_width": case.width}
+        layers = [Layer(shown, by_direction, live=False)]
+        return Drawing(layers, camera, scene, lit, "lines by their direction", kind=mesh)
     if case.question == "value":
         array = _array(case)
-        drawn |= {"scalars": array.name, "show_scalar_bar": False} | case.wishes.colors
-        keys = [case.bar(array, case.wishes.colors)]
+        colors = case.wishes.colors
+        if array.role == "kinds":
+            colors = _kinds(mesh, array, colors)
+        drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
+        keys = [case.bar(array, colors)]
         words = f"lines in the colours of {array.name}"
     lit = case.lit(mesh, scene, **light)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys)
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
 
 
 def points(case: Case) -> Drawing:
@@ -508,7 +519,7 @@ def points(case: Case) -> Drawing:
             # No light follows these points, so the key is that of the scene and its colours.
             keys = [case.bar(array, colors) | {"scene": scene}]
     lit = case.lit(mesh, scene)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys)
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
 
 
 def _by_direction(lit: Step) -> Step:
@@ -528,8 +539,7 @@ def _array(case: Case) -> Named:
 
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its unit, where the mesh says it."""
-    unit = meaning.unit_of(mesh, name)
-    return f"{name} [{unit}]" if unit else name
+    return name
 
 
 def _range(mesh: pv.DataSet, name: str) -> tuple[float, float]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight._words import message
+from vizlight.draw.keywords import LIGHT
 from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
@@ -206,6 +207,10 @@ class Wishes:
     def light_of_surface(self) -> Keywords:
         """Return the options of light of a surface, whose creases are seen as creases."""
         return {"feature_angle": "auto"} | dict(self.light)
+
+    def drawn(self, light: Mapping[str, object]) -> Keywords:
+        """Return those options of light that a plotter takes."""
+        return {name: value for name, value in light.items() if name in LIGHT}
 
     def lit(self, mesh: Step, scene: Step, light: Mapping[str, object]) -> Step:
         """Return the step that lights the points of a mesh, or refines it until they suffice."""
