@@ -169,21 +169,8 @@ def read(
     path = _path("file", path)
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
     overlays = [_path("overlay", one) for one in given]
-    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
-        if what := no_file(one):
-            remedy = ""
-            if (one / "constant").is_dir():
-                case = one / f"{one.resolve().name}.foam"
-                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
-            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
-    if not os.access(path, os.R_OK):
-        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
-    # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
-    # none.
-    if str(path).encode("utf-8", "replace") != os.fsencode(path):
-        expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
-        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
-    reason, mesh = "no points", None
+    _check_there(path, overlays)
+    reason, mesh, notes = "no points", None, list[str]()
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
@@ -195,7 +182,7 @@ def read(
             for block in blocks.all_blocks(found):
                 # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
-            mesh = _whole(found, path.suffix.lower(), overlays, time)
+            mesh = _whole(found, path.suffix.lower(), overlays, time, notes)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -215,12 +202,29 @@ def read(
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
-    if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
-        _check.warn(
-            f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
-            f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
-        )
+    if isinstance(found, pv.MultiBlock):
+        notes += _left_out(found, mesh)
+    if notes:
+        _check.warn(f"file: '{path}': {'; '.join(notes)}")
     return mesh
+
+
+def _check_there(path: Path, overlays: Sequence[Path]) -> None:
+    """Check that a file and those over it are there and can be opened."""
+    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
+        if what := no_file(one):
+            remedy = ""
+            if (one / "constant").is_dir():
+                case = one / f"{one.resolve().name}.foam"
+                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
+    if not os.access(path, os.R_OK):
+        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
+    # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
+    # none.
+    if str(path).encode("utf-8", "replace") != os.fsencode(path):
+        expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
+        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
 
 
 def no_file(path: Path) -> str:
@@ -251,9 +255,18 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         raise FileError(lacking)
 
 
-def _whole(found: Foreign, suffix: str, overlays: Sequence[Path], time: object) -> Foreign:
-    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
-    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+def _whole(
+    found: Foreign, suffix: str, overlays: Sequence[Path], time: object, notes: list[str]
+) -> Foreign:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it.
+
+    What its reader should know is appended to ``notes``.
+    """
+    mesh = found
+    if isinstance(found, pv.MultiBlock):
+        joined = blocks.highest(found)
+        mesh = joined.grid
+        notes += [note] if (note := joined.note()) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
@@ -270,6 +283,11 @@ def _whole(found: Foreign, suffix: str, overlays: Sequence[Path], time: object) 
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _arrays(mesh: pv.DataSet) -> set[str]:
+    """Return the names of the arrays of a mesh, but for VTK's own, such as numbers of points."""
+    return {name for name in (*mesh.point_data, *mesh.cell_data) if not name.startswith("vtk")}
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
@@ -354,17 +372,23 @@ def _by_vtk(path: Path) -> pv.DataObject:
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
-def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
-    """Return the names of blocks that are not in a grid and are no side sets of it."""
+def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> list[str]:
+    """Return a note on blocks that are not in a grid, or on the arrays that only they have."""
     kept = grid.distinct_cell_types
     lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
     # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
-    return ", ".join(
+    names = ", ".join(
         path.lstrip("/")
         for block, path in lower
         if not np.isin(place_numbers(np.asarray(block.points)), there).all()
     )
+    if names:
+        said = "blocks whose cells are of a lower dimension than other blocks', "
+        way = "light pyvista.read(...) to keep all blocks"
+        return [f"{said}which are left out: {names}; {way}"]
+    lost = {name for block, _ in lower for name in _arrays(block)} - _arrays(grid)
+    return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
 
 
 class _Messages:
