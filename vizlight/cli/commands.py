@@ -33,7 +33,7 @@ from vizlight.cli.options import (
     words,
 )
 from vizlight.cli.output import OK, complain, draw, say
-from vizlight.cli.script import Step, source
+from vizlight.looks.steps import Step, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

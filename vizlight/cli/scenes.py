@@ -11,7 +11,7 @@ import vizlight
 from vizlight._words import message, one_of
 from vizlight.cli import options
 from vizlight.cli.options import Shape
-from vizlight.cli.script import Step
+from vizlight.looks.steps import Step
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
