@@ -12,7 +12,8 @@ from __future__ import annotations
 import argparse
 import contextlib
 import csv
-import os
+import importlib
+import multiprocessing
 import subprocess
 import sys
 import time
@@ -33,7 +34,7 @@ SCRIPT = 2
 KINDS = 100
 SIZE = (1200, 800)
 #: Seconds for one file.
-LIMIT = 300
+LIMIT = 150
 #: Rows of a contact sheet, and size of a picture in it.
 ROWS, THUMB = 6, (600, 400)
 #: Columns of the table; times are of the processor.
@@ -235,22 +236,34 @@ def contact_sheet(stems, rows, path):
     sheet.save(path)
 
 
+def _forked(function, *values):
+    """Call a function in a fork of this process, and return what went wrong, in words."""
+    process = multiprocessing.get_context("fork").Process(target=function, args=values)
+    process.start()
+    process.join(LIMIT)
+    if process.exitcode is None:
+        process.kill()
+        process.join()
+        return f"more than {LIMIT} s"
+    return f"exit code {process.exitcode}" if process.exitcode else ""
+
+
 def _arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", type=Path, help="files, or folders of files")
     parser.add_argument("--out", type=Path, default=Path("first_pictures"))
     parser.add_argument("--figures", action="store_true", help="what a reader reads back")
     parser.add_argument("--scripts", action="store_true", help="run the script of each picture")
-    parser.add_argument("--alone", help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
 def main():
-    """Draw the files that are named, each in a process of its own."""
+    """Draw the files that are named, each in a fork of this process."""
     arguments = _arguments()
-    if arguments.alone:
-        alone(arguments.files[0], arguments.alone, arguments)
-        return
+    # What every file needs is imported once, before the forks.
+    for name in ("xarray", "meshio", "scipy.spatial", "vizlight.looks.look", "vizlight.draw.live"):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     arguments.out.mkdir(parents=True, exist_ok=True)
     files = [
         path
@@ -259,22 +272,14 @@ def main():
         if path.is_file()
     ]
     stems, rows = [], []
-    options = [f"--{name}" for name in ("figures", "scripts") if getattr(arguments, name)]
     for path in files:
         stem = str(arguments.out / path.name)
         for old in arguments.out.glob(f"{path.name}.*"):
             old.unlink()
-        command = [sys.executable, __file__, str(path), "--alone", stem, *options]
-        code: int | str = ""
-        try:
-            code = subprocess.run(
-                command, check=False, timeout=LIMIT, env=os.environ, stderr=subprocess.DEVNULL
-            ).returncode
-        except subprocess.TimeoutExpired:
-            code = f"more than {LIMIT} s"
+        code = _forked(alone, path, stem, arguments)
         row = kept(stem) | {"file": path.name}
         if code:
-            row["error"] = f"{row['error']} (exit code {code})".strip()
+            row["error"] = f"{row['error']} ({code})".strip()
         stems.append(stem)
         rows.append(row)
         state = {True: "changes", False: "FAILS", None: "no data"}[verdict(row)]
