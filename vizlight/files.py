@@ -165,7 +165,7 @@ def read(
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
         expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
         raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
-    reason, mesh = "no points", None
+    reason, mesh, notes = "no points", None, list[str]()
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
@@ -177,7 +177,7 @@ def read(
             for block in blocks.all_blocks(found):
                 # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
-            mesh = _whole(found, path.suffix.lower(), overlays)
+            mesh = _whole(found, path.suffix.lower(), overlays, notes)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -197,11 +197,10 @@ def read(
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
-    if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
-        _check.warn(
-            f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
-            f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
-        )
+    if isinstance(found, pv.MultiBlock):
+        notes += _left_out(found, mesh)
+    if notes:
+        _check.warn(f"file: '{path}': {'; '.join(notes)}")
     return mesh
 
 
@@ -233,9 +232,16 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         raise FileError(lacking)
 
 
-def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
-    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
-    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+def _whole(found: Foreign, suffix: str, overlays: Sequence[Path], notes: list[str]) -> Foreign:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it.
+
+    What its reader should know is appended to ``notes``.
+    """
+    mesh = found
+    if isinstance(found, pv.MultiBlock):
+        joined = blocks.highest(found)
+        mesh = joined.grid
+        notes += [note] if (note := joined.note()) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
@@ -249,6 +255,11 @@ def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _arrays(mesh: pv.DataSet) -> set[str]:
+    """Return the names of the arrays of a mesh, but for VTK's own, such as numbers of points."""
+    return {name for name in (*mesh.point_data, *mesh.cell_data) if not name.startswith("vtk")}
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
@@ -328,17 +339,23 @@ def _by_vtk(path: Path) -> pv.DataObject:
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
-def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
-    """Return the names of blocks that are not in a grid and are no side sets of it."""
+def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> list[str]:
+    """Return a note on blocks that are not in a grid, or on the arrays that only they have."""
     kept = grid.distinct_cell_types
     lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
     # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
-    return ", ".join(
+    names = ", ".join(
         path.lstrip("/")
         for block, path in lower
         if not np.isin(place_numbers(np.asarray(block.points)), there).all()
     )
+    if names:
+        said = "blocks whose cells are of a lower dimension than other blocks', "
+        way = "light pyvista.read(...) to keep all blocks"
+        return [f"{said}which are left out: {names}; {way}"]
+    lost = {name for block, _ in lower for name in _arrays(block)} - _arrays(grid)
+    return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
 
 
 class _Messages:

@@ -220,8 +220,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
     """
     from numpy import isfinite
 
-    from vizlight.filters.tint import are_colors
     from vizlight.shading.display import titled
+    from vizlight.vtk.arrays import are_colors
 
     found = data.run()
     arrays = {**found.cell_data, **found.point_data}

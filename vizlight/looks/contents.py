@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from vizlight.filters.tint import are_colors
 from vizlight.mesh import records
+from vizlight.vtk.arrays import are_colors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
