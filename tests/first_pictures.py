@@ -14,6 +14,7 @@ import contextlib
 import csv
 import importlib
 import multiprocessing
+import re
 import subprocess
 import sys
 import time
@@ -30,6 +31,12 @@ import vizlight
 PIXEL, PICTURE = 8, 0.005
 #: Largest difference of 255 between a picture and what its script draws.
 SCRIPT = 2
+#: Names of arrays that are no data.
+BOOKKEEPING = re.compile(
+    r"^(vtk|TCoords|TEXCOORD|Texture|GroupIds|MaterialIds|vizlight_)|normals?$|^gmsh:(dim|geom)"
+    r"|^(point|cell|node|element)?_?ids?$|^Original.*Ids$",
+    re.IGNORECASE,
+)
 #: Most different whole numbers that are kinds.
 KINDS = 100
 SIZE = (1200, 800)
@@ -39,18 +46,19 @@ LIMIT = 150
 ROWS, THUMB = 6, (600, 400)
 #: Columns of the table; times are of the processor.
 COLUMNS = (
-    "file", "question", "shown", "array", "changes", "pyvista", "script", "read_s", "decision_s",
-    "look_s", "pyvista_s", "decision_share", "figures", "reason", "error", "script_error",
+    "file", "question", "shown", "array", "changes", "moved", "pyvista", "script", "read_s",
+    "decision_s", "look_s", "pyvista_s", "decision_share", "figures", "reason", "error",
+    "script_error",
 )  # fmt: skip
 
 
-def changed(mesh):
-    """Return a mesh with other data, and the number of arrays that differ."""
+def changed(mesh, *, moved=False):
+    """Return a mesh with other data, or its own in reverse order, and the number of new arrays."""
     if isinstance(mesh, pv.MultiBlock):
         blocks = pv.MultiBlock()
         counts = 0
         for name in mesh.keys():  # noqa: SIM118 : blocks without a name have a key too
-            block, count = (None, 0) if mesh[name] is None else changed(mesh[name])
+            block, count = (None, 0) if mesh[name] is None else changed(mesh[name], moved=moved)
             blocks.append(block, name)
             counts += count
         return blocks, counts
@@ -59,11 +67,9 @@ def changed(mesh):
         active = before.active_scalars_name
         for name in before:
             values = np.asarray(before[name])
-            if name.lower().startswith("vtk") or "normal" in name.lower():
+            if BOOKKEEPING.search(name) or values.dtype.kind not in "fiub" or not values.size:
                 continue
-            if values.dtype.kind not in "fiub" or not values.size:
-                continue
-            new = _other(values, mesh)
+            new = values[::-1].copy() if moved else _other(values, mesh)
             count += not np.array_equal(new, values, equal_nan=values.dtype.kind == "f")
             after[name] = new
         if active is not None:
@@ -125,7 +131,7 @@ def _clock(row, name):
 
 def plain(mesh, path):
     """Draw a mesh as ``pyvista.plot`` does."""
-    mesh.plot(off_screen=True, screenshot=path, window_size=SIZE, show=True)
+    mesh.plot(off_screen=True, screenshot=path, window_size=SIZE)
 
 
 def ours(path, stem, row, *, figures=False, scripts=False, size=SIZE):
@@ -144,6 +150,10 @@ def ours(path, stem, row, *, figures=False, scripts=False, size=SIZE):
     if count:
         vizlight.look(other, size=size).save(f"{stem}.other.png")
         row["changes"] = f"{share(f'{stem}.ours.png', f'{stem}.other.png'):.4f}"
+        if not verdict(row):
+            # The surface of a value stays where it is when values are reversed.
+            vizlight.look(changed(mesh, moved=True)[0], size=size).save(f"{stem}.moved.png")
+            row["moved"] = f"{share(f'{stem}.ours.png', f'{stem}.moved.png'):.4f}"
     else:
         row["changes"] = "no data"
     if figures:
@@ -283,7 +293,7 @@ def main():
         stems.append(stem)
         rows.append(row)
         state = {True: "changes", False: "FAILS", None: "no data"}[verdict(row)]
-        facts = [row[name] for name in ("question", "shown", "array", "changes", "pyvista")]
+        facts = [row[name] for name in COLUMNS[1:7]]
         print(f"{path.name}: {state}: {', '.join(facts)} {row['error']}", flush=True)
     with (arguments.out / "first_pictures.tsv").open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, delimiter="\t")
