@@ -202,6 +202,8 @@ def alone(path, stem, arguments):
     except Exception as error:  # noqa: BLE001
         row["error"] = " ".join(f"{type(error).__name__}: {error}".split())[:300]
     _keep(stem, row)
+    if arguments.ours:
+        return
     try:
         pyvistas(path, stem, row)
     except Exception as error:  # noqa: BLE001
@@ -262,6 +264,7 @@ def _arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", type=Path, help="files, or folders of files")
     parser.add_argument("--out", type=Path, default=Path("first_pictures"))
+    parser.add_argument("--ours", action="store_true", help="leave plain PyVista out")
     parser.add_argument("--figures", action="store_true", help="what a reader reads back")
     parser.add_argument("--scripts", action="store_true", help="run the script of each picture")
     return parser.parse_args()
