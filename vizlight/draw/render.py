@@ -22,7 +22,7 @@ from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.dialects import widen
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
-from vizlight.draw.legends import CornerKey, ink_on, name_no_data
+from vizlight.draw.legends import ink_on, name_no_data
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -180,8 +180,7 @@ def make_plotter(
         (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene that is
         exported to a page needs "points", because the page has no such shaders.
     key : pyvista.PolyData, optional
-        Key of the light, as :func:`vizlight.presets.key` returns it, in the corner of the last
-        panel where it covers the least of the data.
+        Key of the light, as :func:`vizlight.presets.key` returns it, in a margin of the last panel.
 
     Returns
     -------
@@ -249,7 +248,7 @@ def make_plotter(
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if key is not None:
-            CornerKey(key, "auto", KEY_SIZE, ink).show(plotter.renderer)
+            plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
         if bar:
             made = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,

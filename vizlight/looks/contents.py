@@ -25,8 +25,10 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 SAMPLE = 20_000
 #: Most distinct values of an array of kinds, such as materials or labels.
 MOST_KINDS = 12
-#: Extent across a flat mesh, as a share of its longest side.
-FLAT = 1e-6
+#: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
+EQUAL = 0.5
+#: Extent across a flat surface, and across a slab of cells, as a share of its second side.
+FLAT, SLAB = 1e-6, 0.01
 #: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
 #: bounds, masks.
 _NO_DATUM = {
@@ -98,9 +100,10 @@ class Contents:
 
     @cached_property
     def flat_axis(self) -> int | None:
-        """Axis across which a surface has no extent, None where it has one across each."""
-        thin = np.flatnonzero(self.sides <= FLAT * self.sides.max())
-        return int(thin[-1]) if self.dimension == 2 and len(thin) else None
+        """Axis across which a surface or a slab has no extent, None where it has one."""
+        share = {2: FLAT, 3: SLAB}.get(self.dimension, -1.0)
+        thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
+        return int(thin[-1]) if len(thin) else None
 
     @cached_property
     def arrays(self) -> tuple[Named, ...]:
@@ -184,11 +187,25 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return None
     distinct = len(np.unique(finite))
     whole = bool(np.all(finite == np.round(finite)))
-    if whole and distinct <= MOST_KINDS:
+    if whole and (distinct <= MOST_KINDS or _are_labels(values)):
         role: Role = "kinds"
     else:
         role = "heights" if _HEIGHTS.search(lower) else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _are_labels(values: Raw) -> bool:
+    """Return whether integers are labels of regions: neighbours mostly equal, else far apart."""
+    if values.dtype.kind not in "iu" or len(values) < 2:
+        return False
+    middle = len(values) // 2
+    run = np.asarray(values[max(middle - SAMPLE, 0) : middle + SAMPLE], dtype=np.int64)
+    inside = (run[1:] != 0) & (run[:-1] != 0)
+    steps = np.abs(np.diff(run))[inside]
+    if len(steps) < 2 or np.mean(steps == 0) < EQUAL:
+        return False
+    jumps = steps[steps > 0]
+    return len(jumps) > 0 and float(np.median(jumps)) > 1
 
 
 def kinds_of(mesh: pv.DataSet, name: str) -> Sequence[float]:

@@ -89,11 +89,9 @@ def scene_maker(scene: object) -> SceneMaker | None:
         return None
     if isinstance(scene, str):
         _check.choice("scene", scene, PRESETS)
-        return lambda _, camera: Step(
-            "scene", f"vizlight.presets.{scene}", Step("", "vizlight.View.from_camera", camera)
-        )
+        return lambda _question, view, _camera, _n: Step("scene", f"vizlight.presets.{scene}", view)
     _check.instance("scene", scene, Scene)
-    return lambda _question, _camera: scene_step(scene)  # type: ignore[arg-type]
+    return lambda *_: scene_step(scene)  # type: ignore[arg-type]
 
 
 def cut(mesh: Step, wishes: Wishes) -> Step:
