@@ -37,6 +37,12 @@ _NO_DATUM = {
     "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons", "lat",
     "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
 }  # fmt: skip
+#: Words in the names of kinds, whose numbers may be many.
+_KIND_WORDS = {
+    "block", "body", "class", "classes", "domain", "group", "groups", "label", "labels", "layer",
+    "mat", "material", "materials", "part", "parts", "phase", "region", "regions", "segment",
+    "zone",
+}  # fmt: skip
 #: Words of a name: runs of letters, of which a capital begins another.
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
@@ -134,7 +140,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     """Return the arrays that are data, the best for a picture first.
 
     The active array comes first, then numbers in floating point, those of points before those of
-    cells, and kinds last; each in the order of the mesh. What a filter of light made is left out.
+    cells, and kinds last, those of cells first, which are materials more often than those of
+    points; each in the order of the mesh. What a filter of light made is left out.
     """
     made = records.all_made(mesh)
     described = []
@@ -157,7 +164,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
 
     def rank(array: Named) -> tuple[bool, bool, bool]:
-        return (array.role == "kinds", array.name not in active, array.of_cells)
+        kinds = array.role == "kinds"
+        return (kinds, array.name not in active, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
 
@@ -168,7 +176,9 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     Constants are none, nor are arrays of text.
     """
     words = [word.lower() for word in _WORDS.findall(name)] or [""]
-    if named and (words[-1] in _NO_DATUM or words[0] == "vtk"):
+    # VTK numbers the groups of an .obj file, most of which are drawing aids.
+    of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
+    if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
         return None
     lower = name.lower()
     if are_colors(values):
@@ -187,7 +197,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return None
     distinct = len(np.unique(finite))
     whole = bool(np.all(finite == np.round(finite)))
-    if whole and (distinct <= MOST_KINDS or _are_labels(values)):
+    if whole and (distinct <= MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
         role = "heights" if _HEIGHTS.search(lower) else "values"
