@@ -20,7 +20,7 @@ from vizlight import _check
 from vizlight.draw.backends import BackendError, choose_backend, window_class
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
-from vizlight.filters.tint import values_of
+from vizlight.filters.tint import values_of_blocks
 from vizlight.mesh import blocks, records, subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
@@ -273,10 +273,13 @@ def parts_of(
     TypeError, ValueError
         If an array is missing or does not fit, as :func:`vizlight.illuminate`.
     """
+    parts = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
+    values: Sequence[Raw | None] = [None] * len(parts)
+    if scalars is not None:
+        values = values_of_blocks([block for block, _ in parts], scalars)
     return [
-        _part(block, path, scene, options, scalars)
-        for block, path in blocks.check(mesh)
-        if block.n_points
+        _part(block, path, scene, options, own)
+        for (block, path), own in zip(parts, values, strict=True)
     ]
 
 
@@ -285,7 +288,7 @@ def _part(
     path: str,
     scene: Scene,
     options: LightOptions,
-    scalars: str | ArrayLike | None,
+    values: Raw | None,
 ) -> Part:
     cells = subdivision.simplices(mesh)
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
@@ -297,7 +300,6 @@ def _part(
         known = dataclasses.replace(options, conditioned=True)
     inputs = part_of(mesh, path, scene, known).inputs.of_faces()
     shares = _shares(mesh, sum(light.intensity > 0 for light in scene.lights))
-    values = None if scalars is None else values_of(mesh, scalars)
     return Part(kind, mesh, cells, inputs, options, shares, values)
 
 
