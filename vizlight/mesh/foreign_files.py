@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, georeference, polylines, series
+from vizlight.mesh import brains, georeference, polylines, scene_files, series
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -62,7 +62,7 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path, time: object = None) -> pv.DataSet | None:
+def read(path: Path, time: object = None) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
@@ -77,6 +77,8 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return _grid(path, time)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path)
+    if suffix in scene_files.SUFFIXES:
+        return scene_files.read(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".inp" and _head(path, 1) == b"*":
