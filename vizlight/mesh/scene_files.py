@@ -6,8 +6,6 @@ import threading
 from typing import TYPE_CHECKING
 
 import pyvista as pv
-from vtkmodules.vtkCommonTransforms import vtkTransform
-from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
 
 from vizlight import _check
@@ -57,12 +55,8 @@ def _placed(actor: Foreign) -> pv.PolyData | None:
     shape = mapper.GetInput()
     if shape is None or not shape.GetNumberOfPoints():
         return None
-    transform = vtkTransform()
-    transform.SetMatrix(actor.GetMatrix())
-    # The filter turns normals as normals, which a scale of unequal factors leaves upright.
-    move = vtkTransformPolyDataFilter()
-    move.SetTransform(transform)
-    move.SetInputData(shape)
-    move.Update()
-    placed: pv.PolyData = pv.wrap(move.GetOutput())
+    # Normals are turned as normals, which a scale of unequal factors leaves upright.
+    placed: pv.PolyData = pv.wrap(shape).transform(
+        pv.array_from_vtkmatrix(actor.GetMatrix()), transform_all_input_vectors=False, inplace=False
+    )
     return placed
