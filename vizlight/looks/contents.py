@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from vizlight.mesh import records
+from vizlight.mesh import meaning, records
 from vizlight.vtk.arrays import are_colors
 
 if TYPE_CHECKING:
@@ -41,18 +41,6 @@ _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 _HEIGHTS = re.compile(
     r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
     r"($|[^a-z])"
-)
-#: Names of two or three components of one vector: what stands in the place of the first.
-_COMPONENTS = (
-    ("u", "v", "w"),
-    ("x", "y", "z"),
-    ("eastward", "northward", "upward"),
-    ("zonal", "meridional", "vertical"),
-)
-#: A first component: a letter alone or beside a mark or a number, or the word for it.
-_FIRST = re.compile(
-    r"^(.*[^a-z])?u([^a-z].*)?$|^(grd|wnd|o|a)?u(grd|wnd|o|a|vel|wind|comp)?([^a-z].*)?$|^v_?x$"
-    r"|^(vel|velocity|wind|b|e|h|f|force)_?x$|eastward|zonal|^x_(wind|vel)|_x_velocity$"
 )
 
 
@@ -158,32 +146,17 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     if raster and len(described) == 1 and described[0].role == "values":
         only = described[0]
         described = [Named(only.name, "heights", only.of_cells, only.distinct, only.low, only.high)]
-    joined = [Named(",".join(names), "vectors", of_cells) for names, of_cells in components(mesh)]
+    joined = [
+        Named(",".join(names), "vectors", names[0] not in mesh.point_data)
+        for names in meaning.components(mesh)
+        if ",".join(names) not in mesh.array_names
+    ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
 
     def rank(array: Named) -> tuple[bool, bool, bool]:
         return (array.role == "kinds", array.name not in active, array.of_cells)
 
     return tuple(sorted([*described, *joined], key=rank))
-
-
-def components(mesh: pv.DataSet) -> list[tuple[list[str], bool]]:
-    """Return the names of arrays that are together one vector, and whether they are of cells."""
-    pairs = []
-    for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
-        names = {name.lower(): name for name in data if np.asarray(data[name]).ndim == 1}
-        for lower, name in names.items():
-            if not _FIRST.search(lower):
-                continue
-            for first, *others in _COMPONENTS:
-                stem, found, rest = (
-                    lower.rpartition(first) if first == "x" else lower.partition(first)
-                )
-                partners = [names.get(f"{stem}{other}{rest}") for other in others]
-                if found and partners[0] is not None:
-                    pairs.append(([name, *(part for part in partners if part)], of_cells))
-                    break
-    return pairs
 
 
 def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:
