@@ -389,6 +389,8 @@ def vectors(case: Case) -> Drawing:
     mesh = case.wishes.joined(case.surface, array)
     camera = case.camera(mesh)
     scene = case.scene(camera)
+    if case.contents.flat_axis is not None and case.wishes.question == "auto":
+        return _speed(case, mesh, camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     lit = case.lit(mesh, scene, **light)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
@@ -398,6 +400,26 @@ def vectors(case: Case) -> Drawing:
         layers.append(Layer(lines, dark, live=False))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
+
+
+def _speed(case: Case, mesh: Step, camera: Step) -> Drawing:
+    """Draw a sheet in the colours of the lengths of its vectors, with lines along them."""
+    array = _array(case)
+    scene = case.wishes.scene("none", camera)
+    colors: Keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    layers = [Layer(mesh, shown)]
+    lines = _lines_on(mesh, case.scene(camera), array)
+    if lines is not None:
+        white = {"color": "white", "line_width": case.width, "lighting": False}
+        layers.append(Layer(lines, white, live=False))
+    lengths = np.linalg.norm(np.asarray(mesh.run()[array.name], dtype=np.float64), axis=1)
+    finite = lengths[np.isfinite(lengths)]
+    title = f"length of {titled(mesh.run(), array.name)}"
+    bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"], "scene": scene}
+    bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
+    words = f"length of {array.name} in colours, with lines along it"
+    return Drawing(layers, camera, scene, case.lit(mesh, scene), words, [bar], kind=mesh)
 
 
 def flow(case: Case) -> Drawing:
