@@ -42,6 +42,8 @@ DIRECTION = "direction"
 LIGHTNESS, MISSING = "viridis", "#d9d9d9"
 #: Eye above a map.
 ABOVE = Eye((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
+#: Fewest voxels along each side of a scan.
+VOXELS = 30
 #: Number of streamlines of a volume.
 SEEDS = 300
 #: Points above which a relief has no sky, which would take longer than all the rest.
@@ -454,6 +456,12 @@ def flow(case: Case) -> Drawing:
 def isosurface(case: Case) -> Drawing:
     """Draw the isosurface through the steepest places, or three slices where none is good."""
     array = _array(case)
+    notes = []
+    if _is_scan(case, array):
+        # The edge of a mask would be a staircase of voxels.
+        smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
+        case = replace(case, data=smooth)
+        notes = ["the values are smoothed by one voxel"]
     level, contrast = levels.best_level(case.data.run(), array.name)
     if contrast < levels.GOOD:
         return slices(case, contrast)
@@ -470,8 +478,21 @@ def isosurface(case: Case) -> Drawing:
         shown = replace(case, data=mesh, contents=contents, question="value", array=second)
         drawing = values(shown)
         words += f" in the colours of {second.name}"
+    if notes:
+        return replace(drawing, words=words, notes=[*drawing.notes, *notes])
     box = Layer(Step("", ".outline", case.data), {"color": "gray", "line_width": 1}, live=False)
     return replace(drawing, layers=[*drawing.layers, box], words=words)
+
+
+def _is_scan(case: Case, array: Named) -> bool:
+    """Return whether a volume is a scan: one array of an image, of many voxels each way."""
+    mesh = case.data.run()
+    return (
+        isinstance(mesh, pv.ImageData)
+        and not array.of_cells
+        and len(case.contents.arrays) == 1
+        and min(mesh.dimensions) > VOXELS
+    )
 
 
 def slices(case: Case, contrast: float) -> Drawing:
