@@ -109,11 +109,6 @@ class Job:
         """Light, then write, draw and print; return the exit code."""
         from vizlight import files
 
-        say(f"shown    {look.summary}")
-        for note in dict.fromkeys(look.notes):
-            say(f"note     {note}")
-        if look.others:
-            say(f"ask      {'; '.join(other.shell for other in look.others)}")
         lit = look.drawing.lit
         needed = any(step is lit for steps in outputs for step in in_order(steps))
         if self.out.report or self.tell or self.read or needed:
@@ -131,6 +126,12 @@ class Job:
             kind = SAID.get(steps[-1].path, "mesh")
             # A page is written without a library that draws too.
             codes.append(draw(functools.partial(_all_run, steps), kind))
+        # Last, so that an error is all that is said of what could not be done.
+        say(f"shown    {look.summary}")
+        for note in dict.fromkeys(look.notes):
+            say(f"note     {note}")
+        if look.others:
+            say(f"ask      {'; '.join(other.shell for other in look.others)}")
         return max(codes)
 
     def _light(self, look: Look) -> None:
@@ -187,6 +188,8 @@ def _all_run(steps: Sequence[Step]) -> Path:
 
 def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list[list[Step]]:
     """Return the steps that write each file; no input is among what they write."""
+    import pyvista as pv
+
     from vizlight import files
 
     paths: list[Path] = []
@@ -205,8 +208,8 @@ def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list
         target = Path(str(last.arguments[-1]))
         _refuse_input(target, inputs, is_script=last.path == "paraview.save")
         whole = last.path == "files.write_mesh" and last.arguments[0] is look.drawing.lit
-        if whole and kind is not None:
-            files.check_format(kind.run(), target)
+        if whole and not look.drawing.parts:
+            files.check_format(pv.PolyData() if kind is None else kind.run(), target)
     return outputs
 
 

@@ -120,8 +120,11 @@ def _check_lights(lights: Lights) -> None:
 
 def _part_of(part: Part) -> Keywords:
     """Return what is taken of the data, its texts read."""
-    names = ("time", "overlay", "contour", "level", "warp", "exaggeration")
-    taken = known(**{name: getattr(part, name, None) for name in names})
+    taken = known(
+        time=part.time, overlay=part.overlay, contour=part.contour, level=part.level
+    )
+    if isinstance(part, Shape):
+        taken |= known(warp=part.warp, exaggeration=part.exaggeration)
     if part.threshold:
         taken["threshold"] = [options.interval("threshold", text) for text in part.threshold]
     if part.clip:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -151,6 +151,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
                 continue
             values = np.asarray(data[name])
             array = _described(name, values, of_cells=of_cells, named=True)
+            if array is not None and _HEIGHTS.search(_words_of(mesh, name)):
+                array = replace(array, role="heights" if array.role == "values" else array.role)
             if array is not None:
                 described.append(array)
     if raster and len(described) == 1 and described[0].role == "values":
@@ -168,6 +170,13 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         return (kinds, array.name not in active, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _words_of(mesh: pv.DataSet, name: str) -> str:
+    """Return the standard name and the long name of an array, as far as its file has them."""
+    attributes = meaning.of(mesh).arrays.get(name, {})
+    standard = attributes.get("standard_name", "")
+    return f"{standard} {'' if standard else attributes.get('long_name', '')}".lower()
 
 
 def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:

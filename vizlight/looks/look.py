@@ -458,22 +458,25 @@ def _is_height_field(contents: Contents, array: Named | None) -> bool:
 
 def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     """Return the array that was asked for, by any of the options that name one."""
-    options = (wishes.light.get(name) for name in ("tangents", "vectors", "elevation"))
-    name = next(
-        (
-            name
-            for name in (wishes.array, *options, wishes.picture.get("scalars"))
-            if isinstance(name, str) and name != recipes.DIRECTION
-        ),
-        None,
-    )
-    if name is None:
+    options = {"array": wishes.array}
+    options |= {name: wishes.light.get(name) for name in ("tangents", "vectors", "elevation")}
+    options["scalars"] = wishes.picture.get("scalars")
+    named_by = [
+        (option, value)
+        for option, value in options.items()
+        if isinstance(value, str) and value != recipes.DIRECTION
+    ]
+    if not named_by:
         return None
+    option, name = named_by[0]
     named = contents.named(name)
     if named is None:
         there = [*contents.mesh.point_data, *contents.mesh.cell_data]
         expected = f"the name of an array, {one_of(there)}"
-        raise ValueError(message("array", expected, repr(name)))
+        raise ValueError(message(option, expected, repr(name)))
+    if option in ("tangents", "vectors") and named.role != "vectors":
+        got = f"{name!r} with {named.role}"
+        raise ValueError(message(option, "vectors, or names U,V of their components", got))
     return named
 
 

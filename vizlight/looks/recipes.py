@@ -21,7 +21,7 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.framing import Eye, eye_of
 from vizlight.looks.steps import Step
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, meaning
 from vizlight.mesh.nspace import POSITION
 from vizlight.shading.results import part_name
 from vizlight.vtk.polylines import has_lines_only
@@ -240,6 +240,9 @@ def relief(case: Case) -> Drawing:
     scene = case.wishes.scene("relief", camera)
     raised, note = _raised(case, array)
     keywords: Keywords = {"lit": True, **raised}
+    if isinstance(data.run(), pv.StructuredGrid) and "raster" not in keywords:
+        # Rows and columns that are not at right angles are sampled on an even grid.
+        keywords["raster"] = 0.0
     if "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
         keywords["occlusion"] = "sky"
     lit = case.wishes.step("lit", "relief_shadow", data, scene, **keywords)
@@ -582,7 +585,10 @@ def _array(case: Case) -> Named:
 
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its unit, where the mesh says it."""
-    return name
+    attributes = meaning.of(mesh).arrays.get(name.split(",")[0], {})
+    unit = attributes.get("units", "")
+    title = name if "," in name else attributes.get("long_name") or name
+    return f"{title} [{unit}]" if unit not in ("", "1") else title
 
 
 def _range(mesh: pv.DataSet, name: str) -> tuple[float, float]:
