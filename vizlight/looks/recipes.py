@@ -585,7 +585,7 @@ def _array(case: Case) -> Named:
 
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its unit, where the mesh says it."""
-    attributes = meaning.of(mesh).arrays.get(name.split(",")[0], {})
+    attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
     title = name if "," in name else attributes.get("long_name") or name
     return f"{title} [{unit}]" if unit not in ("", "1") else title
