@@ -113,12 +113,14 @@ def particles():
 
 
 KINDS = (
-    temperatures, curvilinear, winds, heights, classes, ball_of_values, ball_of_vectors,
-    curved_sheet, flow, volume, materials, particles,
+    temperatures, curvilinear, classes, ball_of_values, ball_of_vectors, curved_sheet, flow,
+    volume, materials, particles,
 )  # fmt: skip
+#: Kinds whose filters take seconds to compile.
+SLOW = [pytest.param(kind, marks=pytest.mark.slow) for kind in (winds, heights)]
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("kind", [*KINDS, *SLOW], ids=lambda kind: kind.__name__)
 def test_first_picture_changes_with_data(kind, tmp_path):
     mesh = kind()
     path = tmp_path / "data.vtk"
@@ -128,6 +130,7 @@ def test_first_picture_changes_with_data(kind, tmp_path):
     assert first_pictures.verdict(row), row
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [temperatures, ball_of_vectors], ids=lambda kind: kind.__name__)
 def test_script_draws_the_same_picture(kind, tmp_path):
     path = tmp_path / "data.vtk"

@@ -120,9 +120,7 @@ def _check_lights(lights: Lights) -> None:
 
 def _part_of(part: Part) -> Keywords:
     """Return what is taken of the data, its texts read."""
-    taken = known(
-        time=part.time, overlay=part.overlay, contour=part.contour, level=part.level
-    )
+    taken = known(time=part.time, overlay=part.overlay, contour=part.contour, level=part.level)
     if isinstance(part, Shape):
         taken |= known(warp=part.warp, exaggeration=part.exaggeration)
     if part.threshold:

@@ -42,6 +42,8 @@ DIRECTION = "direction"
 LIGHTNESS, MISSING = "viridis", "#d9d9d9"
 #: Eye above a map.
 ABOVE = Eye((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
+#: Fewest voxels along each side of a scan.
+VOXELS = 30
 #: Number of streamlines of a volume.
 SEEDS = 300
 #: Points above which a relief has no sky, which would take longer than all the rest.
@@ -392,6 +394,8 @@ def vectors(case: Case) -> Drawing:
     mesh = case.wishes.joined(case.surface, array)
     camera = case.camera(mesh)
     scene = case.scene(camera)
+    if case.contents.flat_axis is not None and case.wishes.question == "auto":
+        return _speed(case, mesh, camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     lit = case.lit(mesh, scene, **light)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
@@ -401,6 +405,26 @@ def vectors(case: Case) -> Drawing:
         layers.append(Layer(lines, dark, live=False))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
+
+
+def _speed(case: Case, mesh: Step, camera: Step) -> Drawing:
+    """Draw a sheet in the colours of the lengths of its vectors, with lines along them."""
+    array = _array(case)
+    scene = case.wishes.scene("none", camera)
+    colors: Keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    layers = [Layer(mesh, shown)]
+    lines = _lines_on(mesh, case.scene(camera), array)
+    if lines is not None:
+        white = {"color": "white", "line_width": case.width, "lighting": False}
+        layers.append(Layer(lines, white, live=False))
+    lengths = np.linalg.norm(np.asarray(mesh.run()[array.name], dtype=np.float64), axis=1)
+    finite = lengths[np.isfinite(lengths)]
+    title = f"length of {titled(mesh.run(), array.name)}"
+    bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"], "scene": scene}
+    bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
+    words = f"length of {array.name} in colours, with lines along it"
+    return Drawing(layers, camera, scene, case.lit(mesh, scene), words, [bar], kind=mesh)
 
 
 def flow(case: Case) -> Drawing:
@@ -435,6 +459,12 @@ def flow(case: Case) -> Drawing:
 def isosurface(case: Case) -> Drawing:
     """Draw the isosurface through the steepest places, or three slices where none is good."""
     array = _array(case)
+    notes = []
+    if _is_scan(case, array):
+        # The edge of a mask would be a staircase of voxels.
+        smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
+        case = replace(case, data=smooth)
+        notes = ["the values are smoothed by one voxel"]
     level, contrast = levels.best_level(case.data.run(), array.name)
     if contrast < levels.GOOD:
         return slices(case, contrast)
@@ -451,8 +481,21 @@ def isosurface(case: Case) -> Drawing:
         shown = replace(case, data=mesh, contents=contents, question="value", array=second)
         drawing = values(shown)
         words += f" in the colours of {second.name}"
+    if notes:
+        return replace(drawing, words=words, notes=[*drawing.notes, *notes])
     box = Layer(Step("", ".outline", case.data), {"color": "gray", "line_width": 1}, live=False)
     return replace(drawing, layers=[*drawing.layers, box], words=words)
+
+
+def _is_scan(case: Case, array: Named) -> bool:
+    """Return whether a volume is a scan: one array of an image, of many voxels each way."""
+    mesh = case.data.run()
+    return (
+        isinstance(mesh, pv.ImageData)
+        and not array.of_cells
+        and len(case.contents.arrays) == 1
+        and min(mesh.dimensions) > VOXELS
+    )
 
 
 def slices(case: Case, contrast: float) -> Drawing:
@@ -542,7 +585,7 @@ def _array(case: Case) -> Named:
 
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its unit, where the mesh says it."""
-    attributes = meaning.of(mesh).arrays.get(name.split(",")[0], {})
+    attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
     title = name if "," in name else attributes.get("long_name") or name
     return f"{title} [{unit}]" if unit not in ("", "1") else title
