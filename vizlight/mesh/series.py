@@ -13,7 +13,7 @@ from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
 from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, meaning
 from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:
@@ -136,6 +136,7 @@ class Series:
             If the step has no such point array of 3 components.
         """
         mesh, name = self.mesh(step), f"vectors, {self.name(step)}"
+        mesh = meaning.with_named(mesh, array)[0] if "," in array else mesh
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"
@@ -273,6 +274,10 @@ def reader_of(path: Path) -> Foreign:
     """
     # A .foam file is empty and marks the folder of a case. A case that ran in parallel has its mesh
     # in processor0, processor1 and so on, until its parts are put together.
+    from vizlight.mesh import cf_grids
+
+    if path.suffix.lower() in cf_grids.SUFFIXES:
+        return _OfGrids(path)
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
@@ -301,6 +306,26 @@ class _OfVtk:
         """Return the blocks of the step that was asked for."""
         self.reader.Update()
         return pv.wrap(self.reader.GetOutputDataObject(0))
+
+
+class _OfGrids:
+    """Reader of the steps of a netCDF file."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._time = path, 0.0
+        from vizlight.mesh import cf_grids
+
+        self._read = cf_grids.read
+        #: Times of the steps.
+        self.time_values = of(cf_grids.read(path, "first"))
+
+    def set_active_time_value(self, time: float) -> None:
+        """Set the time of the step that is read."""
+        self._time = time
+
+    def read(self) -> pv.DataSet:
+        """Return the mesh of the step that was asked for."""
+        return self._read(self._path, self._time)
 
 
 def times_of(reader: Foreign) -> list[float]:
