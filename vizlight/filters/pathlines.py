@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
@@ -12,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
-from vizlight.mesh import meaning, records
+from vizlight.mesh import cf_grids, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
@@ -173,6 +174,9 @@ def pathlines(
     """
     asked = PathlineOptions.of(locals())
     scene = as_scene(scene)
+    # Steps of a netCDF file are read with their meaning.
+    if isinstance(series, str | Path) and Path(series).suffix.lower() in cf_grids.SUFFIXES:
+        series = cf_grids.Steps(Path(series))
     steps = Series(series, asked.times)
     first = steps.mesh(0)
     vectors = asked.vectors

@@ -30,10 +30,6 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
-    ".mgh": ("nibabel", "tracts"),
-    ".mnc": ("nibabel", "tracts"),
-    ".head": ("nibabel", "tracts"),
-    ".brik": ("nibabel", "tracts"),
 } | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",

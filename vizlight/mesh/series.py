@@ -274,10 +274,6 @@ def reader_of(path: Path) -> Foreign:
     """
     # A .foam file is empty and marks the folder of a case. A case that ran in parallel has its mesh
     # in processor0, processor1 and so on, until its parts are put together.
-    from vizlight.mesh import cf_grids
-
-    if path.suffix.lower() in cf_grids.SUFFIXES:
-        return _OfGrids(path)
     case = path.parent
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
@@ -306,26 +302,6 @@ class _OfVtk:
         """Return the blocks of the step that was asked for."""
         self.reader.Update()
         return pv.wrap(self.reader.GetOutputDataObject(0))
-
-
-class _OfGrids:
-    """Reader of the steps of a netCDF file."""
-
-    def __init__(self, path: Path) -> None:
-        self._path, self._time = path, 0.0
-        from vizlight.mesh import cf_grids
-
-        self._read = cf_grids.read
-        #: Times of the steps.
-        self.time_values = of(cf_grids.read(path, "first"))
-
-    def set_active_time_value(self, time: float) -> None:
-        """Set the time of the step that is read."""
-        self._time = time
-
-    def read(self) -> pv.DataSet:
-        """Return the mesh of the step that was asked for."""
-        return self._read(self._path, self._time)
 
 
 def times_of(reader: Foreign) -> list[float]:
