@@ -269,6 +269,8 @@ def _whole(
         joined = blocks.highest(found)
         mesh = joined.grid
         notes += [note] if (note := joined.note()) else []
+    if isinstance(mesh, pv.DataSet):
+        normals.drop_empty(mesh)
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
