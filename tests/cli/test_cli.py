@@ -206,7 +206,7 @@ def test_what_is_shown_is_told(volume, done, run):
     cells.save("cells.vti")
     for words, told in (
         ("flow.vti", "streamlines of V (heading: streamlines)"),
-        ("flow.vti --array r", "isosurface r = "),
+        ("flow.vti --array r", "three slices of r"),
         ("flat.vti", "relief of height (relief: sheet)"),
         ("flat.vti --for value", "height in colours (value: sheet)"),
         ("colors.vti", "rgb in colours (none: sheet)"),

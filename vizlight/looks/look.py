@@ -386,7 +386,9 @@ def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]
     """Return the rule that fits, and the case that its recipe draws."""
     array = _asked_array(contents, wishes)
     question = wishes.question
-    if question in _FILTERS or not wishes.surface:
+    # Tangents of a volume are those of its hull.
+    of_hull = contents.dimension == 3 and wishes.light.get("tangents") is not None
+    if question in _FILTERS or not wishes.surface or of_hull:
         return _explicit(data, contents, wishes, array, question)
     fitting = [rule for rule in RULES if rule.fits(contents)]
     for rule in fitting:
@@ -410,8 +412,9 @@ def _explicit(
 ) -> tuple[Rule, Case]:
     """Return a rule for a question that the table has not for these data."""
     if question == "auto":
-        question = "direction" if array is not None and array.role == "vectors" else "shape"
-        question = "value" if array is not None and array.role != "vectors" else question
+        best = array or contents.first("vectors") or contents.first("values", "heights", "kinds")
+        question = "shape" if best is None else "value"
+        question = "direction" if best is not None and best.role == "vectors" else question
     if question == "relief" and not _is_height_field(contents, array):
         question = "shadow"
     recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))
