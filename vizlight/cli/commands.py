@@ -292,7 +292,8 @@ def _explain(given: Keywords, look: Look) -> str:
     from vizlight.shading.plan import decide
 
     lit = look.mesh
-    record = vizlight.provenance(lit, look.drawing.name)
+    name = str(look.drawing.lit.keywords.get("name", look.drawing.name))
+    record = vizlight.provenance(lit, name)
     scene = vizlight.Scene.from_dict(record["scene"])
     options = LightOptions(**(given | record.get("options", {})))
     inputs = part_of(next(all_blocks(lit)), "", scene, options).inputs
@@ -328,6 +329,8 @@ def _light_pieces(
     """Light files as pieces of one mesh, or print the script that does; return the exit code."""
     out = common.out
     wishes = scenes.wishes_of(common, target, color, light=given)
+    # The key of a light belongs to what is shown of the whole.
+    wishes = replace(wishes, picture={**wishes.picture, "key": False})
     for part, names in (
         (target, "time times overlay clip threshold slice warp"),
         (color, "scalars array"),

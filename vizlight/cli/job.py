@@ -153,7 +153,7 @@ class Job:
             say(text)
         for warning in caught:
             complain(one_line(warning.message))
-        name = look.drawing.name
+        name = str(step.keywords.get("name", look.drawing.name))
         record = vizlight.provenance(lit, name)
         terms = " + ".join(record.get("terms", [name]))
         points = sum(block.n_points for block in all_blocks(lit))

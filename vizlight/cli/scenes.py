@@ -11,7 +11,6 @@ from vizlight._words import message
 from vizlight.cli import options
 from vizlight.cli.options import Shape
 from vizlight.looks.steps import Step
-from vizlight.looks.wishes import Wishes, plain_scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Keywords, Vector
     from vizlight.cli.options import Color, Common, Finish, Lights, Part
-    from vizlight.looks.wishes import SceneMaker
+    from vizlight.looks.wishes import SceneMaker, Wishes
     from vizlight.scene import Scene
 
 #: Questions whose hues the colours of data would hide.
@@ -55,6 +54,8 @@ def wishes_of(
     ValueError
         If a value does not fit, or two options do not go together.
     """
+    from vizlight.looks.wishes import Wishes
+
     lights, eye, out = common.lights, common.eye, common.out
     if part is not None:
         check_part(part)
@@ -178,6 +179,8 @@ def _scene_maker(
     lights: Lights, finish: Finish, base: Scene | None, material: dict[str, float]
 ) -> SceneMaker:
     """Return the function that makes the step of the scene of the options."""
+    from vizlight.looks.wishes import plain_scene
+
     changes = known(**vars(finish))
     explicit = bool(lights.light or lights.light_position or lights.headlight)
 
@@ -190,7 +193,9 @@ def _scene_maker(
             fresh = known(**vars(base.material)) if changes else {}
             keep_view = base.view is not None
         else:
-            scene = plain_scene(lights.question or question, view, camera, n)
+            # Lamps that are named light a plain material, not that of a preset.
+            plain = "plain" if explicit and lights.question is None else question
+            scene = plain_scene(lights.question or plain, view, camera, n)
             keep_view = True
             if changes and not fresh:
                 fresh = known(**vars(scene.run().material))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -505,6 +506,7 @@ def canvas(
     *,
     background: ColorLike = "white",
     off_screen: bool = True,
+    draws: bool = True,
     backend: Backend | None = None,
 ) -> pv.Plotter:
     """Return an empty plotter, such as a look fills.
@@ -517,6 +519,8 @@ def canvas(
         Colour behind the data.
     off_screen : bool, default: True
         Whether no window is shown.
+    draws : bool, default: True
+        Whether it must be able to draw; a page is written without an OpenGL library too.
     backend : {"egl", "osmesa"}, optional
         OpenGL library of an offscreen picture; see :func:`choose_backend`.
 
@@ -537,11 +541,23 @@ def canvas(
     if not _check.boolean("off_screen", off_screen):
         plotter = pv.Plotter(window_size=pixels)
     else:
-        with window_class(choose_backend(backend)):
+        with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
     plotter.enable_anti_aliasing("msaa", multi_samples=8)
     return plotter
+
+
+def _window_of(
+    backend: Backend | None, *, must_draw: bool
+) -> contextlib.AbstractContextManager[None]:
+    """Return a context for windows that need no display."""
+    try:
+        return window_class(choose_backend(backend))
+    except BackendError:
+        if must_draw:
+            raise
+        return contextlib.nullcontext()
 
 
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:

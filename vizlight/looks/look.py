@@ -19,7 +19,7 @@ from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source
-from vizlight.mesh import blocks, georeference, series
+from vizlight.mesh import blocks, georeference, height_grids, series
 
 if TYPE_CHECKING:
     from vizlight._types import Given, Keywords
@@ -205,9 +205,9 @@ class Look:
         if not live:
             shown: Keywords = {"camera": drawing.camera, "background": wishes.background, **key}
             return [Step("", "vizlight.live_html", drawing.lit, None, path, **shown)]
-        plotter = Step("plotter", "pyvista.Plotter", off_screen=True, window_size=wishes.size)
+        background = wishes.background
+        plotter = Step("plotter", "render.canvas", wishes.size, background=background, draws=False)
         return [
-            Step("", ".background_color=", plotter, wishes.background),
             *(layer.added(plotter) for layer in live),
             Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)),
             Step("", ".vizlight.export_html", plotter, path, **key),
@@ -218,7 +218,7 @@ class Look:
         wishes, drawing = self.wishes, self.drawing
         chosen = {"backend": wishes.picture.get("backend"), "off_screen": off_screen}
         keywords = {name: value for name, value in chosen.items() if value not in (None, True)}
-        background = wishes.background
+        background = wishes.picture.get("background") or drawing.background or wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, **keywords)
         steps = [layer.added(plotter) for layer in drawing.layers]
         near = any(light.position is not None for light in self.scene.lights)
@@ -336,6 +336,8 @@ def look(
 def decide(data: object, wishes: Wishes) -> Look:
     """Return the look of data, by options that are sorted out."""
     step, contents, notes = prepared(data, wishes)
+    if wishes.question == "flow":
+        look_options.check_flow(data, step.run(), wishes.light.get("vectors"))
     rule, case = _chosen(step, contents, wishes)
     drawing = rule.recipe(case)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
@@ -423,6 +425,9 @@ def _explicit(
         expected = f"a question that these data answer, {one_of(known)}"
         raise ValueError(message("question", expected, repr(question)))
     chosen = array if array is not None and array.role in roles else contents.first(*roles)
+    if question == "relief" and chosen is None:
+        # Level ground has heights too, all equal.
+        chosen = contents.named(height_grids.heights_name(contents.mesh) or "")
     if needed and (chosen is None or (array is not None and array.role not in roles)):
         arrays = ", ".join(repr(named.name) for named in contents.arrays)
         got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
@@ -455,8 +460,8 @@ _FILTERS = ("flow", "relief", "sky", "fur", "contours", "projection")
 def _is_height_field(contents: Contents, array: Named | None) -> bool:
     """Return whether data are a grid of one layer with heights."""
     sizes: tuple[int, ...] = getattr(contents.mesh, "dimensions", ())
-    layer = sum(size > 1 for size in sizes) == 2
-    return layer and (array or contents.first("heights", "values")) is not None
+    is_layer = sum(size > 1 for size in sizes) == 2
+    return is_layer and bool(array or height_grids.heights_name(contents.mesh))
 
 
 def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:

@@ -109,6 +109,8 @@ class Drawing:
         Name of the array of light.
     colors : dict
         Array and colour map of the main mesh, as :func:`vizlight.save_gltf` takes them.
+    background : str, optional
+        Colour behind the data, where neither a white nor a dark one suits them.
     """
 
     layers: Sequence[Layer]
@@ -122,6 +124,7 @@ class Drawing:
     parts: Sequence[str] = ()
     name: str = "luminance"
     colors: Keywords = dataclasses.field(default_factory=dict)
+    background: str | None = None
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -243,7 +246,7 @@ def relief(case: Case) -> Drawing:
     if isinstance(data.run(), pv.StructuredGrid) and "raster" not in keywords:
         # Rows and columns that are not at right angles are sampled on an even grid.
         keywords["raster"] = 0.0
-    if "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
+    if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
         keywords["occlusion"] = "sky"
     lit = case.wishes.step("lit", "relief_shadow", data, scene, **keywords)
     notes = [note] if note else []
@@ -351,7 +354,9 @@ def _share(
     }  # fmt: skip
     layer = Layer(lit, drawn, live=False)
     # A share that is 1 at most points is white, as paper is.
-    return Drawing([layer], camera, scene, lit, words, (), notes, case.data, name=name)
+    return Drawing(
+        [layer], camera, scene, lit, words, (), notes, case.data, name=name, background="gray"
+    )
 
 
 def _level_light(lights: Sequence[Light]) -> float:
@@ -624,6 +629,7 @@ def _lines_on(mesh: Step, scene: Step, array: Named) -> Step | None:
         return None
     spacing = float(f"{surface.length * SPACING:.3g}")
     keywords: Keywords = {"vectors": array.name, "spacing": spacing, "confined": True}
+    keywords["feature_angle"] = "auto"
     triangles = Step("triangles", ".triangulate", mesh)
     lines = Step("lines", "vizlight.streamlines", triangles, scene, **keywords)
     try:
