@@ -12,6 +12,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
+from vizlight.filters.key import preset_of
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
@@ -40,6 +41,8 @@ TANGENTS = "Tangents"
 RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
+#: Presets whose light tells how lines run, which the self-shadow of a surface would hide.
+OF_LINES = ("direction", "slope", "heading")
 #: Largest length of a line in cell lengths.
 REACH = 1200
 
@@ -170,7 +173,8 @@ def streamlines(
         box. A line ends after 1,200 cell lengths in any case.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
-        :func:`vizlight.illuminate`. Default: whether there is a surface.
+        :func:`vizlight.illuminate`. Default: whether there is a surface, but not in the light of
+        ``presets.direction``, ``slope`` and ``heading``, which tells how the lines themselves run.
     facing, feature_angle, bundle, occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`; edges of the surface are split.
     progress_bar
@@ -252,6 +256,8 @@ def light_lines(
     options = dataclasses.replace(options, vectors=vectors)
     mesh = records.averaged(mesh, *_names(options.vectors))
     scene = as_scene(scene)
+    if options.conditioned is None and preset_of(scene) in OF_LINES:
+        options = dataclasses.replace(options, conditioned=False)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)
