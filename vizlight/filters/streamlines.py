@@ -12,7 +12,6 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
-from vizlight.filters.key import preset_of
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
@@ -20,6 +19,7 @@ from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
 from vizlight.scene.keywords import named
+from vizlight.scene.presets import PRESETS
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightOptions
 from vizlight.vtk import polylines
@@ -256,7 +256,7 @@ def light_lines(
     options = dataclasses.replace(options, vectors=vectors)
     mesh = records.averaged(mesh, *_names(options.vectors))
     scene = as_scene(scene)
-    if options.conditioned is None and preset_of(scene) in OF_LINES:
+    if options.conditioned is None and _tells_of_lines(scene):
         options = dataclasses.replace(options, conditioned=False)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -271,6 +271,12 @@ def light_lines(
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
+
+
+def _tells_of_lines(scene: Scene) -> bool:
+    """Return whether a scene has the light of a preset that tells how lines run."""
+    presets = (PRESETS[name]() for name in OF_LINES)
+    return any((p.lights, p.material) == (scene.lights, scene.material) for p in presets)
 
 
 def _check_mesh(mesh: object, argument: str) -> None:
