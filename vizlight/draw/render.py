@@ -20,10 +20,10 @@ from vizlight.draw.backends import (
     window_class,
 )
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.draw.dialects import widen
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.legends import CornerKey, ink_on, name_no_data
+from vizlight.draw.strokes import widen
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
