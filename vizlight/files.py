@@ -77,6 +77,8 @@ SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
+#: Largest rounding of points in a file of float32, as a share of a cell.
+FINE = 1e-2
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -536,7 +538,20 @@ def surface_of(
     if not found.n_points:
         expected = f"a value between {low:g} and {high:g}"
         raise ValueError(_check.message("level", expected, f"{level:g}"))
-    return found
+    # Beside a hole VTK makes faces with corners that are nowhere.
+    there: Foreign = np.isfinite(np.asarray(found.points)).all(axis=1)
+    return found if there.all() else _kept_points(found, there)
+
+
+def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
+    """Return the cells of a mesh whose points are all kept, with their arrays."""
+    cells = mesh.extract_points(
+        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
+    )
+    surface: pv.PolyData = cells.extract_surface(
+        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
+    )
+    return surface
 
 
 def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
@@ -738,9 +753,9 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
         .vti and .vtr, or .vtm for several blocks, determines the format; .stl has no arrays, and
-        of an image the solid below its active heights. An existing file is
-        replaced. The blocks are in a folder beside the .vtm file, which has its name without the
-        extension.
+        of an image the solid below its active heights; far from the origin it is moved there, with
+        a warning. An existing file is replaced. The blocks are in a folder beside the .vtm file,
+        which has its name without the extension.
 
     Returns
     -------
@@ -759,8 +774,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         mesh = mesh.cast_to_unstructured_grid()
     # STL has no cells but triangles.
     if path.suffix.lower() == ".stl":
+        mesh = _resolved(mesh)
         mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
-        _warn_of_merged(mesh, path)
 
     # Files of blocks are moved there when all of them are whole.
     folder = path.with_suffix("")
@@ -786,17 +801,19 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
             folder.rmdir()
 
 
-def _warn_of_merged(mesh: pv.DataSet, path: Path) -> None:
-    """Warn of points that a format of float32 cannot tell from one another."""
-    places: Raw = np.asarray(mesh.points)
-    if places.dtype == np.float32:
-        return
-    rounded = len(np.unique(places.astype(np.float32), axis=0))
-    if merged := len(np.unique(places, axis=0)) - rounded:
-        _check.warn(
-            f"output: '{path.name}': {merged} of {len(places)} points fall on others, because STL "
-            "holds float32; subtract an origin from the points, or write .vtp"
-        )
+def _resolved(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh moved to the origin if float32, which .stl has, does not resolve its points."""
+    origin = np.array(blocks.near_origin(mesh))
+    # A side of a typical cell, by the area or the volume that a point has.
+    cell = blocks.box(mesh)[1] / max(mesh.n_points, 1) ** 0.5
+    if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * cell:
+        return mesh
+    words = ", ".join(f"{-part:.9g}" for part in origin)
+    _check.warn(
+        f"output: the mesh is moved by ({words}), since the float32 numbers of .stl do not "
+        "resolve its points where it is"
+    )
+    return blocks.moved(mesh, -origin)
 
 
 def _solid(field: pv.ImageData) -> pv.PolyData:

@@ -7,7 +7,6 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
 from vizlight.files import FileError
 
 SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
@@ -97,13 +96,6 @@ def test_places_of_ply_keep_their_digits(order, tmp_path):
     found = vizlight.read(tmp_path / "a.ply").points
     assert found.dtype == np.float64
     np.testing.assert_array_equal(np.unique(found, axis=0), np.unique(points, axis=0))
-
-
-def test_an_stl_file_far_from_the_origin_says_what_it_merges(tmp_path):
-    plane = pv.Plane(i_size=1, j_size=1, i_resolution=4, j_resolution=4)
-    plane.points = plane.points.astype(np.float64) + np.array([5e6, 0, 0])
-    with pytest.warns(UserWarning, match=r"of 25 points fall on others, because STL"):
-        files.write_mesh(plane, tmp_path / "a.stl")
 
 
 def test_packed_files(tmp_path):

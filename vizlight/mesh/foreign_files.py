@@ -28,6 +28,8 @@ PACKAGES = {
     ".tck": ("nibabel", "tracts"),
     ".trx": ("trx-python", "tracts"),
     ".gii": ("nibabel", "tracts"),
+    ".nii": ("nibabel", "tracts"),
+    ".mgz": ("nibabel", "tracts"),
 } | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
@@ -73,6 +75,8 @@ def read(
         return _polylines(*brains.tracks_of_tt(path), {}, {})
     if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
         return brains.read(path)
+    if path.name.lower().endswith(brains.VOLUMES):
+        return brains.volume(path, time)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in cf_grids.SUFFIXES:
