@@ -227,3 +227,19 @@ def test_a_halo_is_a_width(halo):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises((TypeError, ValueError), match="halo: expected"):
         plotter.vizlight.add_mesh(pv.Line(), scene=WHITE, halo=halo)
+
+
+@pytest.mark.parametrize("light", ["auto", "points"])
+def test_pictures_have_halos_where_they_are_asked_for(light):
+    scene = Scene(material=Material(ambient=0.4, diffuse=0, specular=0), view=WHITE.view)
+    back, front = pv.Line((0, -1, -1), (0, 1, -1)), pv.Line((-1, 0, 0), (1, 0, 0))
+    lines = [vizlight.illuminate(line, scene) for line in (front, back)]
+    columns = []
+    for halo in (False, True):
+        picture = shot(
+            pv.MultiBlock(lines), looking_down(parallel=True), size=(200, 200), line_width=5,
+            halo=halo, light=light, background="white",
+        )  # fmt: skip
+        columns.append(picture[[80, 93, 95, 104, 106, 120], 99])
+    assert columns[0] == pytest.approx(0.4, abs=0.02)
+    assert columns[1] == pytest.approx([0.4, 1, 1, 1, 1, 0.4], abs=0.02)

@@ -124,6 +124,7 @@ class FieldCaster:
             x=field.x[self._rim :][: len(found.x)] - field.x[self._rim],
             y=field.y[self._rim :][: len(found.y)] - field.y[self._rim],
             heights=self._inner(field.heights),
+            top=float(np.nanmax(found.z) - np.nanmin(found.z)),
         )
         self.depth = _depth(options.depth, height_field.default_depth(inner))
         self.points = found.points()
@@ -135,10 +136,10 @@ class FieldCaster:
         # Interpolated from the nodes around, normals are shorter than 1.
         self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(known * 1.0) > 0)
-        if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * field.size:
-            wanted = georeference.ENOUGH[0] * field.size / field.top * options.exaggeration
+        if georeference.UNIT in grid.field_data and 0 < inner.top < UNSEEN * inner.size:
+            wanted = georeference.ENOUGH[0] * inner.size / inner.top * options.exaggeration
             _check.warn(
-                f"the heights of the map range over {field.top / field.size:.1g} of its side, a "
+                f"the heights of the map range over {inner.top / inner.size:.1g} of its side, a "
                 f"relief that nobody sees; pass exaggeration={10 ** round(np.log10(wanted)):g}"
             )
         # The oracle follows single rays; it knows fields as they are, not resampled ones.

@@ -334,8 +334,8 @@ def in_medium(
     if normals is not None:
         targets = medium.targets(points, normals)
     else:
-        lengths = polylines.of_points(mesh, media.line_lengths)
-        targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
+        halves = polylines.of_points(mesh, media.line_halves)
+        targets = medium.targets(points, polylines.line_tangents(mesh), halves)
     return medium.sky(targets, thick, SIDES)
 
 
