@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import bz2
 import contextlib
 import errno
+import gzip
+import lzma
 import os
 import re
 import shutil
 import sys
+import tempfile
 import threading
 import time
 import uuid
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,6 +40,7 @@ from vizlight.mesh import (
     height_grids,
     meaning,
     normals,
+    ply_points,
     records,
     series,
     short_files,
@@ -50,7 +56,7 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from vizlight._types import Foreign, Raw
+    from vizlight._types import Foreign, Keywords, Raw
 
 __all__ = [
     "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
@@ -113,7 +119,7 @@ def read(
     path : path, xarray.Dataset or xarray.DataArray
         Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
         .trx) need the extra ``tracts``; netCDF files (.nc, .cdf) and those that PyVista reads by
-        meshio, such as .off, .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
+        meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
         (.tif, .asc, .hgt) the extra ``maps``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
@@ -172,6 +178,10 @@ def read(
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
     overlays = [_path("overlay", one) for one in given]
     _check_there(path, overlays)
+    inner = Path(path.stem).suffix.lower()
+    if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
+        options = {"time": time, "overlay": overlays, "at": at, "nodata": nodata}
+        return _unpacked(path, options)
     reason, mesh, notes = "no points", None, list[str]()
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
@@ -304,10 +314,35 @@ def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
         )
 
 
-#: Names of packed files end so.
-_PACKED = (".bz2", ".gz", ".xz", ".zip")
+#: Functions that open packed files, by the ends of their names.
+_UNPACK: dict[str, Foreign] = {
+    ".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open,
+}  # fmt: skip
+#: Formats whose readers take them packed.
+_PACKED_ALIKE = (".img", ".mgh", ".nii", ".tt")
+#: Most bytes that are unpacked: a small file can hold any number of zeros.
+MOST_UNPACKED = 1 << 33
 #: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
 _MESHERS = (".mesh", ".meshb", ".msh")
+
+
+def _unpacked(path: Path, options: Keywords) -> pv.DataSet:
+    """Return the mesh of a packed file, from a temporary file of what is in it."""
+    with tempfile.TemporaryDirectory() as folder:
+        inner = Path(folder) / path.stem
+        try:
+            with _UNPACK[path.suffix.lower()](path) as packed, inner.open("wb") as file:
+                while block := packed.read(1 << 20):
+                    file.write(block)
+                    if file.tell() > MOST_UNPACKED:
+                        raise _damaged(path, f"more than {MOST_UNPACKED} bytes are in it")
+        except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
+            raise _damaged(path, _first_line(error)) from error
+        try:
+            return read(inner, **options)
+        except FileError as error:
+            # The name of the temporary file says nothing to anyone.
+            raise FileError(str(error).replace(str(inner), str(path))) from error
 
 
 def _found(
@@ -320,6 +355,11 @@ def _found(
     found: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
+    if path.suffix.lower() == ".ply" and isinstance(found, pv.PolyData):
+        places = ply_points.exact(path)
+        # VTK repeats points whose faces have their own texture coordinates.
+        if places is not None and len(places) == found.n_points:
+            found.points = places
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -371,7 +411,7 @@ def _by_vtk(path: Path) -> pv.DataObject:
     except OSError as error:
         way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        if path.suffix.lower() in _PACKED:
+        if path.suffix.lower() in (*_UNPACK, ".zip"):
             way = "unpack it first"
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 

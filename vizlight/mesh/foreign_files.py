@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, cf_grids, georeference, polylines, scene_files
+from vizlight.mesh import brains, cf_grids, geomview, georeference, polylines, scene_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ PACKAGES = {
 } | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
-        ".meshb", ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol",
+        ".meshb", ".msh", ".nas", ".node", ".post", ".su2", ".tec", ".ugrid", ".vol",
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
@@ -85,6 +85,10 @@ def read(
         return georeference.read(path, nodata)
     if suffix in scene_files.SUFFIXES:
         return scene_files.read(path)
+    if suffix == ".off":
+        return geomview.read_off(path)
+    if suffix == ".mesh" and geomview.is_mesh(path):
+        return geomview.read_mesh(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".inp" and _head(path, 1) == b"*":
