@@ -353,7 +353,7 @@ def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
     """Return the step that reads data and takes a part of them, what they hold, and notes."""
     part, notes, raster = wishes.part, [], False
     if isinstance(data, str | Path):
-        keywords = {name: part[name] for name in ("time", "overlay") if part.get(name)}
+        keywords = {name: part[name] for name in ("time", "overlay") if name in part}
         step = Step("data", "vizlight.read", data, **keywords)
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
