@@ -255,7 +255,7 @@ PAGES = Path(__file__).parent.parent / "gallery" / "pages" / "api.rst"
 BESIDE = (
     "vizlight.accessor", "vizlight.data", "vizlight.geometry.solids",
     "vizlight.geometry.solids.primitives", "vizlight.geometry.solids.polyhedra",
-    "vizlight.draw.component", "vizlight.draw.show", "vizlight.scene",
+    "vizlight.draw.component", "vizlight.looks.show", "vizlight.scene",
 )  # fmt: skip
 #: Public classes that only vizlight makes, which are records, or what others derive from.
 RETURNED = {

@@ -56,7 +56,7 @@ class _Method(Generic[Options, Result]):
 
 
 def _plot() -> Function:
-    from vizlight.draw.show import plot
+    from vizlight.looks.show import plot
 
     return plot
 

@@ -111,9 +111,17 @@ class Look:
         """What a reader should know, such as a factor of heights."""
         return tuple(self.drawing.notes)
 
-    def plotter(self, *, off_screen: bool = True) -> pv.Plotter:
-        """Return a plotter that shows the picture, which the caller must close."""
-        plotter, steps = self._picture(off_screen=off_screen)
+    def plotter(self, *, off_screen: bool | None = True) -> pv.Plotter:
+        """Return a plotter that shows the picture, which the caller must close.
+
+        Parameters
+        ----------
+        off_screen : bool or None, default: True
+            Whether no window is shown; None is PyVista's own choice.
+        """
+        plotter, steps = self._picture(
+            off_screen=bool(pv.OFF_SCREEN) if off_screen is None else off_screen
+        )
         made: pv.Plotter = plotter.run()
         try:
             for step in steps:
@@ -131,7 +139,7 @@ class Look:
         **options
             Keywords of ``pyvista.Plotter.show``.
         """
-        return self.plotter(off_screen=bool(pv.OFF_SCREEN)).show(**options)
+        return self.plotter(off_screen=None).show(**options)
 
     def save(self, path: str | Path, /) -> Path:
         """Save the picture, a page, a movie of a turn, or the lit mesh, by the ending of the name.

@@ -107,8 +107,10 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
     """
     lines: list[str] = []
     heads: set[str] = set()
+    holders: dict[str, Step] = {}
     for job in jobs:
         for step in in_order(job):
+            _keep_apart(step, holders)
             heads.add(step.path.partition(".")[0])
             if step.path == "-":
                 lines.append(f"# {step.name}: the {type(step.arguments[0]).__name__} of the look")
@@ -118,6 +120,19 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
     if own := [head for head in OWN if head in heads]:
         groups[-1].append(f"from vizlight import {', '.join(own)}")
     return "\n\n".join("\n".join(group) for group in (*groups, lines) if group)
+
+
+def _keep_apart(step: Step, holders: dict[str, Step]) -> None:
+    """Give a step a name of its own, unless it is made of the one that has its name."""
+    name, count = step.name, 1
+    while name and (other := holders.get(name, step)) is not step:
+        if any(part is other for part in step.parts()):
+            break
+        count += 1
+        name = f"{step.name}_{count}"
+    step.name = name
+    if name:
+        holders[name] = step
 
 
 def in_order(steps: Sequence[Step]) -> list[Step]:

@@ -12,6 +12,7 @@ from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
+from vizlight.looks.look import look
 from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ EFFECTS = {
     "parallel_projection": ("parallel_projection",),
     "ssao": ("ssao",),
 }
+#: Keywords of ``pyvista.plot`` that say nothing of what is shown.
+SHOWN = {"off_screen", "return_img", "interactive", "auto_close", "return_cpos"}
 #: Keywords of ``pyvista.plot`` that its signature does not name.
 _MORE = {"edl", "show_grid", "auto_close", "camera"}
 
@@ -50,7 +53,7 @@ def plot(
     sky: bool = False,
     **options: Given,
 ) -> object:
-    """Show a mesh whose light follows the camera.
+    """Show a mesh whose light follows the camera; without options as :func:`vizlight.look` decides.
 
     Parameters
     ----------
@@ -104,6 +107,18 @@ def plot(
     for name in ("off_screen", "notebook"):
         if given.get(name) is not None:
             _check.boolean(name, given[name])
+    if (
+        scene is None
+        and scalars is None
+        and light == "auto"
+        and not (options or given.keys() - SHOWN)
+    ):
+        pixels = (1200, 800) if size is None else (size[0], size[1])
+        shown = look(mesh, view=camera, size=pixels).plotter(
+            off_screen=given.pop("off_screen", None)
+        )
+        backend = jupyter_backend if shown.notebook else None
+        return shown.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
     own = inspect.signature(pv.Plotter.__init__).parameters
     window = {name: given.pop(name) for name in [*given] if name in own}
     plotter: Foreign = pv.Plotter(window_size=size, **window)

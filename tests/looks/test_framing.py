@@ -1,0 +1,49 @@
+"""From where data are seen: maps from above, patches along their normal, solids from a side."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.looks.contents import Contents
+from vizlight.looks.framing import eye_of
+
+
+def eye(mesh):
+    return eye_of(mesh, Contents(mesh))
+
+
+@pytest.mark.parametrize(
+    ("direction", "toward"),
+    [((0, 0, 1), (0, 0, 1)), ((1, 0, 0), (1, 0, 0)), ((0, 1, 0), (0, -1, 0))],
+)
+def test_a_sheet_is_seen_along_its_axis(direction, toward):
+    found = eye(pv.Plane(direction=direction, i_size=3, j_size=2))
+    assert found.toward == toward
+    assert found.parallel
+
+
+def test_a_strip_lies_along_the_picture():
+    strip = pv.Plane(i_size=1, j_size=9)
+    found = eye(strip)
+    right = np.cross(found.up, found.toward)
+    assert abs(right[1]) == pytest.approx(1)
+
+
+def test_an_open_patch_is_seen_along_its_mean_normal():
+    patch = pv.Plane(direction=(1, 2, 3), i_resolution=20, j_resolution=20)
+    patch.points += 0.02 * np.sin(9 * patch.points[:, [1, 2, 0]])
+    np.testing.assert_allclose(eye(patch).toward, np.array((1, 2, 3)) / 14**0.5, atol=0.1)
+
+
+def test_a_solid_shows_its_large_side():
+    slab = pv.Cube(x_length=1, y_length=9, z_length=4).triangulate().subdivide(4)
+    toward = np.array(eye(slab).toward)
+    assert abs(toward[0]) > 0.5
+    assert 0 < toward[2] < 0.7
+
+
+def test_a_hollow_is_looked_into():
+    """The open side of a half pipe faces the eye."""
+    pipe = pv.Cylinder(direction=(0, 0, 1), height=4, resolution=60, capping=False).triangulate()
+    half = pipe.subdivide(2).clip((0, 1, 0), invert=True)
+    assert eye(half).toward[1] != 0

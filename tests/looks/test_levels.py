@@ -1,0 +1,38 @@
+"""The level that stands out: through the steepest places, also of grids of other kinds."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.looks import levels
+
+
+def grid():
+    made = pv.ImageData(dimensions=(24, 22, 20), spacing=(1, 1, 1))
+    x, y, z = (made.points - np.asarray(made.center)).T
+    r = np.sqrt(x * x + y * y + z * z)
+    # A step at 40 between two slopes.
+    made["T"] = 0.5 * r + 80 / (1 + np.exp(-3 * (r - 7)))
+    made["ramp"] = 2 * x + 5
+    return made
+
+
+@pytest.mark.parametrize("cast", [lambda g: g, lambda g: g.cast_to_unstructured_grid()])
+def test_the_level_is_where_the_values_rise_most(cast):
+    level, contrast = levels.best_level(cast(grid()), "T")
+    assert 25 < level < 60
+    assert contrast > 2
+
+
+def test_a_ramp_has_no_level():
+    _, contrast = levels.best_level(grid(), "ramp")
+    assert contrast == pytest.approx(1, abs=0.05)
+    assert contrast < levels.GOOD
+
+
+def test_constants_and_holes():
+    made = grid()
+    made["flat"] = np.ones(made.n_points)
+    assert levels.best_level(made, "flat")[1] == 0
+    made["T"][::7] = np.nan
+    assert np.isfinite(levels.best_level(made, "T")[0])

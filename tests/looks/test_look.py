@@ -1,0 +1,157 @@
+"""``vizlight.look``: what is shown of which data, files, scripts, and bad input."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight.files import FileError
+from vizlight.looks.rules import RULES
+
+SIZE = (120, 80)
+
+
+def sheet(**arrays):
+    """Return a flat grid with point arrays of x and y."""
+    grid = pv.ImageData(dimensions=(24, 18, 1))
+    x, y, _ = grid.points.T
+    for name, values in arrays.items():
+        grid[name] = values(x, y)
+    return grid
+
+
+def volume(**arrays):
+    grid = pv.ImageData(dimensions=(14, 13, 12), origin=(-6.5, -6, -5.5))
+    x, y, z = grid.points.T
+    for name, values in arrays.items():
+        grid[name] = values(x, y, z)
+    return grid
+
+
+def turning(x, y, z):
+    return np.stack([-y, x, 0.3 * z + 1], axis=1)
+
+
+def edge(x, y, z):
+    return np.tanh(x * x + y * y + z * z - 16)
+
+
+def ball(**arrays):
+    made = pv.Sphere(theta_resolution=24, phi_resolution=24)
+    for name, values in arrays.items():
+        made[name] = values(*made.points.T)
+    return made
+
+
+#: Data of each kind, and the question, what is shown and the array of their look.
+KINDS = {
+    "values": (sheet(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
+    "heights": (sheet(elevation=lambda x, y: 3 * np.sin(x / 3)), "relief", "sheet", "elevation"),
+    "classes": (sheet(land=lambda x, _: (x > 9).astype(int)), "none", "sheet", "land"),
+    "components": (
+        sheet(u=lambda x, y: 1 + 0 * x, v=lambda x, y: np.sin(x)), "direction", "sheet", "u,v",
+    ),
+    "surface with vectors": (
+        ball(V=lambda x, y, z: np.stack([-y - 0.1, x, 0 * z + 0.2], 1)), "direction", "surface",
+        "V",
+    ),
+    "surface with values": (ball(p=lambda x, y, z: x), "value", "surface", "p"),
+    "surface": (pv.Sphere(), "shape", "surface", None),
+    "flow": (volume(V=turning, T=edge), "heading", "streamlines", "V"),
+    "scan": (volume(T=edge), "shape", "isosurface", "T"),
+    "even ramp": (volume(T=lambda x, y, z: x), "shape", "three", "T"),
+    "materials": (
+        volume(mat=lambda x, y, z: np.digitize(x, (-2, 3)).astype(np.int32)), "value", "hull",
+        "mat",
+    ),
+    "lines": (
+        pv.Spline(np.random.default_rng(1).normal(size=(9, 3)), 60), "heading", "lines", None,
+    ),
+    "cloud": (
+        pv.PolyData(np.random.default_rng(2).normal(size=(90, 3))), "shape", "points", None,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_data_choose(kind):
+    mesh, question, shown, array = KINDS[kind]
+    names = list(mesh.array_names)
+    look = vizlight.look(mesh, size=SIZE)
+    assert (look.question, look.shown, look.array) == (question, shown, array)
+    assert look.reason
+    assert mesh.array_names == names
+    assert str(look).count("\n") == 2
+    assert all(other.array != look.array for other in look.others)
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_look_saves_itself_and_its_script_draws_the_same(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh = KINDS[kind][0]
+    look = vizlight.look(mesh, size=SIZE)
+    look.save("one.png")
+    exec(look.script("two.png"), {"mesh": mesh})
+    files = (Image.open(tmp_path / f"{name}.png").convert("RGB") for name in ("one", "two"))
+    one, two = (np.asarray(file).astype(int) for file in files)
+    assert one.shape == (SIZE[1], SIZE[0], 3)
+    assert len(np.unique(one.reshape(-1, 3), axis=0)) > 8
+    assert np.abs(one - two).max() <= 2
+
+
+@pytest.mark.opengl
+def test_a_look_is_a_page_a_mesh_and_a_movie(tmp_path):
+    look = vizlight.look(ball(p=lambda x, y, z: x), size=(60, 40))
+    page = look.save(tmp_path / "a.html").read_text("utf-8")
+    assert page.rstrip().endswith("</html>")
+    lit = pv.read(look.save(tmp_path / "a.vtp"))
+    assert {"p", "luminance"} <= set(lit.point_data)
+    with pytest.warns(UserWarning, match="the light that follows the view"):
+        assert look.save(tmp_path / "a.glb").stat().st_size > 1000
+    pytest.importorskip("imageio")
+    assert look.save(tmp_path / "a.gif").stat().st_size > 1000
+    html = look._repr_html_()
+    assert html.startswith('<img alt="p in colours')
+
+
+def test_options_win_over_the_rule():
+    mesh = volume(V=turning, T=edge)
+    assert vizlight.look(mesh, array="T").shown == "isosurface"
+    assert vizlight.look(mesh, "shape").question == "shape"
+    assert vizlight.look(mesh, "flow", spacing=2.0).shown == "streamlines"
+    on = vizlight.look(mesh, contour="T", level=0.5)
+    assert (on.question, on.array) == ("direction", "V")
+    look = vizlight.look(mesh, view="x", size=SIZE, scene="shape")
+    toward = np.subtract(look.view.position, look.view.focal_point)
+    np.testing.assert_allclose(toward / np.linalg.norm(toward), (1, 0, 0), atol=1e-9)
+    assert look.scene.lights == vizlight.presets.shape().lights
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "error", "words"),
+    [
+        (pv.PolyData(), {}, ValueError, "data: expected a mesh with points"),
+        (3, {}, TypeError, "data: expected a PyVista mesh"),
+        ("none.vtp", {}, FileError, "no such file"),
+        (ball(p=lambda x, y, z: x), {"array": "q"}, ValueError, "array: expected the name of an"),
+        (ball(p=lambda x, y, z: x), {"question": "direction"}, ValueError, "vectors for 'directi"),
+        (ball(), {"question": "beauty"}, ValueError, "question: expected a question"),
+        (ball(), {"stile": "dark"}, TypeError, "an option of look, got a name that"),
+        (ball(), {"style": "neon"}, ValueError, "style: expected"),
+        (ball(), {"view": "up"}, ValueError, "view: expected"),
+        (ball(), {"size": (0, 5)}, ValueError, "size: expected"),
+        (ball(), {"scene": "glow"}, ValueError, "scene: expected"),
+    ],
+)
+def test_bad_input(mesh, options, error, words):
+    question = options.pop("question", "auto")
+    with pytest.raises(error, match=words):
+        vizlight.look(mesh, question, **options)
+
+
+def test_every_rule_can_be_reached():
+    shown = {(look[1], look[2]) for look in KINDS.values()} | {("shape", "isosurface")}
+    for rule in RULES:
+        assert any(rule.shown == what for _, what in shown) or rule.shown == "hull"
