@@ -71,6 +71,8 @@ SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
+#: Largest rounding of points in a file of float32, as a share of a cell.
+FINE = 1e-2
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -267,6 +269,8 @@ def _whole(
         joined = blocks.highest(found)
         mesh = joined.grid
         notes += [note] if (note := joined.note()) else []
+    if isinstance(mesh, pv.DataSet):
+        normals.drop_empty(mesh)
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
@@ -494,7 +498,20 @@ def surface_of(
     if not found.n_points:
         expected = f"a value between {low:g} and {high:g}"
         raise ValueError(_check.message("level", expected, f"{level:g}"))
-    return found
+    # Beside a hole VTK makes faces with corners that are nowhere.
+    there: Foreign = np.isfinite(np.asarray(found.points)).all(axis=1)
+    return found if there.all() else _kept_points(found, there)
+
+
+def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
+    """Return the cells of a mesh whose points are all kept, with their arrays."""
+    cells = mesh.extract_points(
+        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
+    )
+    surface: pv.PolyData = cells.extract_surface(
+        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
+    )
+    return surface
 
 
 def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
@@ -696,9 +713,9 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
         .vti and .vtr, or .vtm for several blocks, determines the format; .stl has no arrays, and
-        of an image the solid below its active heights. An existing file is
-        replaced. The blocks are in a folder beside the .vtm file, which has its name without the
-        extension.
+        of an image the solid below its active heights; far from the origin it is moved there, with
+        a warning. An existing file is replaced. The blocks are in a folder beside the .vtm file,
+        which has its name without the extension.
 
     Returns
     -------
@@ -717,6 +734,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         mesh = mesh.cast_to_unstructured_grid()
     # STL has no cells but triangles.
     if path.suffix.lower() == ".stl":
+        mesh = _resolved(mesh)
         mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
     # Files of blocks are moved there when all of them are whole.
@@ -741,6 +759,21 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     finally:
         with contextlib.suppress(OSError):  # it is removed if nothing is in it
             folder.rmdir()
+
+
+def _resolved(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh moved to the origin if float32, which .stl has, does not resolve its points."""
+    origin = np.array(blocks.near_origin(mesh))
+    # A side of a typical cell, by the area or the volume that a point has.
+    cell = blocks.box(mesh)[1] / max(mesh.n_points, 1) ** 0.5
+    if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * cell:
+        return mesh
+    words = ", ".join(f"{-part:.9g}" for part in origin)
+    _check.warn(
+        f"output: the mesh is moved by ({words}), since the float32 numbers of .stl do not "
+        "resolve its points where it is"
+    )
+    return blocks.moved(mesh, -origin)
 
 
 def _solid(field: pv.ImageData) -> pv.PolyData:

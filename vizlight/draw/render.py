@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
@@ -19,10 +20,11 @@ from vizlight.draw.backends import (
     window_class,
 )
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.draw.dialects import widen
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.legends import CornerKey, ink_on, name_no_data
+from vizlight.draw.strokes import widen
+from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -362,7 +364,7 @@ def save_png(
     path = check_output(path, (".png",))
     plotter = make_plotter(panels, **options)
     try:
-        return replace_file(path, plotter.screenshot, doing="draw")
+        return replace_file(path, partial(save_seen, plotter, path), doing="draw")
     finally:
         plotter.close()
 
@@ -558,6 +560,6 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     path = check_output(path, IMAGES)
     try:
         plotter.reset_camera_clipping_range()
-        return replace_file(path, plotter.screenshot, doing="draw")
+        return replace_file(path, partial(save_seen, plotter, path), doing="draw")
     finally:
         plotter.close()

@@ -143,8 +143,8 @@ def exposed(largest: Number, exposure: Number) -> Number:
     """Return what light is multiplied by, whose largest channel is given, for an exposure.
 
     With x = exposure * largest the light becomes x up to K = 0.8, and K + (1 - K) (1 - exp(-t)),
-    t = (x - K) / (1 - K), above: smooth in its first derivative, never falling, and below 1 as far
-    as numbers tell. At x = 1 it is 0.926, within 0.074 of x, which is the most up to there.
+    t = (x - K) / (1 - K), above: smooth in its first derivative, rising, and below 1, to two
+    roundings. At x = 1 it is 0.926, within 0.074 of x, which is the most up to there.
     """
     x = exposure * largest
     bent = 1.0 - (1.0 - KNEE) * exp((KNEE - x) * (1.0 / (1.0 - KNEE)))
