@@ -51,7 +51,7 @@ PARTS = {
     Scene: {
         "lights": [LAMP, FAR], "material": Material(diffuse=0.6), "depth_cue": CUE,
         "view": View(position=(2, -0.2, 6), direction=(0.2, 0, 1)),
-        "ambient_intensity": 0.5, "ambient_color": (0.6, 0.8, 1),
+        "ambient_intensity": 0.5, "ambient_color": (0.6, 0.8, 1), "exposure": 1.7,
     },
 }  # fmt: skip
 #: Another value of each option than its default; a pair is that and the options beside both.

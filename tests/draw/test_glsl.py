@@ -29,6 +29,7 @@ SCENES = {
         material=Material(specular=0.5, shininess=2e4),
         view=View(direction=(0.2, 0.1, 1.0)),
     ),
+    "exposed": Scene(lights=[FAR, NEAR], material=Material(specular=0.4), view=EYE, exposure=1.8),
     "bright": Scene(lights=[FAR] * 5, material=Material(diffuse=1, specular=1), view=EYE),
 }
 KINDS = {
@@ -111,7 +112,11 @@ def test_the_text_gives_the_light_of_the_engine(scene, kind, model, data):
     lit = engine.shade(
         points,
         tangents if asked.pop("k", None) else None,
-        scene.replace(material=dataclasses.replace(scene.material, color=color)),
+        scene.replace(
+            material=dataclasses.replace(scene.material, color=color),
+            # Of colours of data the whole factor is exposed.
+            exposure=None if data else scene.exposure,
+        ),
         normals=normals if own.surface or own.conditioned or own.fur else None,
         fur_height=heights if own.fur else None,
         **asked,
@@ -121,6 +126,7 @@ def test_the_text_gives_the_light_of_the_engine(scene, kind, model, data):
     if data:
         # A factor on the colour of the data, which stands twice in what the renderer holds.
         luma = lit.luminance if lit.rgb is None else lit.rgb @ formulas.LUMA
+        luma = display.exposed(luma, scene.exposure)
         expected = np.clip(luma, display.LEAST, 1)[:, np.newaxis] * [0.9, 0.8, 0.7]
     else:
         expected = lit.rgb / np.maximum(lit.rgb.max(axis=1, keepdims=True), 1)

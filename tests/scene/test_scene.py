@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import math
 
 import numpy as np
 import pytest
@@ -285,3 +286,12 @@ test_a_dict_of_another_kind_is_refused = refusals(
 def test_the_typed_keywords_are_those_of_the_scene():
     fields = {field.name for field in dataclasses.fields(Scene)}
     assert set(scene_module.SceneKeywords.__annotations__) == fields
+
+
+def test_an_exposure_is_recorded_and_shows_colours():
+    scene = Scene(exposure=1.5)
+    assert scene.colored
+    assert Scene.from_dict(scene.to_dict()) == scene
+    for wrong in (0, -1.0, math.inf, 1e10):
+        with pytest.raises(ValueError, match="exposure: expected"):
+            Scene(exposure=wrong)

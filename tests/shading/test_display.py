@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from vizlight import DepthCue, Light, Material, Scene
-from vizlight.shading.display import NO_DATA, displayable, for_colors, numerals, on_colors
+from vizlight.model import formulas
+from vizlight.shading.display import (
+    NO_DATA,
+    displayable,
+    exposed,
+    exposure_of,
+    for_colors,
+    numerals,
+    on_colors,
+)
 
 
 def test_light_on_colours_is_a_factor_from_three_tenths_to_one(random):
@@ -96,3 +105,38 @@ def test_colours_to_bring_into_range_are_of_three_components():
 )
 def test_numbers_are_told_apart(numbers, words):
     assert numerals(numbers) == words
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_exposed_light_rises_smoothly_toward_white(dtype):
+    light = np.linspace(0, 2, 4001).astype(dtype)
+    shown = exposed(light, 1.25)
+    assert shown.dtype == dtype
+    below = 1.25 * light <= formulas.KNEE
+    np.testing.assert_array_equal(shown[below], light[below] * dtype(1.25))
+    assert np.all(np.diff(shown) >= -np.finfo(dtype).eps)
+    assert 0.999 < shown.max() < 1
+    # No kink: slopes of neighbours differ by little, and none exceeds the exposure.
+    slopes = np.diff(exposed(np.linspace(0, 2, 4001), 1.25)) / (2 / 4000)
+    assert np.abs(np.diff(slopes)).max() < 0.005
+    assert slopes.max() < 1.25 + 1e-9
+    # The bound that the formula states.
+    gap = np.linspace(0, 1, 1001) - exposed(np.linspace(0, 1, 1001), 1.0)
+    assert gap.min() == 0
+    assert gap.max() == pytest.approx(0.0736, abs=1e-4)
+
+
+def test_light_without_exposure_stays():
+    light = np.array([0.2, 3.0])
+    assert exposed(light, None) is light
+
+
+def test_the_exposure_of_light_brings_its_seventieth_percentile_to_1(random):
+    light = random.uniform(0.1, 0.9, 1001)
+    exposure = exposure_of(np.append(light, [np.nan, np.inf]))
+    assert np.percentile(exposure * light, 70) == pytest.approx(1)
+    grey = np.repeat(light[:, np.newaxis], 3, axis=1)
+    assert exposure_of(grey) == pytest.approx(exposure)
+    assert exposure_of([0.0, 0.0]) == exposure_of([]) == 1.0
+    with pytest.raises(ValueError, match=r"light: expected an array of shape \(N,\) or"):
+        exposure_of([[1.0, 2.0]])

@@ -721,6 +721,7 @@ def _colorless(scene: Scene) -> Scene:
         material=dataclasses.replace(material, color=None, specular_color=None),
         ambient_color=None,
         depth_cue=None if cue is None else dataclasses.replace(cue, color=None),
+        exposure=None,
     )
 
 

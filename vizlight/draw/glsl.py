@@ -290,6 +290,14 @@ class Shader(Writer):
         """Return a sum."""
         return value if total is None else total + value
 
+    def largest(self, rgb: Value) -> Value:
+        """Return the largest channel of a colour."""
+        return self.named(f"max(max({rgb.text}.r, {rgb.text}.g), {rgb.text}.b)", "float")
+
+    def exposed(self, rgb: Value) -> Value:
+        """Return an exposed colour; of colours of data the factor is exposed at the end."""
+        return rgb if self.data else super().exposed(rgb)
+
     def put(self, name: str, value: Value) -> None:
         """Take a value for a result."""
         self.made[name] = value
@@ -302,10 +310,11 @@ class Shader(Writer):
         if self.data:
             luma = self.named(f"dot({color.text}, {vector(formulas.LUMA)})", "float")
             own = self.named("vizColorGain * (ambientColor + diffuseColor)", "vec3")
+            if self.plan.scene.exposure is not None:
+                luma = luma * formulas.exposed(luma, self.number(self.plan.scene.exposure))
             shown = own * formulas.color_factor(luma, display.LEAST)
         else:
-            most = self.named(f"max(max({color.text}.r, {color.text}.g), {color.text}.b)", "float")
-            shown = formulas.in_range(color, most)
+            shown = formulas.in_range(color, self.largest(color))
         # Points that could not be lit have the colour of missing data. Lines that nothing needs
         # are left out, since a compiler on a browser's main thread takes its time.
         last = f"  vec3 vizColor = vizGood ? {shown.text} : {vector(display.NO_DATA)};"

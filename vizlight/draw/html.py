@@ -226,6 +226,8 @@ class Page:
             "ambientColor": [scene.ambient_intensity * c for c in scene.ambient_color or WHITE],
             "specularColor": list(prop.GetSpecularColor()),
         }
+        if scene.exposure is not None:
+            made["exposure"] = scene.exposure
         cue = scene.depth_cue
         if cue is not None:
             made["cue"] = {

@@ -738,7 +738,7 @@ def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[o
     return (
         [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
         material.diffuse > 0, material.specular > 0, glsl.is_plain(material.shininess),
-        None if cue is None else cue.smooth,
+        None if cue is None else cue.smooth, scene.exposure,
         source.inputs.layout, source.options, source.sided is None,
     )  # fmt: skip
 

@@ -274,14 +274,18 @@ def make_plotter(
 
 
 def _default_scalars(mesh: object) -> str:
-    """Return the array that colours a mesh: what :func:`vizlight.tint` gave it, else its light."""
+    """Return the array that colours a mesh: its tint, its exposed light, else its light."""
     parts = list(all_blocks(mesh)) if isinstance(mesh, Mesh) else []
-    tinted = [
-        (records.read(part, RGB) or {}).get("filter") == "tint"
-        and part.point_data.active_scalars_name == RGB
-        for part in parts
-    ]
-    return RGB if tinted and all(tinted) else DEFAULT_NAME
+    shown = [_has_colors(part) for part in parts]
+    return RGB if shown and all(shown) else DEFAULT_NAME
+
+
+def _has_colors(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh has colours that a filter made to be shown in place of its light."""
+    if (records.read(mesh, RGB) or {}).get("filter") == "tint":
+        return bool(mesh.point_data.active_scalars_name == RGB)
+    scene: Foreign = (records.read(mesh, DEFAULT_NAME) or {}).get("scene") or {}
+    return scene.get("exposure") is not None and RGB in records.made(mesh, DEFAULT_NAME)
 
 
 def _check_panels(

@@ -21,6 +21,7 @@ from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.scene.scene import as_scene
 from vizlight.shading import engine
+from vizlight.shading.display import exposed
 from vizlight.shading.options import LightOptions, Options, check_sides
 from vizlight.shading.results import of_light, part_name, unlit
 from vizlight.verify import report
@@ -342,7 +343,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         if lit.rgb is not None:
             # Column 3 is the luminance and 4 to 6 are the colour, behind the place.
             middles = cut.middles()
-            rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands)
+            rgb = _as_bright(middles[:, 4:7], middles[:, 3], bands, scene.exposure)
     record = of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
@@ -446,13 +447,16 @@ def _rgb(bands: Bands, light: _Light) -> Array | None:
     if not len(bands.values):
         return None
     lit = light.lit(*_middles(bands, light))
-    return None if lit.rgb is None else _as_bright(lit.rgb, np.asarray(lit.luminance), bands)
+    if lit.rgb is None:
+        return None
+    return _as_bright(lit.rgb, np.asarray(lit.luminance), bands, light.scene.exposure)
 
 
-def _as_bright(rgb: Array, value: Array, bands: Bands) -> Array:
+def _as_bright(rgb: Array, value: Array, bands: Bands, exposure: float | None) -> Array:
     """Return colours scaled from their luminance to the luminance of each polygon's band."""
     # Hue and saturation of the light stay, and it becomes as bright as the band.
-    share = np.divide(bands.values, value, out=np.ones_like(value), where=value > 0)
+    value, shown = exposed(value, exposure), exposed(bands.values, exposure)
+    share = np.divide(shown, value, out=np.ones_like(value), where=value > 0)
     return np.asarray(rgb * share[:, np.newaxis])
 
 

@@ -410,7 +410,8 @@ def light_on_colors(sources: Sequence[relight.Source], scene: Scene) -> list[tup
     plain = display.for_colors(scene)
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]
     shaded, _ = lighting.light(parts, plain, progress_bar=False)
-    return [(shading.luminance, shading.valid) for shading in shaded]
+    exposure = scene.exposure
+    return [(display.exposed(shading.luminance, exposure), shading.valid) for shading in shaded]
 
 
 def _light_of(
@@ -444,14 +445,16 @@ def _light_of(
         # What hides the sky from a point dims the ambient light alone.
         ambient = least if share is None else least * np.asarray(share[:])
         valid = shading.valid if shading.invalid else None
-        found.append((ambient + np.asarray(shading.diffuse), valid))
+        light_here = ambient + np.asarray(shading.diffuse)
+        found.append((display.exposed(light_here, scene.exposure), valid))
     return found
 
 
 def _colored(scene: Scene) -> bool:
     """Return whether light has a colour, on a material that has none."""
     # Colours of the data stand for the material's, which has no part in this.
-    return scene.replace(material=dataclasses.replace(scene.material, color=None)).colored
+    white = dataclasses.replace(scene.material, color=None)
+    return scene.replace(material=white, exposure=None).colored
 
 
 def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
@@ -463,7 +466,7 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
         return None
     # Without a highlight, and with ambient light enough, the luminance is what colours need.
     if light in ours and not material.specular and material.ambient >= display.LEAST:
-        return np.asarray(mesh.point_data[light]), valid
+        return display.exposed(np.asarray(mesh.point_data[light]), scene.exposure), valid
     names = [part_name(light, part) for part in ("ambient", "diffuse")]
     # Terms are stored without the cue, and where they are not stored the highlight stays in the
     # sum.
@@ -472,7 +475,7 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     ambient, diffuse = (np.asarray(mesh.point_data[name]) for name in names)
     # The ambient light that is stored is raised to the least that colours of data have.
     raised = max(material.ambient, display.LEAST) / material.ambient
-    return raised * ambient + diffuse, valid
+    return display.exposed(raised * ambient + diffuse, scene.exposure), valid
 
 
 def _record(table: pv.LookupTable, scalars: object, light: str, component: int | None) -> Record:

@@ -135,6 +135,23 @@ def color_factor(light: Number, least: Number) -> Number:
     return clamp(light, least, 1.0)
 
 
+#: Exposed light from which the knee bends; below it nothing changes.
+KNEE = 0.8
+
+
+def exposed(largest: Number, exposure: Number) -> Number:
+    """Return what light is multiplied by, whose largest channel is given, for an exposure.
+
+    With x = exposure * largest the light becomes x up to K = 0.8, and K + (1 - K) (1 - exp(-t)),
+    t = (x - K) / (1 - K), above: smooth in its first derivative, rising, and below 1, to two
+    roundings. At x = 1 it is 0.926, within 0.074 of x, which is the most up to there.
+    """
+    x = exposure * largest
+    bent = 1.0 - (1.0 - KNEE) * exp((KNEE - x) * (1.0 / (1.0 - KNEE)))
+    # Above the knee x is no 0; below it the quotient is not used.
+    return exposure * where(x > KNEE, bent / maximum(x, KNEE), 1.0)
+
+
 def in_range(channel: Number, largest: Number) -> Number:
     """Return a channel of a colour, over the largest of its channels where that exceeds 1."""
     return channel / maximum(largest, 1.0)

@@ -34,6 +34,7 @@ class SceneKeywords(TypedDict, total=False):
     ambient_intensity: float
     ambient_color: ColorLike | None
     depth_cue: DepthCue | None
+    exposure: float | None
 
 
 @dataclass(frozen=True, init=False)
@@ -59,6 +60,12 @@ class Scene:
         Channels of the ambient light in the array ``rgb``. Default: white.
     depth_cue : DepthCue, optional
         Fading of the light with depth. Default: none.
+    exposure : float, optional
+        Factor of the light that is shown, above 0 and up to 1e9. With it the array ``rgb`` is
+        there, and holds the exposed light: the factor times the light up to 0.8, above that with a
+        soft knee that stays below 1, with the same chromaticity. ``luminance`` and the terms stay
+        as they are. :func:`vizlight.shading.display.exposure_of` returns a factor. Default: none,
+        the light is shown as it is.
 
     Raises
     ------
@@ -72,6 +79,7 @@ class Scene:
     ambient_intensity: float
     ambient_color: Color | None
     depth_cue: DepthCue | None
+    exposure: float | None
 
     @named
     def __init__(
@@ -83,11 +91,14 @@ class Scene:
         ambient_intensity: float = 1.0,
         ambient_color: ColorLike | None = None,
         depth_cue: DepthCue | None = None,
+        exposure: float | None = None,
     ) -> None:
         # Lights first: a lamp that moves with a camera needs it as given, not the view made of it.
         lights, view = conversion.all_lights(lights, view), as_view(view)
         _check.instance("material", material, Material, optional=True)
         _check.instance("depth_cue", depth_cue, DepthCue, optional=True)
+        if exposure is not None:
+            exposure = _check.positive("exposure", exposure, high=_check.LARGEST)
         _check.set_fields(
             self,
             lights=lights,
@@ -98,6 +109,7 @@ class Scene:
             ),
             ambient_color=_check.color("ambient_color", ambient_color),
             depth_cue=depth_cue,
+            exposure=exposure,
         )
         # Light is computed from products of these vectors, which must be of one space.
         sizes = _sizes(lights, view)
@@ -113,10 +125,11 @@ class Scene:
 
     @property
     def colored(self) -> bool:
-        """Whether any part of the scene has a colour."""
+        """Whether any part of the scene has a colour, or the scene an exposure."""
         owners = (self.material, *self.lights, self.depth_cue)
         return (
-            self.ambient_color is not None
+            self.exposure is not None
+            or self.ambient_color is not None
             or self.material.specular_color is not None
             or any(getattr(owner, "color", None) is not None for owner in owners)
         )

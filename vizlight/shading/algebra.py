@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from vizlight.model import falloff
+from vizlight.model import falloff, formulas
 from vizlight.model.manifolds import ALONG, Vectors
 from vizlight.scene.light import WHITE
 from vizlight.scene.view import unit
@@ -73,6 +73,9 @@ class Operations(Vectors, Protocol):
 
     def put(self, name: str, value: Value) -> None:
         """Take a value for a result."""
+
+    def largest(self, rgb: Value) -> Value:
+        """Return the largest channel of a colour."""
 
 
 class Algebra(Operations):
@@ -158,6 +161,13 @@ class Algebra(Operations):
         cue = self.plan.scene.depth_cue
         assert cue is not None
         return self.vector([cue.cue * c for c in cue.color or WHITE])
+
+    def exposed(self, rgb: Value) -> Value:
+        """Return a colour as the exposure of the scene shows it, with the same chromaticity."""
+        exposure = self.plan.scene.exposure
+        if exposure is None:
+            return rgb
+        return rgb * formulas.exposed(self.largest(rgb), self.number(exposure))
 
     def fur_rate(self) -> Value:
         """Return the rate log(1 - rho) at which fur lets light through, as a finite number."""

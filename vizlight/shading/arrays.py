@@ -41,7 +41,7 @@ class Shading:
     diffuse, specular : ndarray, shape (N,), or None
         Terms before the depth cue, kd and ks included; with ``components``.
     rgb : ndarray, shape (N, 3), or None
-        Colour where the scene has one; linear, not clipped at 1.
+        Colour where the scene has one, or an exposure; without an exposure not clipped at 1.
     plan : Plan
         What was computed.
     seconds : float
@@ -252,6 +252,10 @@ class Arrays(Algebra):
             return value
         # In place only where nothing broadcasts: a lamp's constant term may meet one per point.
         return total + value if total.size < value.size else np.add(total, value, out=total)
+
+    def largest(self, rgb: Value) -> Value:
+        """Return the largest channel of colours."""
+        return rgb.max(axis=0)
 
     def put(self, name: str, value: Value) -> None:
         """Take a value for a result."""

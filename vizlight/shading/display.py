@@ -34,6 +34,8 @@ NO_DATA = (NO_DATA_BYTE / 255,) * 3
 NO_DATA_NAME = "no data"
 #: Light that makes any colour as bright as a screen can.
 _LARGEST = 1e30
+#: Percentile of the light that an exposure brings to 1.
+EXPOSED_SHARE = 70
 #: Number of colours that are multiplied at once.
 _BLOCK = 1 << 14
 
@@ -57,7 +59,8 @@ def for_colors(scene: Scene) -> Scene:
     """Return the scene whose luminance is the light on colours of data.
 
     Lights, ambient light and depth cue of a colour count by their luma; the material has no
-    highlight, and its ambient coefficient is 0.3 at least.
+    highlight, and its ambient coefficient is 0.3 at least. There is no exposure, which
+    :func:`exposed` applies to the luminance.
 
     Parameters
     ----------
@@ -85,7 +88,63 @@ def for_colors(scene: Scene) -> Scene:
         ambient_intensity=scene.ambient_intensity * _luma(scene.ambient_color),
         ambient_color=None,
         depth_cue=cue,
+        # The caller exposes the light, see `exposed`.
+        exposure=None,
     )  # fmt: skip
+
+
+def exposed(light: Array, exposure: float | None) -> Array:
+    """Return luminance as an exposure shows it; as it is without one.
+
+    Parameters
+    ----------
+    light : ndarray, shape (N,)
+        Luminance, 0 or more.
+    exposure : float or None
+        Exposure of the scene.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Light, with an exposure from 0 to 1: see :func:`vizlight.model.formulas.exposed`.
+    """
+    if exposure is None:
+        return light
+    return np.asarray(light * formulas.exposed(light, exposure), light.dtype)
+
+
+def exposure_of(light: ArrayLike, /) -> float:
+    """Return the exposure at which the 70th percentile of some light becomes 1.
+
+    Parameters
+    ----------
+    light : array_like, shape (N,) or (N, 3)
+        Luminance, or colours, whose luma counts. What is not finite is left out.
+
+    Returns
+    -------
+    float
+        Factor for ``Scene(exposure=)``, from 1e-9 to 1e9; 1 where no light is above 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If ``light`` is no such array.
+
+    Examples
+    --------
+    >>> from vizlight.shading.display import exposure_of
+    >>> exposure_of([0.1, 0.5, 0.5, 0.9])
+    2.0
+    """
+    values: Array = np.asarray(_check.reals("light", light), np.float64)
+    if values.ndim == 2 and values.shape[1] == 3:
+        values = values @ np.array(formulas.LUMA)
+    if values.ndim != 1:
+        raise ValueError(_check.message("light", "an array of shape (N,) or (N, 3)", values))
+    values = values[np.isfinite(values)]
+    high = float(np.percentile(values, EXPOSED_SHARE, method="lower")) if len(values) else 0.0
+    return float(np.clip(1 / high, 1e-9, _check.LARGEST)) if high > 0 else 1.0
 
 
 def _luma(color: Color | None) -> float:

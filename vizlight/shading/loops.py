@@ -252,7 +252,8 @@ def _sort(plan: Plan) -> tuple[object, ...]:
     models = frozenset(h.model for h in plan.highlights)
     near = sum(light.position is not None for light in plan.scene.lights)
     sizes = (plan.n, plan.k, plan.dtype, len(plan.scene.lights), near)
-    return (*sizes, models, plan.surface, plan.conditioned, plan.terms, plan.colored)
+    colors = plan.colored, plan.scene.exposure is None
+    return (*sizes, models, plan.surface, plan.conditioned, plan.terms, *colors)
 
 
 def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
@@ -551,6 +552,11 @@ class Loop(Writer):
             self.sums.append(f"{total.text} = {self.literal(0.0, self.type)}")
         self.lines.append(f"{total.text} = {total.text} + {value.text}")
         return total
+
+    def largest(self, rgb: Value) -> Value:
+        """Return the largest channel of a colour."""
+        red, green, blue = rgb
+        return np.maximum(np.maximum(red, green), blue)
 
     def put(self, name: str, value: Value) -> None:
         """Write a result."""

@@ -276,7 +276,9 @@ def _results(plan: Plan) -> Iterator[Line]:
     else:
         yield "compute", f"depth cue: {'smooth' if cue.smooth else 'linear'}"
     if plan.colored:
-        yield "compute", "rgb: three channels"
+        shown = plan.scene.exposure
+        kept = "" if shown is None else f", exposed by {shown:g} with a soft knee below white"
+        yield "compute", f"rgb: three channels{kept}"
     else:
         yield "skip", "rgb: nothing in the scene has a colour"
     if plan.compiled:

@@ -147,7 +147,7 @@ def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
         colors = [w.sound(total.rgb, 0.0) * w.color(name, k) for name, total, k in parts if total]
         if cue is not None:
             grey = w.cue_color()
-        w.put("rgb", whole(w.color("ambient", plan.ambient), colors, grey))
+        w.put("rgb", w.exposed(whole(w.color("ambient", plan.ambient), colors, grey)))
 
 
 def _share(w: Algebra, name: str, lamp: Lamp) -> Value:

@@ -276,6 +276,13 @@ class Oracle:
                 own = ((one.color or WHITE, color[i] * d + gloss[i] * s) for one, d, s in parts)
                 rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in own))
         luminance, *rgb = self._faded([ambient + diffuse + specular, *rgb], at, scene)
+        if scene.exposure is not None and rgb:
+            most = max(rgb) * scene.exposure
+            knee = self.number(4) / 5
+            # The knee, from 4/5 toward 1; light below it is multiplied alone.
+            bent = 1 - (1 - knee) * self.exp(-(most - knee) / (1 - knee))
+            share = bent / most if most > knee else self.number(1.0)
+            rgb = [value * scene.exposure * share for value in rgb]
         return Lit(luminance, tuple(rgb), ambient, diffuse, specular)
 
     def _faded(self, values: list[Real], at: Vector, scene: Scene) -> list[Real]:

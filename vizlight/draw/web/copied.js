@@ -57,6 +57,7 @@ function pythonOf(app) {
   }
   lines.push('scene = Scene(', '    lights=[', ...lights, '    ],', `    material=Material(${words.join(', ')}),`);
   if (cue) lines.push(`    depth_cue=DepthCue(${ends}front_scale=${short(cue.scales[0], 6)}, back_scale=${short(cue.scales[1], 6)}),`);
+  if (app.leader.given.exposure) lines.push(`    exposure=${short(app.leader.given.exposure, 9)},`);
   lines.push(')', `plotter = pv.Plotter(window_size=(${canvas.clientWidth}, ${canvas.clientHeight}))`, `plotter.background_color = ${quoted(app.background)}`);
   const kept = Object.entries(recipe.options).filter(([name]) => (name !== 'conditioned' || !state.free) && (name !== 'occlusion' || state.sky));
   const how = kept.map(([name, value]) => `, ${name}=${value}`).join('');
@@ -86,6 +87,7 @@ function commandOf(app) {
       ...(l.at ? { attenuation: l.attenuation } : {}), ...(l.eye && !l.at ? { follows_view: true } : {}),
     })),
     material: { ambient: material.ambient, diffuse: material.diffuse, specular: material.specular, shininess: material.shininess },
+    ...(app.leader.given.exposure ? { exposure: app.leader.given.exposure } : {}),
     ...(cue ? { depth_cue: { front: cue.front, back: cue.back, front_scale: cue.scales[0], back_scale: cue.scales[1] } } : {}),
   };
   const { cut } = app;
