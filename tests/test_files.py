@@ -564,7 +564,7 @@ def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
     ],
 )
 def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, monkeypatch):
-    def found(path, time):
+    def found(path, time, **options):
         vtkOutputWindow.GetInstance().DisplayWarningText(f"{said}\n")
         return pv.Sphere()
 
@@ -588,7 +588,7 @@ def test_arrays_with_keys_of_another_program_are_read(tmp_path):
 def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatch):
     parts = pv.PartitionedDataSet([volume().threshold([0, 3]), volume().threshold([3, 9])])
     parts.field_data["TimeValue"] = [7.0]
-    monkeypatch.setattr(files.foreign_files, "read", lambda path, time: parts)
+    monkeypatch.setattr(files.foreign_files, "read", lambda path, time, **options: parts)
     (tmp_path / "a.vtpd").touch()
     mesh = vizlight.read(tmp_path / "a.vtpd")
     assert mesh.n_cells == sum(part.n_cells for part in parts)

@@ -36,12 +36,13 @@ TIERS = [
     {"files", "filters"},
     {"draw", "pieces"},
     {"observers"},
+    {"looks"},
     {"accessor", "demo", "doctor", "presets"},
     {"cli"},
     {"__main__"},
 ]
 #: Names that the package gives by itself are those of all tiers: only what stands last uses them.
-USES_ALL = {"accessor", "cli", "demo", "doctor"}
+USES_ALL = {"accessor", "cli", "demo", "doctor", "looks"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 

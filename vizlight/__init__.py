@@ -52,6 +52,7 @@ if _typing.TYPE_CHECKING:
         Sphere as Sphere,
         Torus as Torus,
     )
+    from vizlight.looks.look import Look as Look, look as look
     from vizlight.mesh.polylines import direction_colors as direction_colors
     from vizlight.mesh.records import provenance as provenance
     from vizlight.observers.legibility import Legibility as Legibility, legibility as legibility
@@ -93,6 +94,7 @@ _NAMES = {
     "observers.legibility": "Legibility legibility",
     "draw.gltf": "save_gltf",
     "draw.html": "live_html",
+    "looks.look": "Look look",
     "scene": "DepthCue Light Material Scene View",
     "shading.options": "Bundle",
     "verify.report": "report",

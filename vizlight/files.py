@@ -29,9 +29,11 @@ from vizlight import _check, _supervise
 from vizlight.mesh import (
     blocks,
     brains,
+    cf_grids,
     foreign_files,
     georeference,
     height_grids,
+    meaning,
     normals,
     records,
     series,
@@ -46,7 +48,7 @@ except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from vizlight._types import Foreign, Raw
 
@@ -92,11 +94,13 @@ class FileError(ValueError):
 
 
 def read(
-    path: str | Path,
+    path: str | Path | Foreign,
     /,
     *,
     time: float | str | None = None,
     overlay: str | Path | Sequence[str | Path] = (),
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
 ) -> pv.DataSet:
     """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
 
@@ -104,25 +108,37 @@ def read(
 
     Parameters
     ----------
-    path : path
-        Path of the file. Tractograms (.trk, .tck, .trx) need the extra ``tracts``; netCDF files
-        (.nc, .cdf) and those that PyVista reads by meshio, such as .off, .mesh and .msh, need the
-        extra ``formats``; GeoTIFF and other rasters (.tif, .asc, .hgt) the extra ``maps``.
+    path : path, xarray.Dataset or xarray.DataArray
+        Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
+        .trx) need the extra ``tracts``; netCDF files (.nc, .cdf) and those that PyVista reads by
+        meshio, such as .off, .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
+        (.tif, .asc, .hgt) the extra ``maps``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
         an integer and no time of a step. Default: the last step.
     overlay : path or sequence of paths, optional
         Files with values for the points, which become point arrays of their names: GIFTI (.gii),
-        FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain.
+        FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain; grids of the same
+        points, such as the other component of a wind.
+    at : dict, optional
+        Value or index along any other axis of a netCDF file by its name, such as
+        ``{"number": 3}`` of an ensemble. Default: the first value.
+    nodata : float, optional
+        Value of a raster or a netCDF file that stands for none though the file does not say so.
+        Default: one value far outside of all others and repeated, such as -9999, with a warning;
+        NaN for none.
 
     Returns
     -------
     pyvista.DataSet
         Several blocks become one grid. A tractogram is a mesh of polylines in the space of its
         header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
-        group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable, whose
-        last axis is x: an image, or a rectilinear grid where its steps are unequal. Of any axis
-        before the last three, other than the time, the first value is taken. A raster is an image
+        group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable:
+        an image, a rectilinear grid where its steps are unequal, or a structured grid where each
+        point has a longitude and a latitude of its own. Which axis is x (east), y (north) and z
+        (up) its attributes say, else its names, else the order. Lengths of axes and heights are in
+        metres, pressures in hPa and negative, depths below 0. Longitudes go on across the meridian
+        where they begin anew, and around the earth they close. A raster is an image
         with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
         of a map in degrees is ``degree``. glTF and VRML, whose standards say that y is up, are
         turned so that z is; others are as they stand. Points of a .stl, .ply, .obj or .off file at
@@ -148,24 +164,13 @@ def read(
     time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
     VTK may print.
     """
+    if cf_grids.is_grid(path):
+        return cf_grids.of_dataset(path, time, at, nodata)
     path = _path("file", path)
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
     overlays = [_path("overlay", one) for one in given]
-    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
-        if what := no_file(one):
-            remedy = ""
-            if (one / "constant").is_dir():
-                case = one / f"{one.resolve().name}.foam"
-                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
-            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
-    if not os.access(path, os.R_OK):
-        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
-    # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
-    # none.
-    if str(path).encode("utf-8", "replace") != os.fsencode(path):
-        expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
-        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
-    reason, mesh = "no points", None
+    _check_there(path, overlays)
+    reason, mesh, notes = "no points", None, list[str]()
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
@@ -173,11 +178,11 @@ def read(
     reading = _supervise.stage("read", path, seconds=limit)
     with reading, captured_errors() as errors:
         try:
-            found: Foreign = _found(path, time)
+            found: Foreign = _found(path, time, at, nodata)
             for block in blocks.all_blocks(found):
                 # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
-            mesh = _whole(found, path.suffix.lower(), overlays)
+            mesh = _whole(found, path.suffix.lower(), overlays, time, notes)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -197,12 +202,29 @@ def read(
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
-    if isinstance(found, pv.MultiBlock) and (names := _left_out(found, mesh)):
-        _check.warn(
-            f"file: '{path}' has blocks whose cells are of a lower dimension than other blocks', "
-            f"which are left out: {names}; light pyvista.read(...) to keep all blocks"
-        )
+    if isinstance(found, pv.MultiBlock):
+        notes += _left_out(found, mesh)
+    if notes:
+        _check.warn(f"file: '{path}': {'; '.join(notes)}")
     return mesh
+
+
+def _check_there(path: Path, overlays: Sequence[Path]) -> None:
+    """Check that a file and those over it are there and can be opened."""
+    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
+        if what := no_file(one):
+            remedy = ""
+            if (one / "constant").is_dir():
+                case = one / f"{one.resolve().name}.foam"
+                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
+    if not os.access(path, os.R_OK):
+        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
+    # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
+    # none.
+    if str(path).encode("utf-8", "replace") != os.fsencode(path):
+        expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
+        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
 
 
 def no_file(path: Path) -> str:
@@ -233,14 +255,26 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         raise FileError(lacking)
 
 
-def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
-    """Return one upright mesh of what a file of a suffix holds, with the values over it."""
-    mesh = blocks.one_grid(found) if isinstance(found, pv.MultiBlock) else found
+def _whole(
+    found: Foreign, suffix: str, overlays: Sequence[Path], time: object, notes: list[str]
+) -> Foreign:
+    """Return one upright mesh of what a file of a suffix holds, with the values over it.
+
+    What its reader should know is appended to ``notes``.
+    """
+    mesh = found
+    if isinstance(found, pv.MultiBlock):
+        joined = blocks.highest(found)
+        mesh = joined.grid
+        notes += [note] if (note := joined.note()) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
         mesh = normals.welded(blocks.surface(mesh, "file"))
     for path in overlays:
+        if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
+            cf_grids.add(mesh, _found(path, time), path)
+            continue
         for name, rows in brains.overlay(path, mesh.n_points).items():
             mesh.point_data[name] = rows
     # Their standards say that y is up; here z is.
@@ -249,6 +283,11 @@ def _whole(found: Foreign, suffix: str, overlays: Sequence[Path]) -> Foreign:
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _arrays(mesh: pv.DataSet) -> set[str]:
+    """Return the names of the arrays of a mesh, but for VTK's own, such as numbers of points."""
+    return {name for name in (*mesh.point_data, *mesh.cell_data) if not name.startswith("vtk")}
 
 
 def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
@@ -267,9 +306,14 @@ _PACKED = (".bz2", ".gz", ".xz", ".zip")
 _MESHERS = (".mesh", ".meshb", ".msh")
 
 
-def _found(path: Path, time: object) -> pv.DataObject:
+def _found(
+    path: Path,
+    time: object,
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
+) -> pv.DataObject:
     """Return what the first reader that knows a file makes of it."""
-    found: pv.DataObject | None = foreign_files.read(path, time)
+    found: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
     if path.suffix.lower() in _MESHERS:
@@ -328,17 +372,23 @@ def _by_vtk(path: Path) -> pv.DataObject:
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
-def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> str:
-    """Return the names of blocks that are not in a grid and are no side sets of it."""
+def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> list[str]:
+    """Return a note on blocks that are not in a grid, or on the arrays that only they have."""
     kept = grid.distinct_cell_types
     lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
     # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
-    return ", ".join(
+    names = ", ".join(
         path.lstrip("/")
         for block, path in lower
         if not np.isin(place_numbers(np.asarray(block.points)), there).all()
     )
+    if names:
+        said = "blocks whose cells are of a lower dimension than other blocks', "
+        way = "light pyvista.read(...) to keep all blocks"
+        return [f"{said}which are left out: {names}; {way}"]
+    lost = {name for block, _ in lower for name in _arrays(block)} - _arrays(grid)
+    return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
 
 
 class _Messages:
@@ -447,14 +497,14 @@ def surface_of(
     return found
 
 
-def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
+def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     """Return a mesh with a point array of vectors, given the names of their components.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh, which is not changed.
-    names : str
+    names : str or sequence of str
         Names of two or three arrays of one component, separated by commas, such as ``"u,v"``,
         which is the name of the vectors too. A third component that is missing is 0. Arrays of
         cells are averaged to the points.
@@ -462,6 +512,8 @@ def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
     Returns
     -------
     pyvista.DataSet
+        Mesh with the vectors, NaN where a component is not finite; the mesh itself if it has an
+        array of this name, as that of a wind on turned axes, which points where it is drawn.
 
     Raises
     ------
@@ -469,15 +521,19 @@ def with_vectors(mesh: pv.DataSet, names: str, /) -> pv.DataSet:
         If an array does not exist, or there are not two or three.
     """
     _dataset(mesh)
+    if not isinstance(names, str):
+        names = ",".join(names)
     _check.text("names", names, expected="names of arrays, separated by commas")
+    if names in mesh.point_data:
+        return mesh
     every = names.split(",")
     if len(every) not in (2, 3):
         raise ValueError(_check.message("names", "two or three names", repr(names)))
     # The array is attached to a shallow copy, so that the caller's mesh does not get it.
     found = records.averaged(mesh, *every).copy(deep=False)
-    columns = [_scalars(found, "names", name) for name in every]
-    columns += [np.zeros_like(columns[0])] * (3 - len(columns))
-    found.point_data[names] = np.column_stack(columns)
+    for name in every:
+        _scalars(found, "names", name)
+    found.point_data[names] = meaning.vectors(found, every)
     return found
 
 

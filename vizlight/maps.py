@@ -6,10 +6,28 @@ alone, which dimming does not change, so that a value can still be read by the n
 
 from __future__ import annotations
 
-from matplotlib import colormaps
-from matplotlib.colors import ListedColormap
+from typing import TYPE_CHECKING
 
-__all__ = ["even"]
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap, to_rgba
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+
+__all__ = ["even", "kinds"]
+
+#: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
+#: sets, one after the other.
+_KINDS = (
+    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#332288",
+    "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
+)  # fmt: skip
+#: Largest difference between the numbers of kinds.
+MOST_SPAN = 1 << 16
 
 #: Hexadecimal digits of 256 colours of sRGB, of CIELAB lightness 70 and chroma 46, hue from 275 to
 #: 445 degrees. Steps are even in CIELAB, half as a normal reader and half as one without green
@@ -38,3 +56,46 @@ even = ListedColormap(
     [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
 )
 colormaps.register(even, force=True)
+
+
+def kinds(values: Sequence[float], /) -> pv.LookupTable:
+    """Return a lookup table that gives each of some whole numbers a colour of its own.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Kinds, such as the materials or labels of a mesh, in any order; colours repeat after 16.
+
+    Returns
+    -------
+    pyvista.LookupTable
+        Table from half below the least kind to half above the largest; numbers between two kinds
+        have the colour of missing values.
+
+    Raises
+    ------
+    ValueError
+        If there is none, one is no whole number, or they are more than 65536 apart.
+
+    Examples
+    --------
+    >>> from vizlight import maps
+    >>> maps.kinds([1, 7, 44]).scalar_range
+    (0.5, 44.5)
+    """
+    import numpy as np
+    import pyvista as pv
+
+    rows = np.unique(_check.floats("values", values))
+    whole = rows.size and np.all(rows == np.round(rows)) and np.ptp(rows) < MOST_SPAN
+    if not whole:
+        expected = f"one whole number or more, less than {MOST_SPAN} apart"
+        raise ValueError(_check.message("values", expected, values))
+    table = pv.LookupTable(n_values=int(np.ptp(rows)) + 1)
+    colors = np.zeros((table.n_values, 4), dtype=np.uint8)
+    for place, value in enumerate(rows):
+        color = np.array(to_rgba(_KINDS[place % len(_KINDS)]))
+        colors[int(value - rows[0])] = np.round(255 * color)
+    table.values = colors
+    table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
+    return table

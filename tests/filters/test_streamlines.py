@@ -558,7 +558,7 @@ test_bad_cross_fields = refusals(
     (("u", "v"), {"line_field": False}, "line_field: expected True .* pass line_field=True"),
     (("u", "v", "u"), {}, "vectors: expected one name .*, got 3 names"),
     (("u", "w"), {}, "vectors: expected the name .*'u', 'v'.*got 'w'"),
-    (("u", "u"), {}, "vectors: expected two different arrays, got 'u'"),
+    (("u", "u"), {}, "vectors: expected different arrays, got 'u'"),
     (("u", 3), {}, "vectors: expected the names of two point arrays", TypeError),
     (("u", "D"), {}, "vectors: expected .*3 components"),
     (

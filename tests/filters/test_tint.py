@@ -319,3 +319,28 @@ def test_cells_have_one_colour_each_under_smooth_light(strips):
     place = lit.copy(deep=False)
     tint(place, "rank", cmap="viridis", inplace=True)
     assert np.array_equal(place["rgb"], colored["rgb"])
+
+
+@pytest.mark.filterwarnings("ignore:.*sharper than")
+@pytest.mark.parametrize("kind", ["surface", "grid", "image"])
+def test_colours_of_cells_are_no_values(kind):
+    mesh = ball() if kind == "surface" else pv.ImageData(dimensions=(4, 4, 2))
+    mesh = mesh.cast_to_unstructured_grid() if kind == "grid" else mesh
+    mesh.cell_data["red"] = np.tile(np.array([255, 0, 0], np.uint8), (mesh.n_cells, 1))
+    rgb = tint(vizlight.illuminate(mesh, SCENE), "red")["rgb"]
+    assert rgb[:, 0].min() >= 76
+    assert rgb[:, 1:].max() == 0
+
+
+@pytest.mark.filterwarnings("ignore:.*sharper than")
+@pytest.mark.parametrize("kind", [pv.ImageData, pv.UnstructuredGrid])
+def test_labels_of_cells_have_nothing_in_between(kind):
+    mesh = pv.ImageData(dimensions=(5, 3, 2))
+    mesh.cell_data["label"] = np.where(mesh.cell_centers().points[:, 0] < 2, 1, 3)
+    mesh = mesh.cast_to_unstructured_grid() if kind is pv.UnstructuredGrid else mesh
+    lit = vizlight.illuminate(mesh, SCENE)
+    colored = tint(lit, "label", cmap=["red", "lime", "blue"], clim=(1, 3))
+    # Averages would be lime, which is 2.
+    assert colored["rgb"][:, 1].max() == 0
+    assert colored.n_points == mesh.n_points + 6 * (kind is pv.UnstructuredGrid)
+    assert np.array_equal(colored.points[: mesh.n_points], mesh.points)

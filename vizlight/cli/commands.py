@@ -33,7 +33,7 @@ from vizlight.cli.options import (
     words,
 )
 from vizlight.cli.output import OK, complain, draw, say
-from vizlight.cli.script import Step, source
+from vizlight.looks.steps import Step, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -483,8 +483,8 @@ def _read(made: Job, scene: Step, given: dict[str, object]) -> Step:
 
 def _hint(mesh: pv.DataSet | pv.MultiBlock, target: Target, scalars: str | None) -> str:
     """Return what may have been meant: the hull of a volume, a flat field, or values unseen."""
-    from vizlight.filters.tint import are_colors
     from vizlight.mesh.blocks import all_blocks
+    from vizlight.vtk.arrays import are_colors
 
     if scalars is not None and scalars == target.contour:
         return f"note     {scalars} is the same all over its isosurface; name another --scalars"

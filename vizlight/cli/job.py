@@ -15,7 +15,7 @@ from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, one_line, say
 from vizlight.cli.scenes import TINT, known, times, tinted
-from vizlight.cli.script import Step, in_order, source
+from vizlight.looks.steps import Step, in_order, source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

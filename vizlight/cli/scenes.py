@@ -11,7 +11,7 @@ import vizlight
 from vizlight._words import message, one_of
 from vizlight.cli import options
 from vizlight.cli.options import Shape
-from vizlight.cli.script import Step
+from vizlight.looks.steps import Step
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -220,8 +220,8 @@ def tinted(lit: Step, name: str, data: Step, color: Color) -> tuple[Step, str]:
     """
     from numpy import isfinite
 
-    from vizlight.filters.tint import are_colors
     from vizlight.shading.display import titled
+    from vizlight.vtk.arrays import are_colors
 
     found = data.run()
     arrays = {**found.cell_data, **found.point_data}

@@ -18,12 +18,13 @@ from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
-from vizlight.filters.tint import RGB, are_colors, default_map, default_nan_color, values_of
+from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
 from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
+from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_in_scene, tinted
-from vizlight.filters.tint import color_table, map_colors, values_of
+from vizlight.filters.tint import color_table, map_colors, values_of, values_of_blocks
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
 from vizlight.scene import Scene, View
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Given, Indices, Raw
+    from vizlight._types import Array, Given, Indices, Keywords, Raw
     from vizlight.filters.relight import Source
     from vizlight.filters.tint import ColorMap
 
@@ -147,11 +147,16 @@ def _colors(
     clim: Sequence[float] | float | None,
 ) -> list[NDArray[np.uint8] | None]:
     """Return for each source the colours of data, None for the colour of the material."""
-    named = [(scalars, {}) if scalars is not None else tinted(source.mesh) for source in sources]
-    values = [
-        None if name is None else values_of(surface, name, own.get("component"))
-        for (name, own), (surface, _) in zip(named, drawn, strict=True)
-    ]
+    named: list[tuple[str | None, Keywords]] = [(scalars, {})] * len(sources)
+    values: list[Raw | None] = []
+    if scalars is not None:
+        values += values_of_blocks([surface for surface, _ in drawn], scalars)
+    else:
+        named = [tinted(source.mesh) for source in sources]
+        values += [
+            None if name is None else values_of(surface, name, own.get("component"))
+            for (name, own), (surface, _) in zip(named, drawn, strict=True)
+        ]
     known = [value for value in values if value is not None]
     table = color_table(known, cmap=cmap, clim=clim)
     return [

@@ -16,7 +16,7 @@ from vizlight import _check
 from vizlight.draw import dialects, glsl
 from vizlight.draw.glsl import Stroke, Uniform
 from vizlight.filters import lighting, relight
-from vizlight.filters.tint import are_colors, light_on_colors, map_colors, values_of
+from vizlight.filters.tint import light_on_colors, map_colors, values_of
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene import Material, Scene, View
@@ -26,7 +26,7 @@ from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
 from vizlight.shading.inputs import Layout
 from vizlight.shading.plan import decide
 from vizlight.vtk import polylines
-from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.arrays import are_colors, is_of_cells
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""Movies and PNG sequences: of lit meshes, and of a mesh that rotates in n-space."""
+"""Movies and PNG sequences: of lit meshes, of a turn about a scene, of a turn in n-space."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-__all__ = ["MovieError", "save", "turn"]
+__all__ = ["MovieError", "orbit", "save", "turn"]
 
 FORMATS = (".png", ".gif", ".mp4")
 TURN = 2 * np.pi
@@ -233,6 +233,62 @@ def turn(
     if notes:
         _check.warn(f"in {len(notes)} of {count} frames: {notes[0]}")
     return files
+
+
+def orbit(
+    plotter: pv.Plotter,
+    path: str | Path,
+    /,
+    *,
+    frames: int = 72,
+    fps: float = 24.0,
+    progress_bar: bool = False,
+) -> list[Path]:
+    """Save what a plotter shows, seen once all around, and close the plotter.
+
+    The camera moves about its direction up, through its focal point.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter that draws offscreen, whose camera is set.
+    path : path
+        Path of a movie or of a sequence of PNGs, as for :func:`turn`.
+    frames : int, default: 72
+        Number of frames of the whole turn.
+    fps : float, default: 24.0
+        Frames per second of a movie, up to 100.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError
+        If the path names a movie and imageio is not installed.
+    TypeError, ValueError
+        If an argument does not fit, or a file cannot be written. No partial file is left.
+    """
+    path = _check_movie(path)
+    count = _check.integer("frames", frames, low=1)
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+
+    def pictures() -> Iterator[Picture]:
+        for _ in range(count):
+            plotter.reset_camera_clipping_range()
+            yield np.array(plotter.screenshot(return_img=True))
+            plotter.camera.Azimuth(360.0 / count)
+
+    try:
+        writer = _writer(path, fps, plotter.window_size)
+        with progress("turn", count, show=progress_bar) as report:
+            return writer(_counted(pictures(), report, 0))
+    finally:
+        plotter.close()
 
 
 def _check_movie(path: object) -> Path:

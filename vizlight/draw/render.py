@@ -49,11 +49,13 @@ __all__ = [
     "PlotterKeywords",
     "Probe",
     "camera_on",
+    "canvas",
     "choose_backend",
     "make_plotter",
     "over_shoulder",
     "pictures",
     "probe",
+    "save",
     "save_png",
 ]
 
@@ -62,6 +64,8 @@ PictureLight = Literal["auto", "points"]
 
 #: Supersampling draws at twice the size, and drivers support at most 16384 pixels per side.
 LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
+#: File name extensions of pictures that VTK writes.
+IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 #: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
 #: of the size of what is drawn: enough for triangles not to hide the lines between them.
 LIFT = 3e-3
@@ -480,3 +484,76 @@ def _lifted(points: Array, camera: pv.Camera, by: float) -> Foreign:
     distance = np.linalg.norm(toward, axis=1, keepdims=True)
     # No more than half the way, or points next to the eye would pass behind it.
     return points + toward * np.minimum(by / np.where(distance > 0, distance, 1), 0.5)
+
+
+def canvas(
+    size: tuple[int, int] = (1200, 800),
+    /,
+    *,
+    background: ColorLike = "white",
+    off_screen: bool = True,
+    backend: Backend | None = None,
+) -> pv.Plotter:
+    """Return an empty plotter, such as a look fills.
+
+    Parameters
+    ----------
+    size : (int, int), default: (1200, 800)
+        Width and height in pixels.
+    background : colour, default: "white"
+        Colour behind the data.
+    off_screen : bool, default: True
+        Whether no window is shown.
+    backend : {"egl", "osmesa"}, optional
+        OpenGL library of an offscreen picture; see :func:`choose_backend`.
+
+    Returns
+    -------
+    pyvista.Plotter
+        Plotter, which the caller must close.
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library can draw here.
+    TypeError, ValueError
+        If an option does not fit.
+    """
+    pixels = pixels_of(size)
+    back = pv.Color(_check.color("background", background) or "white")
+    if not _check.boolean("off_screen", off_screen):
+        plotter = pv.Plotter(window_size=pixels)
+    else:
+        with window_class(choose_backend(backend)):
+            plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
+    plotter.background_color = back
+    plotter.enable_anti_aliasing("msaa", multi_samples=8)
+    return plotter
+
+
+def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
+    """Save the picture of a plotter as a PNG or another image, and close the plotter.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter that draws offscreen.
+    path : path
+        Path of the picture, in an existing folder; its ending says the format.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the picture.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written. No partial file is left.
+    """
+    path = check_output(path, IMAGES)
+    try:
+        plotter.reset_camera_clipping_range()
+        return replace_file(path, plotter.screenshot, doing="draw")
+    finally:
+        plotter.close()

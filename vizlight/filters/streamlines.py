@@ -13,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines.tracing import Tracing
-from vizlight.mesh import blocks, records, tracers
+from vizlight.mesh import blocks, georeference, meaning, records, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
@@ -73,28 +73,27 @@ class StreamlineOptions(LightOptions):
             raise TypeError(_check.message("surface", expected, got))
         given: object = self.vectors
         if isinstance(given, list | tuple):
-            _check.set_fields(self, vectors=_pair(given, line_field=self.line_field))
+            names = _names_of(given, pair=self.line_field)
+            # The two of a cross field have no sign; of others these are the components.
+            _check.set_fields(self, vectors=names if self.line_field else ",".join(names))
         else:
             records.refuse_unnamed("vectors", given)
         _check.fields(self, _check.integer, "seed", low=0)
         _check.fields(self, _check.positive, "spacing", optional=True)
 
 
-def _pair(names: Sequence[object], *, line_field: bool) -> tuple[str, str]:
-    """Return the names of the arrays of a cross field."""
-    if len(names) != 2:
-        expected = "one name of a point array, or the two of a cross field"
+def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
+    """Return the names of the arrays of a cross field, or of the components of vectors."""
+    if len(names) not in ((2,) if pair else (2, 3)):
+        expected = "one name of a point array, the names of components, or the two of a cross field"
         raise ValueError(_check.message("vectors", expected, f"{len(names)} names"))
-    one, other = (
+    checked = tuple(
         _check.text("vectors", name, expected="the names of two point arrays") for name in names
     )
-    if one == other:
+    if len({*checked}) != len(checked):
         remedy = "for a single line field pass its name alone"
-        raise ValueError(_check.message("vectors", "two different arrays", repr(one), remedy))
-    if not line_field:
-        expected, remedy = "True for two arrays, a cross field", "pass line_field=True"
-        raise ValueError(_check.message("line_field", expected, line_field, remedy))
-    return one, other
+        raise ValueError(_check.message("vectors", "different arrays", repr(checked[0]), remedy))
+    return checked
 
 
 @named
@@ -133,13 +132,15 @@ def streamlines(
         cells of the highest dimension are taken, without patches.
     scene : Scene, optional
         Lights, material and view, by default ``Scene()``.
-    vectors : str or tuple of 2 str, optional
+    vectors : str or tuple of str, optional
         Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
-        points. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in VTK) and 9 a
-        matrix, whose first eigenvector is traced as a line field. Two names, of arrays of 3
-        components and with ``line_field=True``, are a cross field, such as both principal
-        directions: lines of either direction are traced. On the command line they are ``u,v``.
-        Default: the active vectors, or the only point array of 3 components.
+        points. Names of two or three arrays of one component, as a tuple or as ``"u,v"``, are
+        those of components. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in
+        VTK) and 9 a matrix, whose first eigenvector is traced as a line field. Two names, of arrays
+        of 3 components and with ``line_field=True``, are a cross field, such as both principal
+        directions: lines of either direction are traced. Default: the active vectors, the only
+        point array of 3 components, or the only components, by their standard or usual names. On
+        a map in degrees vectors are in metres of the place, east and north.
     line_field : bool, default: False
         Whether the vectors are directions without sign, such as principal directions. Each vector
         is then aligned with the one before it on the line. Tensors are always line fields. Of a
@@ -247,6 +248,8 @@ def light_lines(
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
+    mesh, vectors = meaning.with_named(mesh, options.vectors)
+    options = dataclasses.replace(options, vectors=vectors)
     mesh = records.averaged(mesh, *_names(options.vectors))
     scene = as_scene(scene)
     made = _resolved(mesh, options)
@@ -323,17 +326,18 @@ def _traced(
     if confined and surface is not None:
         traced = surface
     # VTK traces in float32 to an absolute error: near the origin, in a box of size 1.
-    origin, size = np.array(blocks.near_origin(traced)), blocks.box(traced)[1]
+    origin, scale = np.array(blocks.near_origin(traced)), georeference.scale_to_one(mesh, traced)
+    vectors = georeference.motion(mesh, traced, vectors, scale)
     if surface is not None:
-        surface = blocks.moved(surface, -origin, 1 / size)
-    traced = tracers.scaled(blocks.moved(_bare(traced, own), -origin, 1 / size), vectors)
-    lines = _lines(traced, options, origin, size, report, argument)
+        surface = blocks.moved(surface, -origin, scale)
+    traced = tracers.scaled(blocks.moved(_bare(traced, own), -origin, scale), vectors)
+    lines = _lines(traced, options, origin, scale, report, argument)
     if not lines.n_points:
         expected = "points inside the mesh where the vectors are not zero"
         name = "seeds" if options.max_length is None else "seeds, max_length"
         raise ValueError(_check.message(name, expected, "no line"))
     places: Array = np.asarray(lines.points, dtype=np.float64)
-    tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64)
+    tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64) * (scale[0] / scale)
     if surface is not None:
         if confined:
             normals = kernels.unit_rows(lines.point_data[NORMALS])
@@ -364,8 +368,8 @@ def _traced(
             if isotropic.any():
                 lines.point_data[f"{name}_valid"] = ~isotropic
     # Far from the origin float32 would lose digits, and at extreme sizes its range.
-    far = np.any(origin) or not 1e-30 < size < 1e30
-    exact = size * places + origin
+    far = np.any(origin) or not 1e-30 < scale[0] < 1e30
+    exact = places / scale + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
     if confined:
         # The exact places lie on their triangles to rounding in float64: what is measured is the
@@ -379,19 +383,19 @@ def _lines(
     mesh: pv.DataSet,
     options: StreamlineOptions,
     origin: Array,
-    size: float,
+    scale: Array,
     report: Callable[[int], None],
     argument: str,
 ) -> pv.PolyData:
     """Return the lines of TRACED in a mesh that was moved to the origin and scaled to size 1."""
-    length = options.max_length
+    length, size = options.max_length, 1 / float(scale[0])
     if length is None:
         length = 4 * float(mesh.length)
     else:
         length = _check.number("max_length", length, low=np.finfo(float).tiny) / size
     # No step is longer than ``step`` cell lengths: their number bounds a line to REACH of these.
     how = Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
-    count, places = _seeds(options.seeds, origin, size)
+    count, places = _seeds(options.seeds, origin, scale)
     # Free lines in space are left to VTK; all others go from cell to cell here.
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
@@ -596,7 +600,7 @@ def _bare(mesh: pv.DataSet, own: set[str]) -> pv.DataSet:
     return bare
 
 
-def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None]:
+def _seeds(seeds: object, origin: Array, scale: Array) -> tuple[int, Array | None]:
     """Return the number of lines, or where they start in a mesh that was moved and scaled."""
     if isinstance(seeds, pv.DataSet):
         given: Array = np.asarray(seeds.points, dtype=np.float64)
@@ -607,7 +611,7 @@ def _seeds(seeds: object, origin: Array, size: float) -> tuple[int, Array | None
         _check.holds("seeds", (count, 3))
         return count, None
     # Seeds are moved and scaled as the mesh was.
-    places = (_check.vectors("seeds", given, n=3) - origin) / size
+    places = (_check.vectors("seeds", given, n=3) - origin) * scale
     if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3), one or more"
         raise ValueError(_check.message("seeds", what, _check.describe(seeds)))

@@ -17,8 +17,8 @@ from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
 from vizlight.verify import report
-from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.cells import has_faces
+from vizlight.vtk.arrays import are_colors, at_points, is_of_cells
+from vizlight.vtk.cells import has_faces, has_polyhedra
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,8 +72,10 @@ def tint(
     scalars : str or array_like, shape (N,) or (N, c), optional
         Array whose values are coloured, by its name, or as an array with a row per point. Default:
         the active scalars of the points, if they are not the light. Cells of a PolyData surface
-        have one colour each, as in PyVista; other cell arrays are averaged to the points. The
-        length of vectors is taken, unless ``component``; three or four unsigned bytes are colours.
+        have one colour each, as in PyVista, and those of an UnstructuredGrid where they have whole
+        numbers or colours; other cell arrays are averaged to the points. The length of vectors is
+        taken, unless ``component``; three or four unsigned bytes are colours. A block without the
+        array has the colour of NaN.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
         Colour map, as for ``pyvista.Plotter.add_mesh``. Default: the map of PyVista's theme if it
         was changed, otherwise ``vizlight.maps.even``, which can be read in any light.
@@ -145,7 +147,7 @@ def tint(
     component = None if component is None else _check.integer("component", component, low=0)
     split = [_split(mesh, scalars) for mesh in own]
     meshes = [mesh for mesh, _ in split]
-    values = [values_of(mesh, scalars, component) for mesh in meshes]
+    values = values_of_blocks(meshes, scalars, component)
     # One table for all blocks, so that equal values have equal colours.
     table = color_table(
         values,
@@ -175,9 +177,13 @@ def tint(
 
 def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
     """Return a mesh whose cells have the colours of their values, and the point each point was."""
-    of_cells = isinstance(scalars, str) and is_of_cells(mesh, scalars)
-    if isinstance(scalars, str) and of_cells and isinstance(mesh, pv.PolyData) and has_faces(mesh):
-        return normals.split_values(mesh, scalars)
+    if isinstance(scalars, str) and is_of_cells(mesh, scalars):
+        if isinstance(mesh, pv.PolyData) and has_faces(mesh):
+            return normals.split_values(mesh, scalars)
+        # Labels and colours have nothing in between; of a grid no point is split for other values.
+        whole = np.asarray(mesh.cell_data[scalars]).dtype.kind in "iub"
+        if whole and isinstance(mesh, pv.UnstructuredGrid) and not has_polyhedra(mesh):
+            return normals.split_grid(mesh, scalars)
     return mesh.copy(deep=False), slice(None)
 
 
@@ -188,15 +194,14 @@ def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
     )
 
 
-def are_colors(array: Raw) -> bool:
-    """Return whether an array holds colours as bytes, not values."""
-    return array.ndim == 2 and array.dtype == np.uint8 and array.shape[1] in (3, 4)
-
-
 def values_of(
     mesh: pv.DataSet, scalars: str | ArrayLike | None, component: int | None = None
 ) -> Raw:
-    """Return the values that are coloured, one per point, or bytes that are colours already."""
+    """Return the values that are coloured, one per point, or bytes that are colours already.
+
+    Whole numbers of cells, which may be labels, are not averaged; see
+    :func:`vizlight.vtk.arrays.at_points`.
+    """
     if scalars is None:
         scalars = mesh.point_data.active_scalars_name
         # On a lit mesh the light itself is active, which is no datum to be coloured by.
@@ -206,12 +211,16 @@ def values_of(
             raise ValueError(_check.message("scalars", expected, None))
     if isinstance(scalars, str):
         _check.text("scalars", scalars, expected="the name of a point array")
-        mesh = records.averaged(mesh, scalars)
-        if scalars not in mesh.point_data:
+        if scalars in mesh.point_data:
+            array: Raw = np.asarray(mesh.point_data[scalars])
+        elif scalars in mesh.cell_data:
+            of_cells = np.asarray(mesh.cell_data[scalars])
+            moved = at_points(mesh, of_cells)
+            array = of_cells if moved is None else moved
+        else:
             known = _check.one_of([*mesh.point_data, *mesh.cell_data])
             expected = f"a point array or a cell array, {known}"
             raise ValueError(_check.message("scalars", expected, repr(scalars)))
-        array: Raw = np.asarray(mesh.point_data[scalars])
     else:
         array = _check.reals("scalars", scalars)
         if array.ndim not in (1, 2) or len(array) != mesh.n_points:
@@ -237,6 +246,21 @@ def values_of(
         remedy = f"attach numbers, such as {way}"
         raise TypeError(_check.message("scalars", "real numbers", _check.describe(array), remedy))
     return array
+
+
+def values_of_blocks(
+    meshes: Sequence[pv.DataSet], scalars: str | ArrayLike | None, component: int | None = None
+) -> list[Raw]:
+    """Return the values that are coloured of each mesh, NaN for a mesh that lacks their array."""
+    if not isinstance(scalars, str):
+        return [values_of(mesh, scalars, component) for mesh in meshes]
+    having = [scalars in mesh.point_data or scalars in mesh.cell_data for mesh in meshes]
+    # Where no mesh has it the first says which arrays there are.
+    having[:1] = [having[0] or not any(having)] if having else []
+    return [
+        values_of(mesh, scalars, component) if has else np.full(mesh.n_points, np.nan)
+        for mesh, has in zip(meshes, having, strict=True)
+    ]
 
 
 def color_table(

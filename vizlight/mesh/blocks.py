@@ -9,6 +9,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
 
 from vizlight import _check
+from vizlight.mesh import joining
 from vizlight.vtk import hull
 from vizlight.vtk.cells import check_whole, has_faces
 
@@ -75,19 +76,27 @@ def each(mesh: pv.MultiBlock, make: Callable[[pv.DataSet], pv.DataSet]) -> pv.Mu
 
 def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     """Return the cells of the highest dimension of all blocks, without side sets of a volume."""
-    grid = joined(mesh)
-    kinds, first = np.unique(grid.celltypes, return_index=True)
-    # One cell of each type tells for all.
-    dimensions = np.array([grid.GetCell(int(i)).GetCellDimension() for i in first])
-    # OpenFOAM and Exodus have side sets beside the volume that they bound.
-    if len(set(dimensions)) > 1:
-        keep = kinds[dimensions == dimensions.max()]
-        cells: Foreign = np.flatnonzero(np.isin(grid.celltypes, keep))
-        grid = grid.extract_cells(cells, pass_point_ids=False, pass_cell_ids=False)
-    # Joining drops the field data of the whole, such as the time of a step.
+    return highest(mesh).grid
+
+
+def highest(mesh: pv.MultiBlock) -> joining.Joined:
+    """Return what :func:`one_grid` does, and what became of the arrays of the blocks."""
+    found = joining.joined(joining.highest(named_blocks(mesh)))
+    _keep_fields(mesh, found.grid)
+    return found
+
+
+def joined(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
+    """Return all datasets as one grid."""
+    grid = joining.joined(named_blocks(mesh)).grid
+    _keep_fields(mesh, grid)
+    return grid
+
+
+def _keep_fields(mesh: pv.MultiBlock, grid: pv.UnstructuredGrid) -> None:
+    """Attach the field data of the whole, such as the time of a step."""
     for key in mesh.field_data:
         grid.field_data[key] = np.array(mesh.field_data[key])
-    return grid
 
 
 def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
@@ -115,13 +124,6 @@ def _block(mesh: pv.MultiBlock, i: int) -> object:
     """Return a block as PyVista does, without its look-up where it has wrapped the block."""
     block = vtkMultiBlockDataSet.GetBlock(mesh, i)
     return block if block is None or isinstance(block, pv.DataObject) else mesh[i]
-
-
-def joined(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
-    """Return all datasets as one grid; VTK before 9.7 does not join blocks that have none."""
-    found = list(all_blocks(mesh))
-    grid = pv.MultiBlock(found).combine() if found else pv.UnstructuredGrid()
-    return cast("pv.UnstructuredGrid", grid)
 
 
 def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:

@@ -15,12 +15,12 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, georeference, polylines, series
+from vizlight.mesh import brains, cf_grids, georeference, polylines
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from vizlight._types import Array, Foreign, Indices, Keywords, Raw
+    from vizlight._types import Array, Foreign, Indices, Raw
 
 #: Package that reads the files of a suffix, and the extra that installs it.
 PACKAGES = {
@@ -28,9 +28,7 @@ PACKAGES = {
     ".tck": ("nibabel", "tracts"),
     ".trx": ("trx-python", "tracts"),
     ".gii": ("nibabel", "tracts"),
-    ".nc": ("xarray", "formats"),
-    ".cdf": ("xarray", "formats"),
-} | dict.fromkeys(
+} | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
         ".meshb", ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol",
@@ -42,8 +40,6 @@ PACKAGES = {
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
 _DEM_COLUMNS, _DEM_LEAST = slice(858, 864), 100
-#: Largest deviation from equal steps, as a share of a step, of the axes of an image.
-EQUAL = 1e-4
 
 
 def missing(path: Path) -> str:
@@ -62,7 +58,13 @@ def missing(path: Path) -> str:
     return ""
 
 
-def read(path: Path, time: object = None) -> pv.DataSet | None:
+def read(
+    path: Path,
+    time: object = None,
+    *,
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
+) -> pv.DataSet | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
@@ -73,10 +75,10 @@ def read(path: Path, time: object = None) -> pv.DataSet | None:
         return brains.read(path)
     if suffix == ".trx":
         return _tracts_of_trx(path)
-    if suffix in (".nc", ".cdf"):
-        return _grid(path, time)
+    if suffix in cf_grids.SUFFIXES:
+        return cf_grids.read(path, time, at, nodata)
     if suffix in georeference.SUFFIXES:
-        return georeference.read(path)
+        return georeference.read(path, nodata)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".inp" and _head(path, 1) == b"*":
@@ -264,99 +266,3 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
-
-
-def _grid(path: Path, time: object) -> pv.ImageData | pv.RectilinearGrid:
-    """Return the variables of a netCDF file on the axes of its largest variable.
-
-    An axis is x, y or z: the last of a variable is x. Of any axis before the last three, other than
-    the time, the first value is taken. Points are at the coordinates, depths below 0, or at the
-    indices of an axis without coordinates.
-    """
-    import xarray
-
-    # With all coordinates, corners of cells are none of the variables.
-    # Times stay numbers, which every calendar of a climate model has.
-    with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
-        if any(one.attrs.get("cf_role") == "mesh_topology" for one in file.variables.values()):
-            raise ValueError("a mesh of UGRID, not a grid; convert it to .vtu")
-        fields: Keywords = {}
-        clocks = [dim for dim in file.sizes if _is_time(file, dim)]
-        # A file may have several clocks: the one with most steps tells them.
-        clock = max(clocks, key=lambda dim: int(file.sizes[dim]), default=None)
-        step, ticking = 0, [0.0]
-        if clock is not None and file.sizes[clock] > 1:
-            ticking = [float(tick) for tick in file[clock].values]
-            step = series.chosen(ticking, time)
-        for name, variable in file.data_vars.items():
-            if variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size:
-                times = [dim for dim in variable.dims if _is_time(file, dim)]
-                rest = [dim for dim in variable.dims if dim not in times]
-                first = dict.fromkeys((*times, *rest[:-3]), 0)
-                first |= {clock: step} if clock in times else {}
-                # Axes of one value, such as a single level, are none of the grid.
-                fields[str(name)] = variable.isel(first).squeeze(drop=True)
-        fields = {name: field for name, field in fields.items() if field.ndim in (2, 3)}
-        if not fields:
-            raise ValueError("no variable on a grid of two or three axes")
-        # One grid has one set of axes, which those of the largest variable are.
-        dims = max(fields.values(), key=lambda field: int(field.size)).dims
-        axes, backward = [], []
-        for dim in dims:
-            ticks = np.asarray(
-                file[dim].values if dim in file.coords else np.arange(file.sizes[dim])
-            )
-            ticks = ticks.astype(np.float64)
-            # Depths and pressures count downward: with their sign changed, z is up.
-            if dim in file.coords and file[dim].attrs.get("positive") == "down":
-                ticks = -ticks
-            widths = np.diff(ticks)
-            if not (np.all(widths > 0) or np.all(widths < 0)):
-                raise ValueError(f"the axis {dim!r} does not rise or fall throughout")
-            # Axes of VTK rise: an axis that falls, as from north to south, is turned over with its
-            # values.
-            backward.append(bool(widths[0] < 0))
-            axes.append(np.sort(ticks))
-        # The last axis of a variable varies fastest in memory, as x does in VTK.
-        grid = _of_axes([*reversed(axes)])
-        turned = tuple(i for i, back in enumerate(backward) if back)
-        for name, field in fields.items():
-            if field.dims == dims:
-                grid.point_data[name] = np.flip(field.values, turned).ravel()
-        if all(_is_degrees(file, dim, words) for dim, words in zip(dims[-2:], _EARTH, strict=True)):
-            grid.field_data[georeference.UNIT] = [georeference.DEGREE]
-        return series.marked(grid, ticking, step) if len(ticking) > 1 else grid
-
-
-#: Words with which the units and the names of the axes of latitude and of longitude begin.
-_EARTH = (
-    ("degree_n", "degrees_n", "lat", "grid_lat"),
-    ("degree_e", "degrees_e", "lon", "grid_lon"),
-)
-
-
-def _is_degrees(file: Foreign, dim: object, words: tuple[str, ...]) -> bool:
-    """Return whether an axis is of latitude or longitude, by its unit or by its name."""
-    units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
-    return any(text.lower().startswith(words) for text in (units, str(dim)))
-
-
-def _is_time(file: Foreign, dim: object) -> bool:
-    """Return whether an axis is the time: by its name, or by a unit such as days since a date."""
-    units = str(file[dim].attrs.get("units", "")) if dim in file.coords else ""
-    return str(dim).lower() in ("time", "t") or " since " in units
-
-
-def _of_axes(axes: list[Array]) -> pv.ImageData | pv.RectilinearGrid:
-    """Return a grid on axes x, y and perhaps z; an image where their steps are equal."""
-    axes += [np.zeros(1)] * (3 - len(axes))
-    # An axis of one value has no step: any but 0 will do.
-    steps = [(axis[-1] - axis[0]) / max(len(axis) - 1, 1) or 1.0 for axis in axes]
-    if all(_even(axis, step) for axis, step in zip(axes, steps, strict=True)):
-        counts = tuple(len(axis) for axis in axes)
-        return pv.ImageData(dimensions=counts, spacing=steps, origin=[axis[0] for axis in axes])
-    return pv.RectilinearGrid(*axes)
-
-
-def _even(axis: Array, step: float) -> bool:
-    return bool(np.all(np.abs(np.diff(axis) - step) <= EQUAL * step))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, meaning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,15 +18,21 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "read", "seem_degrees",
-    "stretch",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "motion", "rates", "read",
+    "scale_to_one", "seem_degrees", "stretch",
 ]  # fmt: skip
 
 
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
+#: Field array with the latitude of the centre of a map that was in degrees and is in metres.
+LATITUDE = "latitude"
+#: Latitude beyond which a parallel is taken for that of this latitude.
+NEAR_POLE = 89.0
 #: Length of a degree of latitude on the sphere of the earth's mean radius, in metres.
 METRES = math.radians(6_371_008.8)
+#: Length of a kilometre in metres.
+KILOMETRE = 1e3
 #: Range of heights, as a share of the side of a map, that needs no exaggeration.
 ENOUGH = (0.05, 0.5)
 #: Percentiles of the heights that bound their range, so that single wrong heights do not matter.
@@ -59,11 +65,98 @@ def in_metres(mesh: DataSetT) -> DataSetT:
         return mesh
     x, y, _ = mesh.center
     # At a pole all meridians meet: a degree of longitude would have no length.
-    across = METRES * math.cos(math.radians(min(max(y, -89.0), 89.0)))
+    across = METRES * float(_parallel(y))
     # An equirectangular map that is true to scale at its centre; heights stay as they are.
     moved = blocks.moved(mesh, np.array([-x, -y, 0.0]), np.array([across, METRES, 1.0]))
     moved.field_data[UNIT] = ["metre"]
+    moved.field_data[LATITUDE] = [float(y)]
     return moved
+
+
+def rates(mesh: pv.DataSet, places: Array) -> Array:
+    """Return the factors that take motion in metres to the coordinates of a map, at places of it.
+
+    A degree of longitude is as long as its latitude says: on a map in degrees, or one that was, a
+    wind of equal parts east and north crosses more degrees of longitude than of latitude.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh; one that is no map has factors of 1.
+    places : ndarray, shape (N, 3)
+        Places in the coordinates of the mesh.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+    """
+    result: Array = np.ones((len(places), 3))
+    latitudes, scale = places[:, 1], 1.0
+    if _in_degrees(mesh):
+        result[:, :2] = scale = 1 / METRES
+    elif LATITUDE in mesh.field_data:
+        middle = float(mesh.field_data[LATITUDE][0])
+        latitudes, scale = middle + latitudes / METRES, _parallel(middle)
+    else:
+        return result
+    # At a pole all meridians meet: motion along a circle about it never ends.
+    result[:, 0] = scale / _parallel(latitudes)
+    return result
+
+
+def _parallel(latitude: float | Array) -> Foreign:
+    """Return the length of a parallel as a share of the equator's, not 0 at the poles."""
+    return np.cos(np.radians(np.clip(latitude, -NEAR_POLE, NEAR_POLE)))
+
+
+def scale_to_one(mesh: pv.DataSet, traced: pv.DataSet) -> Array:
+    """Return the scale of each axis by which a mesh has size 1.
+
+    A volume over a map gets one of its own along z: heights in metres or hPa beside degrees would
+    make its cells columns or discs.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which may be a map.
+    traced : pyvista.DataSet
+        The mesh itself, or a surface in its coordinates.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+    """
+    x, y, z = traced.bounds_size
+    if _is_map(mesh) and traced.GetMaxSpatialDimension() == 3 and min(max(x, y), z) > 0:
+        side = max(x, y)
+        return np.array([1 / side, 1 / side, 1 / z])
+    return np.full(3, 1 / blocks.box(traced)[1])
+
+
+def motion(mesh: pv.DataSet, traced: pv.DataSet, vectors: Array, scale: Array) -> Array:
+    """Return vectors at the points of a mesh in its coordinates, times the scale of each axis.
+
+    Parameters
+    ----------
+    mesh, traced
+        As for :func:`scale_to_one`.
+    vectors : ndarray, shape (N, 3 k)
+        Vectors, of a map in metres east and north.
+    scale : ndarray, shape (3,)
+        Scale of each axis, as a share of that of x.
+    """
+    factors = scale / scale[0]
+    if _is_map(mesh):
+        factors = factors * rates(mesh, np.asarray(traced.points, dtype=np.float64))
+    elif np.all(factors == 1):
+        return vectors
+    rows = vectors.reshape(len(vectors), -1, 3)
+    return np.asarray(rows * np.reshape(factors, (-1, 1, 3))).reshape(vectors.shape)
+
+
+def _is_map(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a map in degrees, or was one."""
+    return _in_degrees(mesh) or LATITUDE in mesh.field_data
 
 
 def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
@@ -147,7 +240,7 @@ SUFFIXES = (
 _COLORS = ("red", "green", "blue")
 
 
-def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
+def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.StructuredGrid:
     """Return the bands of a raster at the centres of its pixels, x east and y north.
 
     A band is a point array of its description, or ``elevation`` where it is the only one, else
@@ -158,6 +251,8 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     ----------
     path : pathlib.Path
         Path of the file.
+    nodata : float, optional
+        Value that stands for none, as for :func:`.meaning.without_missing`.
 
     Returns
     -------
@@ -178,20 +273,39 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
             arrays = _bands(file)
             grid, turned = _grid(file)
             crs = file.crs
+            units = dict(zip(arrays, file.units, strict=False))
+    words, said = [], meaning.Meaning(axes=["x east", "y north"])
     for name, rows in arrays.items():
+        said.add_array(name, {"units": units.get(name)})
+        if name != "rgb":
+            rows, missing = meaning.without_missing(name, rows, nodata)
+            words += [missing] if missing else []
         # Copied, since the arrays of a mesh are in the order of its points.
         grid.point_data[name] = np.ascontiguousarray(rows[turned]).reshape(grid.n_points, -1)[
             :, slice(None) if name == "rgb" else 0
         ]
     grid.set_active_scalars(next(iter(arrays)))
+    if words:
+        meaning.say(path, words)
+        said.notes += words
     if crs is not None:
         grid.field_data["crs"] = [crs.to_wkt()]
         # A projected system has a unit of length, which it names.
         unit = DEGREE if crs.is_geographic else crs.linear_units
+        if not crs.is_geographic and meaning.metres(unit) == KILOMETRE:
+            # Heights are in metres, and so are then lengths.
+            grid, unit = (
+                blocks.moved(grid, np.zeros(3), np.array([KILOMETRE, KILOMETRE, 1])),
+                "metre",
+            )
+            said.notes.append("lengths in m, from km")
         grid.field_data[UNIT] = [unit]
+        said.axes = [f"{axis} in {unit} by the reference system" for axis in said.axes]
     # Many files of elevations name no system: then only the numbers tell of degrees.
     elif seem_degrees(grid, next(iter(arrays))):
         grid.field_data[UNIT] = [DEGREE]
+        said.notes.append("taken for degrees by their ranges")
+    meaning.attach(grid, said)
     return grid
 
 

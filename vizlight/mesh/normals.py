@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import TypeVar
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Indices, Raw
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
 
@@ -218,16 +218,38 @@ def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:
     # Cells are in the order of VTK's kinds: vertices and lines come before all faces.
     values = np.asarray(mesh.cell_data[name])[_rows(mesh)][mesh.n_verts + mesh.n_lines :]
     ids, ends = _corners(mesh)
+    corners, origin = _apart(ids, ends, values, mesh.n_points)
+    found = _at(mesh, corners, ends, origin)
+    _keep_smooth(mesh, found, origin)
+    return found, origin
+
+
+def split_grid(mesh: pv.UnstructuredGrid, name: str) -> tuple[pv.UnstructuredGrid, Indices]:
+    """Return a grid without polyhedra as :func:`split_values` returns a surface."""
+    ids, ends = connectivity(mesh.GetCells())
+    corners, origin = _apart(ids, ends, np.asarray(mesh.cell_data[name]), mesh.n_points)
+    found = pv.UnstructuredGrid()
+    found.SetPoints(pv.vtk_points(places(mesh)[origin]))
+    found.SetCells(pv.convert_array(mesh.celltypes), blocks.cell_array(corners, ends))
+    records.carry_rows(mesh, found, origin)
+    records.carry(mesh, found)
+    _keep_smooth(mesh, found, origin)
+    return found, origin
+
+
+def _apart(ids: Indices, ends: Indices, values: Raw, count: int) -> tuple[Indices, Indices]:
+    """Return the corners of cells that share points only with cells of their value, and origins."""
     _, kind = np.unique(values, axis=0, return_inverse=True)
     # A point and a value of cells there make one new point.
     code = ids * (kind.max(initial=0) + 1) + np.repeat(kind.reshape(-1), np.diff(ends))
     _, first, number = np.unique(code, return_index=True, return_inverse=True)
-    corners, origin = numbered(first[number.reshape(-1)], ids, mesh.n_points)
-    found = _at(mesh, corners, ends, origin)
+    return numbered(first[number.reshape(-1)], ids, count)
+
+
+def _keep_smooth(mesh: pv.DataSet, split: pv.DataSet, origin: Indices) -> None:
+    """Keep the normals of a mesh with one whose points were split, which is as smooth as it was."""
     if (sided := kept(mesh)) is not None:
-        # The surface is as smooth as it was.
-        keep(found, dataclasses.replace(sided.at(origin), kept=False))
-    return found, origin
+        keep(split, dataclasses.replace(sided.at(origin), kept=False))
 
 
 def _corners(mesh: pv.PolyData) -> tuple[Indices, Indices]:

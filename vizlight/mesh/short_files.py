@@ -168,7 +168,9 @@ def _stated_bytes(
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".vti", ".vtm", ".vtp", ".vtr", ".vts", ".vtu"), _xml),
     **dict.fromkeys((".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"), _xml),
-    **dict.fromkeys((".nc", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf),
+    **dict.fromkeys(
+        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
+    ),
     ".ply": _ply,
     ".stl": _stl,
 }

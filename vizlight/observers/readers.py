@@ -386,6 +386,19 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     return Reading(error, of_truth(logarithms, right), count)
 
 
+def light_of(colors: Colors, table: pv.LookupTable) -> Colors:
+    """Return the grays of the light on colours of a bar, as a reader takes it from them."""
+    bar = np.asarray(table.values)[:, :3]
+    bar = bar[((np.arange(BAR) + 0.5) / BAR * len(bar)).astype(np.intp)]
+    amounts = np.linspace(display.LEAST, 1.0, 3 * AMOUNTS)
+    best, amount = np.full(len(colors.lab), -np.inf), np.ones(len(colors.lab))
+    for share in amounts:
+        lighted = display.on_colors(bar, np.full(BAR, share)) / 255.0
+        found = likelihood(colors, lab(lighted)).max(axis=1)
+        amount, best = np.where(found > best, share, amount), np.maximum(found, best)
+    return Colors(lab(np.repeat(amount[:, np.newaxis], 3, axis=1)), colors.deviation)
+
+
 def steepness(sample: Sample) -> Array:
     """Return the cosine, 0 or more, of the angle between tangents and the line of sight."""
     return np.abs(dots(_single(sample), sample.eye))
@@ -421,3 +434,20 @@ def mutual_information(magnitude: Array, signal: Array) -> float:
     bits = float((share[there] * np.log2(share[there] / alone[there])).sum())
     classes = int(there.sum()) - int(there.any(axis=1).sum()) - int(there.any(axis=0).sum()) + 1
     return max(0.0, bits - classes / (2 * len(magnitude) * math.log(2)))
+
+
+def ranked_error(magnitude: Array, signal: Array) -> Array:
+    """Return how far ranks of a magnitude are from what a calibrated reader of a signal answers.
+
+    The reader answers with the median rank of the places whose signal is in the same class.
+    """
+    from scipy.stats import rankdata
+
+    rank = (rankdata(magnitude) - 0.5) / len(magnitude)
+    count = min(SIGNALS, max(2, len(signal) // EACH))
+    bounds = np.unique(np.quantile(signal, np.linspace(0, 1, count + 1)[1:-1]))
+    own = np.searchsorted(bounds, signal)
+    answers = np.zeros(len(bounds) + 1)
+    for number in np.unique(own):
+        answers[number] = np.median(rank[own == number])
+    return np.abs(answers[own] - rank)

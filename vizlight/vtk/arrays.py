@@ -5,12 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid
-from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
+from vtkmodules.vtkCommonDataModel import (
+    vtkImageData,
+    vtkPolyData,
+    vtkRectilinearGrid,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkCellDataToPointData
 
 from vizlight import _check
 from vizlight.model import line_fields
-from vizlight.vtk.cells import as_numpy, as_vtk, dimensions, places
+from vizlight.vtk.cells import as_numpy, as_vtk, cell_arrays, connectivity, dimensions, places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -189,6 +194,53 @@ def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     mean.SetInputData(only)
     mean.Update()
     return as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
+
+
+def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
+    """Return values of cells at the points of a mesh, None for words.
+
+    Numbers with a fraction and colours of bytes are means of the cells around a point; of whole
+    numbers, which may be labels, it is the one that most of these cells have, the least of several.
+    """
+    if rows.dtype.kind not in "biuf":
+        return None
+    if rows.dtype.kind == "f":
+        return means(mesh, rows)
+    if are_colors(rows):
+        return np.rint(means(mesh, rows)).astype(np.uint8)
+    kinds, number = np.unique(rows, axis=0, return_inverse=True)
+    found = np.zeros((mesh.GetNumberOfPoints(), *rows.shape[1:]), rows.dtype)
+    pairs, cell = [], 0
+    for cells in cell_arrays(_explicit(mesh)):
+        ids, ends = connectivity(cells)
+        of_cell = number.reshape(-1)[cell : cell + len(ends) - 1]
+        pairs.append(ids * len(kinds) + np.repeat(of_cell, np.diff(ends)))
+        cell += len(ends) - 1
+    if pairs:
+        both, count = np.unique(np.concatenate(pairs), return_counts=True)
+        point, kind = np.divmod(both, len(kinds))
+        # The last of each point is the most frequent, and the least number among those.
+        order = np.lexsort((-kind, count, point))
+        found[point[order]] = kinds[kind[order]]
+    return found
+
+
+def are_colors(rows: AnyArray) -> bool:
+    """Return whether an array holds colours as bytes, not values."""
+    return rows.ndim == 2 and rows.dtype == np.uint8 and rows.shape[1] in (3, 4)
+
+
+def _explicit(mesh: Dataset) -> Dataset:
+    """Return a dataset whose cells name their points, without arrays."""
+    if isinstance(mesh, vtkPolyData | vtkUnstructuredGrid):
+        return mesh
+    only: Foreign = mesh.NewInstance()
+    only.CopyStructure(mesh)
+    append = vtkAppendFilter()
+    append.SetInputData(only)
+    append.Update()
+    found: vtkUnstructuredGrid = append.GetOutput()
+    return found
 
 
 def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:

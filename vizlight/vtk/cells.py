@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonCore import (
     vtkUnsignedCharArray,
 )
 from vtkmodules.vtkCommonDataModel import (
+    VTK_POLYHEDRON,
     vtkCellArray,
     vtkDataObject,
     vtkDataSet,
@@ -106,6 +107,11 @@ def connectivity(cells: vtkCellArray) -> tuple[Indices, Indices]:
 def has_faces(mesh: vtkPolyData) -> bool:
     """Return whether a mesh has polygons or triangle strips."""
     return bool(mesh.GetNumberOfPolys() or mesh.GetNumberOfStrips())
+
+
+def has_polyhedra(grid: vtkUnstructuredGrid) -> bool:
+    """Return whether a grid has cells that name their faces, beside their points."""
+    return bool(np.any(as_numpy(grid.GetDistinctCellTypesArray()) == VTK_POLYHEDRON))
 
 
 def faces(surface: vtkPolyData) -> Iterator[tuple[Indices, Indices]]:

@@ -1,4 +1,4 @@
-"""Calls that can be run or written as a Python script: what a command does, defined once."""
+"""Calls that can be run or written as a Python script: what a look does, defined once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 #: First names of paths: modules in groups, and modules of vizlight.
 MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight",))
-OWN = ("files", "paraview", "render")
+OWN = ("files", "movie", "paraview", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.
 ONE_LINE = -(10**6)
@@ -32,8 +32,8 @@ class Step:
     name : str
         Name of the variable that holds the result; without one the call stands where it is used.
     path : str
-        Dotted path of a public function; ``.name`` is a method of the first argument, ``[]`` an
-        item of it.
+        Dotted path of a public function; ``.name`` is a method of the first argument, ``.name=`` an
+        attribute of it that is set, ``[]`` an item of it, and ``-`` a value that a script has.
     *arguments, **keywords : object
         Arguments: plain values, steps, or lists and tuples of them.
     """
@@ -66,8 +66,10 @@ class Step:
         keywords = {key: _run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
             return arguments[0][arguments[1]]
+        if self.path == "-":
+            return arguments[0]
         if self.path.startswith("."):
-            return getattr(arguments[0], self.path[1:])(*arguments[1:], **keywords)
+            return self._of_first(arguments, keywords)
         head, *names = self.path.split(".")
         function: Foreign = (
             getattr(vizlight, head) if head in OWN else importlib.import_module(head)
@@ -75,6 +77,14 @@ class Step:
         for name in names:
             function = getattr(function, name)
         return function(*arguments, **keywords)
+
+    def _of_first(self, arguments: list[Foreign], keywords: dict[str, object]) -> Foreign:
+        """Return what a method of the first argument returns, or set an attribute of it."""
+        *owners, last = self.path[1:].split(".")
+        owner = functools.reduce(getattr, owners, arguments[0])
+        if last.endswith("="):
+            return setattr(owner, last[:-1], arguments[1])
+        return getattr(owner, last)(*arguments[1:], **keywords)
 
     def parts(self) -> Iterator[object]:
         """Yield the arguments and keywords."""
@@ -100,7 +110,9 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
     for job in jobs:
         for step in in_order(job):
             heads.add(step.path.partition(".")[0])
-            if step.name or any(step is last for last in job):
+            if step.path == "-":
+                lines.append(f"# {step.name}: the {type(step.arguments[0]).__name__} of the look")
+            elif step.name or any(step is last for last in job):
                 lines += _statement(step, reported=any(step is one for one in reported))
     groups = [[f"import {head}" for head in group if head in heads] for group in MODULES]
     if own := [head for head in OWN if head in heads]:
@@ -150,6 +162,8 @@ def _text(value: object, indent: int = 0, taken: int = 0) -> str:
 
 def _call(step: Step, indent: int, taken: int) -> str:
     arguments = list(step.arguments)
+    if step.path.endswith("="):
+        return f"{_text(arguments[0])}{step.path[:-1]} = {_text(arguments[1], indent, taken)}"
     if step.path == "[]":
         return f"{_text(arguments[0])}[{_text(arguments[1])}]"
     head = step.path

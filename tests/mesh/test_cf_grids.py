@@ -1,0 +1,217 @@
+"""Grids of netCDF and of xarray: one field has one picture, however its file spells it."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import files
+from vizlight.mesh import meaning
+
+xr = pytest.importorskip("xarray")
+pytest.importorskip("cf_xarray")
+
+ROWS, COLUMNS = 8, 12
+HEIGHTS = np.random.default_rng(0).random((ROWS, COLUMNS)).astype(np.float32) * 500
+LAT, LON = 47 + np.arange(ROWS) / 100, -0.05 + np.arange(COLUMNS) / 100
+#: Spellings of each axis: its name, the attributes that tell, and what they leave open.
+X = [
+    ("lon", {}), ("longitude", {}), ("x", {"units": "degrees_east"}), ("i", {"units": "degree_E"}),
+    ("x", {"long_name": "Longitude", "units": "degrees"}), ("q", {"standard_name": "longitude"}),
+    ("nlon", {"axis": "X", "units": "degrees_east"}),
+]  # fmt: skip
+Y = [
+    ("lat", {}), ("latitude", {}), ("y", {"units": "degrees_north"}), ("j", {"units": "degreeN"}),
+    ("y", {"long_name": "Latitude", "units": "degrees"}), ("p", {"standard_name": "latitude"}),
+    ("nlat", {"axis": "Y", "units": "degrees_north"}),
+]  # fmt: skip
+
+
+def one_spelling(seed):
+    """Return a dataset of HEIGHTS in a random spelling."""
+    random = np.random.default_rng(seed)
+    (x, x_words), (y, y_words) = X[random.integers(len(X))], Y[random.integers(len(Y))]
+    values, lat, lon = HEIGHTS.astype(np.float64), LAT, LON
+    if random.random() < 0.5:
+        values, lat = values[::-1], lat[::-1]
+    if random.random() < 0.5:
+        values, lon = values[:, ::-1], lon[::-1]
+    lon = [lon, lon % 360, lon - 360][random.integers(3)]
+    words = {"units": "m", "long_name": "height"}
+    kind = random.integers(4)
+    if kind == 1:
+        values, words = values / 1000, words | {"units": "km"}
+    if kind == 2:
+        values, words = 300 - values, words | {
+            "standard_name": "sea_floor_depth_below_geoid", "positive": "down"
+        }  # fmt: skip
+    data = xr.Dataset(
+        {"z": ((y, x), values, words)}, coords={y: (y, lat, y_words), x: (x, lon, x_words)}
+    )
+    if kind == 3:
+        data["z"].encoding.update(dtype="i2", scale_factor=0.1, _FillValue=-32768)
+    return data.transpose(x, y) if random.random() < 0.5 else data
+
+
+def check_spelling(seed, path):
+    data = one_spelling(seed)
+    data.to_netcdf(path)
+    mesh = vizlight.read(path)
+    assert mesh.dimensions == (COLUMNS, ROWS, 1), data
+    assert mesh.field_data["unit"][0] == "degree", data
+    np.testing.assert_allclose(mesh.bounds[:4], [LON[0], LON[-1], LAT[0], LAT[-1]], atol=1e-4)
+    z = np.asarray(mesh["z"]).reshape(ROWS, COLUMNS)
+    np.testing.assert_allclose(z - z[0, 0], HEIGHTS - HEIGHTS[0, 0], atol=0.11, err_msg=str(data))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_one_field_in_many_spellings(seed, tmp_path):
+    check_spelling(seed, tmp_path / "a.nc")
+
+
+@pytest.mark.slow
+def test_one_field_in_200_spellings(tmp_path):
+    for seed in range(20, 220):
+        check_spelling(seed, tmp_path / f"{seed}.nc")
+
+
+def axes_of(**sizes):
+    return {name: (name, *parts) for name, parts in sizes.items()}
+
+
+def grid(variables, coords, **options):
+    return vizlight.read(xr.Dataset(variables, coords), **options)
+
+
+def test_lengths_in_kilometres_and_what_the_axes_are():
+    x, y = {"units": "km", "axis": "X"}, {"units": "km", "axis": "Y"}
+    mesh = grid(
+        {"z": (("y", "x"), HEIGHTS)},
+        axes_of(x=(np.arange(COLUMNS) * 2.0, x), y=(np.arange(ROWS) * 2.0, y)),
+    )
+    assert mesh.bounds[1] == 22_000
+    assert mesh.field_data["unit"][0] == "metre"
+    assert meaning.line(mesh) == "x 'x' in m by axis, from km, y 'y' in m by axis, from km"
+
+
+def test_pressure_falls_upward_and_is_in_hectopascals():
+    levels = (np.array([100_000.0, 85_000, 50_000]), {"units": "Pa"})
+    mesh = grid(
+        {"t": (("level", "lat", "lon"), np.arange(3.0)[:, None, None] * np.ones((3, 4, 5)))},
+        axes_of(level=levels, lat=(np.arange(4.0),), lon=(np.arange(5.0),)),
+    )
+    assert mesh.bounds[4:] == (-1000, -500)
+    assert mesh["t"][np.argmax(mesh.points[:, 2])] == 2
+    assert "pressure in hPa that falls upward" in meaning.line(mesh)
+
+
+@pytest.mark.parametrize("words", [{"positive": "down"}, {"standard_name": "depth"}, {}])
+def test_depths_are_negative(words):
+    mesh = grid(
+        {"t": (("depth", "y", "x"), np.zeros((3, 4, 5)))},
+        axes_of(depth=(np.array([1.0, 2, 5]), {"units": "km"} | words)),
+    )
+    assert mesh.bounds[4:] == (-5000, -1000)
+
+
+def test_longitudes_across_zero_and_around_the_earth():
+    lon = (np.arange(20) * 1.0 + 350) % 360
+    mesh = grid({"t": (("lat", "lon"), np.arange(60.0).reshape(3, 20))}, axes_of(
+        lat=(np.arange(3.0),), lon=(lon,)
+    ))  # fmt: skip
+    np.testing.assert_allclose(mesh.bounds[:2], [-10, 9])
+    np.testing.assert_array_equal(mesh["t"], np.arange(60))
+    around = grid({"t": (("lat", "lon"), np.arange(36.0).reshape(3, 12))}, axes_of(
+        lat=(np.arange(3.0),), lon=(np.arange(12) * 30.0,)
+    ))  # fmt: skip
+    assert around.dimensions == (13, 3, 1)
+    assert around.bounds[1] == 360
+    np.testing.assert_array_equal(
+        around["t"].reshape(3, 13)[:, 0], around["t"].reshape(3, 13)[:, -1]
+    )
+
+
+def turned(angle):
+    """Return longitudes and latitudes near the equator of a grid that is turned."""
+    x, y = np.meshgrid(np.arange(COLUMNS) * 0.1, np.arange(ROWS) * 0.1)
+    cos, sin = np.cos(angle), np.sin(angle)
+    return cos * x - sin * y, sin * x + cos * y
+
+
+@pytest.mark.parametrize(("name", "along"), [("x_wind", True), ("eastward_wind", False)])
+def test_coordinates_of_each_point_and_winds_along_the_grid(name, along):
+    lon, lat = turned(0.5)
+    names = {"u": name, "v": name.replace("x_", "y_").replace("east", "north")}
+    wind = {
+        key: (("j", "i"), np.full(lon.shape, value), {"standard_name": names[key]})
+        for key, value in (("u", 2.0), ("v", 0.0))
+    }
+    places = {"nav_lon": (("j", "i"), lon), "nav_lat": (("j", "i"), lat)}
+    mesh = grid(wind | places, {})
+    assert isinstance(mesh, pv.StructuredGrid)
+    np.testing.assert_allclose(mesh.points[:, 0], lon.ravel(), atol=1e-6)
+    rows = files.with_vectors(mesh, "u,v")["u,v"]
+    way = [2 * np.cos(0.5), 2 * np.sin(0.5), 0] if along else [2, 0, 0]
+    np.testing.assert_allclose(rows, np.tile(way, (lon.size, 1)), atol=1e-3)
+
+
+def test_cells_at_a_place_that_is_missing_are_left_out():
+    lon, lat = turned(0.5)
+    lon[0, 0] = lat[0, 0] = -999
+    data = {"t": (("j", "i"), HEIGHTS), "lon": (("j", "i"), lon), "lat": (("j", "i"), lat)}
+    mesh = grid(data, {})
+    assert mesh.bounds[0] > -1
+    assert (
+        mesh.extract_surface(algorithm="dataset_surface").n_cells == (ROWS - 1) * (COLUMNS - 1) - 1
+    )
+
+
+def test_a_rotated_pole_is_where_proj_says():
+    """The longitudes and latitudes are those of PROJ's ob_tran."""
+    x = (np.array([-20.0, 0, 25]), {"standard_name": "grid_longitude", "units": "degrees"})
+    y = (np.array([-15.0, 0, 20]), {"standard_name": "grid_latitude", "units": "degrees"})
+    pole = {"grid_mapping_name": "rotated_latitude_longitude",
+            "grid_north_pole_latitude": 39.25, "grid_north_pole_longitude": -162.0}  # fmt: skip
+    data = {"t": (("rlat", "rlon"), np.zeros((3, 3))), "pole": ((), 0, pole)}
+    mesh = grid(data, axes_of(rlon=x, rlat=y))
+    expected = [[-5.095065, 32.625073, 0], [18, 50.75, 0], [73.397696, 61.152862, 0]]
+    np.testing.assert_allclose(np.asarray(mesh.points)[[0, 4, 8]], expected, atol=1e-5)
+
+
+def test_members_and_times_without_since():
+    values = np.arange(6.0).reshape(2, 3, 1, 1) * np.ones((1, 1, 4, 5))
+    coords = axes_of(timestep=([10.0, 20.0],), number=([7, 8, 9],))
+    data = {"t": (("timestep", "number", "y", "x"), values)}
+    assert grid(data, coords)["t"][0] == 3
+    mesh = grid(data, coords, time=10, at={"number": 9})
+    assert mesh["t"][0] == 2
+    assert mesh.field_data["TimeSteps"].tolist() == [10, 20]
+    assert "number 9" in meaning.line(mesh)
+    with pytest.raises(ValueError, match="at: no axis 'member', but timestep, number"):
+        grid(data, coords, at={"member": 1})
+
+
+def test_times_that_xarray_has_decoded():
+    time = np.array(["2000-01-01", "2000-01-03"], "datetime64[ns]")
+    data = {"t": (("time", "y", "x"), np.zeros((2, 4, 5)))}
+    mesh = grid(data, axes_of(time=(time,)))
+    assert np.diff(mesh.field_data["TimeSteps"]).tolist() == [2]
+
+
+def test_two_files_of_one_wind(tmp_path):
+    for name in "uv":
+        data = {name: (("lat", "lon"), np.ones((ROWS, COLUMNS)))}
+        xr.Dataset(data, axes_of(lat=(LAT,), lon=(LON,))).to_netcdf(tmp_path / f"{name}.nc4")
+    mesh = vizlight.read(tmp_path / "u.nc4", overlay=tmp_path / "v.nc4")
+    assert meaning.components(mesh) == [("u", "v")]
+    other = xr.Dataset(
+        {"v": (("lat", "lon"), np.ones((3, 4)))}, axes_of(lat=(LAT[:3],), lon=(LON[:4],))
+    )
+    other.to_netcdf(tmp_path / "w.nc")
+    with pytest.raises(files.FileError, match=r"its overlay '.*w\.nc' is a grid of other points"):
+        vizlight.read(tmp_path / "u.nc4", overlay=tmp_path / "w.nc")
+
+
+def test_a_range_that_the_file_states():
+    data = {"t": (("y", "x"), np.array([[0.0, 1], [2, 99]]), {"valid_range": [0.0, 10.0]})}
+    assert np.isnan(grid(data, {})["t"]).tolist() == [False, False, False, True]

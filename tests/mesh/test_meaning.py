@@ -1,0 +1,108 @@
+"""What arrays mean: components of vectors, and values that stand for none."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.mesh import meaning
+from vizlight.mesh.meaning import Meaning
+
+
+def mesh_with(*names, **standard):
+    mesh = pv.ImageData(dimensions=(2, 2, 1))
+    for name in (*names, *standard):
+        mesh[name] = np.ones(4)
+    said = Meaning()
+    for name, value in standard.items():
+        said.add_array(name, {"standard_name": value})
+    meaning.attach(mesh, said)
+    return mesh
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        ("u", "v"), ("U", "V"), ("u10", "v10"), ("uo", "vo"), ("uas", "vas"), ("vx", "vy", "vz"),
+        ("UGRD_10maboveground", "VGRD_10maboveground"), ("x_wind", "y_wind"),
+        ("water_u", "water_v"),
+        ("10m_u_component_of_wind", "10m_v_component_of_wind"), ("u", "v", "w"),
+        ("B_x", "B_y", "B_z"),
+        ("ugos", "vgos"), ("uwnd", "vwnd"), ("vozocrtx", "vomecrty"), ("Velocity_X", "Velocity_Y"),
+        ("east_wind", "north_wind"), ("U10M", "V10M"), ("u_rho", "v_rho"), ("ux", "uy"),
+    ],
+)  # fmt: skip
+def test_components_by_usual_names(group):
+    assert meaning.components(mesh_with("height", *reversed(group))) == [group]
+
+
+@pytest.mark.parametrize(
+    "names", [("u",), ("u", "V"), ("u10", "v100"), ("x", "y"), ("uu", "uv", "vv"), ("lat", "lon")]
+)
+def test_half_a_pair_is_no_vector(names):
+    assert meaning.components(mesh_with(*names)) == []
+
+
+def test_standard_names_come_first():
+    mesh = mesh_with("u", a="northward_wind", b="eastward_wind", v="air_temperature")
+    assert meaning.components(mesh) == [("b", "a"), ("u", "v")]
+    sea = mesh_with(
+        a="sea_water_x_velocity", b="sea_water_y_velocity", c="upward_sea_water_velocity"
+    )
+    assert meaning.components(sea) == [("a", "b")]
+    heights = mesh_with(
+        u10="eastward_wind", v10="northward_wind", u100="eastward_wind", v100="northward_wind"
+    )
+    assert meaning.components(heights) == [("u10", "v10"), ("u100", "v100")]
+
+
+def test_components_become_vectors():
+    mesh = mesh_with("u", "v")
+    mesh["u"][2] = np.nan
+    out, name = meaning.with_named(mesh, None)
+    assert name == "u,v"
+    assert name not in mesh.point_data
+    assert np.isnan(out[name]).all(axis=1).tolist() == [False, False, True, False]
+    with pytest.raises(ValueError, match="vectors: expected the name .*u,v or u10,v10"):
+        meaning.with_named(mesh_with("u", "v", "u10", "v10"), None)
+    with pytest.raises(ValueError, match="names of two or three arrays .*got 'u,w'; there are u,v"):
+        meaning.with_named(mesh, "u,w")
+
+
+@pytest.mark.parametrize("value", [-9999, -32768, 32767, -3.4028235e38, 9.96921e36, -999, 1e20])
+def test_one_value_far_outside_and_repeated_is_missing(value):
+    values = np.random.default_rng(0).normal(100, 30, 1000).astype(np.float32)
+    values[:60] = value
+    out, words = meaning.without_missing("t", values)
+    assert np.flatnonzero(np.isnan(out)).tolist() == list(range(60))
+    assert words == f"6 % of 't' are {value:g}"
+    assert not np.isnan(values).any()
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [0, 0, 1, 255], [0, 0, 0, 100, 101], [-9999, 1, 2, 3], [0, 50, 99, 99],
+        [-10_900, -9_999, -9_999, 8_000],
+    ],
+)  # fmt: skip
+def test_other_values_are_kept(values):
+    rows = np.array(values, np.int32)
+    out, words = meaning.without_missing("t", rows)
+    assert out is rows
+    assert words == ""
+
+
+def test_nodata_names_the_value():
+    rows = np.array([0, 7, 7, 12], np.int16)
+    out, words = meaning.without_missing("t", rows, 7)
+    assert np.isnan(out).tolist() == [False, True, True, False]
+    assert words == "50 % of 't' are 7"
+    rows = np.array([-9999.0, -9999, 1, 2])
+    assert meaning.without_missing("t", rows, float("nan"))[0] is rows
+
+
+def test_a_mesh_without_meaning():
+    mesh = pv.ImageData(dimensions=(2, 2, 1))
+    assert meaning.line(mesh) == ""
+    mesh.field_data["meaning"] = ["42"]
+    assert meaning.of(mesh) == Meaning()

@@ -1,0 +1,198 @@
+"""What data hold: their dimension, and the part that each array can have in a picture."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from vizlight.mesh import meaning, records
+from vizlight.vtk.arrays import are_colors
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+
+    from vizlight._types import Array, Raw
+
+Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
+
+#: Most rows of an array, and most cells, that are looked at.
+SAMPLE = 20_000
+#: Most distinct values of an array of kinds, such as materials or labels.
+MOST_KINDS = 12
+#: Extent across a flat mesh, as a share of its longest side.
+FLAT = 1e-6
+#: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
+#: bounds, masks.
+_NO_DATUM = {
+    "id", "ids", "gid", "gids", "index", "indices", "rank", "number", "mask", "ghost", "ghosts",
+    "valid", "normal", "normals", "bnds", "bounds", "point", "points", "coord", "coords",
+    "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons", "lat",
+    "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
+}  # fmt: skip
+#: Words of a name: runs of letters, of which a capital begins another.
+_WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
+#: Names of heights: of terrain, of the sea bed, of a surface of pressure.
+_HEIGHTS = re.compile(
+    r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
+    r"($|[^a-z])"
+)
+
+
+@dataclass(frozen=True)
+class Named:
+    """One array, or several that are the components of one vector.
+
+    Parameters
+    ----------
+    name : str
+        Name; of components their names, separated by commas.
+    role : str
+        Part that it can have in a picture.
+    of_cells : bool
+        Whether it has a row for each cell.
+    distinct : int
+        Number of distinct values in a sample.
+    low, high : float
+        Range in a sample.
+    """
+
+    name: str
+    role: Role
+    of_cells: bool = False
+    distinct: int = 0
+    low: float = 0.0
+    high: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What a mesh holds; looked at in a sample of its points and cells.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    raster : bool
+        Whether it comes from a file of a raster, whose only band is heights.
+    """
+
+    mesh: pv.DataSet
+    raster: bool = False
+
+    @cached_property
+    def dimension(self) -> int:
+        """Highest dimension of the cells, 0 where there are none."""
+        return int(self.mesh.max_cell_dimensionality) if self.mesh.n_cells else 0
+
+    @cached_property
+    def sides(self) -> Array:
+        """Extents along the axes."""
+        sizes: Array = np.asarray(self.mesh.bounds_size, dtype=np.float64)
+        return sizes
+
+    @cached_property
+    def flat_axis(self) -> int | None:
+        """Axis across which a surface has no extent, None where it has one across each."""
+        thin = np.flatnonzero(self.sides <= FLAT * self.sides.max())
+        return int(thin[-1]) if self.dimension == 2 and len(thin) else None
+
+    @cached_property
+    def arrays(self) -> tuple[Named, ...]:
+        """Arrays that are data, the best for a picture first; see :func:`sorted_arrays`."""
+        return sorted_arrays(self.mesh, raster=self.raster)
+
+    def first(self, *roles: Role) -> Named | None:
+        """Return the best array of some roles, None where there is none."""
+        return next((array for array in self.arrays if array.role in roles), None)
+
+    def named(self, name: str) -> Named | None:
+        """Return what is known of an array by its name, also of one that is no datum."""
+        known = next((array for array in self.arrays if array.name == name), None)
+        if known is not None or not name:
+            return known
+        places = ((self.mesh.point_data, False), (self.mesh.cell_data, True))
+        for data, of_cells in places:
+            if name in data:
+                return _described(name, np.asarray(data[name]), of_cells=of_cells, named=False)
+        parts = name.split(",")
+        every = [*self.mesh.point_data, *self.mesh.cell_data]
+        if len(parts) in (2, 3) and all(part in every for part in parts):
+            return Named(name, "vectors", parts[0] not in self.mesh.point_data)
+        return None
+
+
+def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...]:
+    """Return the arrays that are data, the best for a picture first.
+
+    The active array comes first, then numbers in floating point, those of points before those of
+    cells, and kinds last; each in the order of the mesh. What a filter of light made is left out.
+    """
+    made = records.all_made(mesh)
+    described = []
+    for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
+        for name in data:
+            if name in made:
+                continue
+            values = np.asarray(data[name])
+            array = _described(name, values, of_cells=of_cells, named=True)
+            if array is not None:
+                described.append(array)
+    if raster and len(described) == 1 and described[0].role == "values":
+        only = described[0]
+        described = [Named(only.name, "heights", only.of_cells, only.distinct, only.low, only.high)]
+    joined = [
+        Named(",".join(names), "vectors", names[0] not in mesh.point_data)
+        for names in meaning.components(mesh)
+        if ",".join(names) not in mesh.array_names
+    ]
+    active = (mesh.active_scalars_name, mesh.active_vectors_name)
+
+    def rank(array: Named) -> tuple[bool, bool, bool]:
+        return (array.role == "kinds", array.name not in active, array.of_cells)
+
+    return tuple(sorted([*described, *joined], key=rank))
+
+
+def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:
+    """Return the role of an array, None where it is no datum; ``named`` says whether by its name.
+
+    Constants are none, nor are arrays of text.
+    """
+    words = [word.lower() for word in _WORDS.findall(name)] or [""]
+    if named and (words[-1] in _NO_DATUM or words[0] == "vtk"):
+        return None
+    lower = name.lower()
+    if are_colors(values):
+        return Named(name, "colors", of_cells)
+    if values.dtype.kind not in "fiub" or values.ndim > 2 or not len(values):
+        return None
+    sample = np.asarray(values[:: max(len(values) // SAMPLE, 1)], dtype=np.float64)
+    finite = sample[np.isfinite(sample.reshape(len(sample), -1)).all(axis=1)]
+    if not len(finite):
+        return None
+    if values.ndim == 2 and values.shape[1] > 1:
+        is_vector = values.shape[1] == 3 and values.dtype.kind == "f" and np.any(finite)
+        return Named(name, "vectors", of_cells) if is_vector else None
+    low, high = float(finite.min()), float(finite.max())
+    if low == high and named:
+        return None
+    distinct = len(np.unique(finite))
+    whole = bool(np.all(finite == np.round(finite)))
+    if whole and distinct <= MOST_KINDS:
+        role: Role = "kinds"
+    else:
+        role = "heights" if _HEIGHTS.search(lower) else "values"
+    return Named(name, role, of_cells, distinct, low, high)
+
+
+def kinds_of(mesh: pv.DataSet, name: str) -> Sequence[float]:
+    """Return the distinct values of an array of kinds, of all its rows."""
+    values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
+    kinds: list[float] = np.unique(values[np.isfinite(values)]).tolist()
+    return kinds

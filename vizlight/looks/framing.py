@@ -1,0 +1,166 @@
+"""From where data are seen: maps from above, open patches along their normal, solids from a side.
+
+All is decided from a sample of points and cells.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.vtk.cells import connectivity
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Vector
+    from vizlight.looks.contents import Contents
+
+#: Most points or cells that are looked at.
+SAMPLE = 20_000
+#: Length of the sum of the normals of a surface, as a share of its area, from which it is an open
+#: patch that is seen along that sum.
+OPEN = 0.6
+#: Azimuths and altitudes of the eye, in degrees, among which the best one is taken.
+AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
+#: Pixels along each side of the picture in which self-occlusion is counted.
+PIXELS = 64
+#: Long side over short side from which a flat strip is turned along the picture.
+STRIP = 4.0
+
+
+@dataclass(frozen=True)
+class Eye:
+    """Direction toward the eye, direction up in the picture, and whether projection is parallel."""
+
+    toward: Vector
+    up: Vector
+    parallel: bool = False
+    words: str = ""
+
+
+def eye_of(mesh: pv.DataSet, contents: Contents) -> Eye:
+    """Return from where a mesh is seen best.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh that is drawn.
+    contents : Contents
+        What the data hold, of which it is drawn.
+    """
+    if contents.flat_axis is not None:
+        return _above(mesh, contents.flat_axis)
+    if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
+        return _of_surface(mesh)
+    return _of_points(_some(np.asarray(mesh.points, dtype=np.float64)))
+
+
+def _above(mesh: pv.DataSet, axis: int) -> Eye:
+    """Return the eye above a flat mesh, north up; a strip lies along the picture."""
+    toward = tuple(float(i == axis) * (-1.0 if axis == 1 else 1.0) for i in range(3))
+    up: Vector = (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0)
+    words = "from above, north up" if axis == 2 else f"along {'xyz'[axis]}"
+    right = np.cross(up, toward)
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
+    flat = flat[np.isfinite(flat).all(axis=1)]
+    if len(flat) > 2:
+        _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
+        if values[0] > STRIP * values[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
+            # The long side to the right, and up on the side where up was.
+            across = axes[1] * (1.0 if axes[1, 1] >= 0 else -1.0)
+            turned = across[0] * right + across[1] * np.asarray(up)
+            up, words = _vector(turned), "turned to lie along the picture"
+    return Eye(toward, up, True, words)
+
+
+def _of_surface(surface: pv.PolyData) -> Eye:
+    corners = _triangles(surface)
+    if not len(corners):
+        return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    total = normals.sum(axis=0)
+    if np.linalg.norm(total) > OPEN * areas.sum() > 0:
+        toward = total / np.linalg.norm(total)
+        if toward[2] < -0.5:  # ground is seen from above, however its cells are wound
+            toward = -toward
+        up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
+        return Eye(_vector(toward), up, False, "along its mean normal")
+    middles = corners.mean(axis=1)
+    scores = [(_seen(middles, normals, areas, way), way) for way in _ways()]
+    best = max(scores, key=lambda pair: pair[0])[1]
+    return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
+
+
+def _of_points(points: Array) -> Eye:
+    """Return the eye from which points spread most."""
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) < 2:
+        return Eye((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
+    spreads = []
+    for way in _ways():
+        right, up = _plane(way)
+        flat = np.stack([points @ right, points @ up], axis=1)
+        wide, tall = np.subtract(*np.percentile(flat, (98, 2), axis=0))
+        spreads.append((float(wide * tall) + 1e-3 * float(wide) ** 2, way))
+    best = max(spreads, key=lambda pair: pair[0])[1]
+    return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
+
+
+def _seen(middles: Array, normals: Array, areas: Array, way: Array) -> float:
+    """Return the area that an eye at infinity sees, wide pictures before tall ones."""
+    right, up = _plane(way)
+    x, y, z = middles @ right, middles @ up, middles @ way
+    size = max(np.ptp(x), np.ptp(y)) or 1.0
+    at = np.stack([(x - x.min()) / size, (y - y.min()) / size]) * (PIXELS - 1)
+    pixels = np.round(at).astype(np.int64)
+    flat = pixels[0] * PIXELS + pixels[1]
+    nearest = np.full(PIXELS * PIXELS, -np.inf)
+    np.maximum.at(nearest, flat, z)
+    # Cells in one pixel differ by a slope of up to two.
+    front = z >= nearest[flat] - 3 * size / PIXELS
+    # Open surfaces are seen from both sides.
+    cosines = np.abs(normals @ way) / np.where(areas > 0, areas, 1)
+    seen = float((areas * front * (cosines > 0.15)).sum())
+    return seen * (1 + 0.2 * min(float(np.ptp(x) / max(np.ptp(y), 1e-12 * size)), 2.0))
+
+
+def _ways() -> list[Array]:
+    """Return directions toward the eye, the usual one of three-quarters first."""
+    found = []
+    for altitude, azimuth in itertools.product(ALTITUDES, AZIMUTHS):
+        a, b = math.radians(azimuth), math.radians(altitude)
+        found.append(np.array([math.cos(b) * math.cos(a), math.cos(b) * math.sin(a), math.sin(b)]))
+    return found
+
+
+def _plane(way: Array) -> tuple[Array, Array]:
+    right = np.cross((0.0, 0.0, 1.0), way)
+    right /= np.linalg.norm(right)
+    return right, np.cross(way, right)
+
+
+def _triangles(surface: pv.PolyData) -> Array:
+    """Return three corners of some faces, as (count, 3, 3)."""
+    ids, ends = connectivity(surface.GetPolys())
+    sizes = np.diff(ends)
+    faces = np.flatnonzero(sizes >= 3)
+    faces = faces[:: max(len(faces) // SAMPLE, 1)]
+    places = ids[ends[faces][:, np.newaxis] + np.arange(3)] if len(faces) else np.empty((0, 3), int)
+    corners: Array = np.asarray(surface.points, dtype=np.float64)[places]
+    # A corner that is not finite takes its face with it.
+    return corners[np.isfinite(corners).all(axis=(1, 2))]
+
+
+def _some(points: Array) -> Array:
+    return points[:: max(len(points) // SAMPLE, 1)]
+
+
+def _vector(values: Array) -> Vector:
+    """Return a direction in numbers that a script can show."""
+    return tuple(round(float(value), 4) for value in values)

@@ -1,0 +1,128 @@
+"""The options of ``vizlight.look`` by what they are for, and cuts of the data."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from typing import TYPE_CHECKING
+
+from vizlight import _check
+from vizlight._words import message, one_of
+from vizlight.draw import render
+from vizlight.looks.steps import Step
+from vizlight.looks.wishes import PRESETS, STYLES, Wishes, scene_step
+from vizlight.scene import Scene
+from vizlight.scene.keywords import unknown_option
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    from vizlight._types import Given, Keywords
+    from vizlight.looks.wishes import SceneMaker
+
+#: Options of what is taken of the data, of the camera, and of the picture.
+PART = ("time", "overlay", "clip", "threshold", "contour", "level", "slice", "warp", "exaggeration")
+EYE = ("up", "parallel", "zoom")
+PICTURE = (
+    "background", "line_width", "cmap", "clim", "scalars", "key", "backend", "progress",
+)  # fmt: skip
+
+
+def sorted_out(
+    question: str,
+    *,
+    array: str | None,
+    view: object,
+    size: tuple[int, int],
+    style: str,
+    options: dict[str, Given],
+) -> Wishes:
+    """Return the options of a look, each in its group.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a name is unknown, or a value does not fit.
+    """
+    _check.choice("style", style, tuple(STYLES))
+    if array is not None:
+        _check.text("array", array, expected="the name of an array")
+    columns, rows = render.pixels_of(size)
+    light_names = {*inspect.signature(LightOptions).parameters}
+    groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
+    scene = options.pop("scene", None)
+    for name, value in options.items():
+        group = next(
+            (
+                key
+                for key, names in (("part", PART), ("eye", EYE), ("picture", PICTURE))
+                if name in names
+            ),
+            "light",
+        )
+        if group == "light" and name not in light_names and question in ("auto", *PRESETS):
+            known = [*PART, *EYE, *PICTURE, "scene", *sorted(light_names)]
+            raise TypeError(unknown_option("look", name, known))
+        groups[group][name] = value
+    return Wishes(
+        question,
+        array,
+        view,
+        (columns, rows),
+        style,
+        groups["part"],
+        groups["light"],
+        groups["eye"],
+        groups["picture"],
+        scene_maker(scene),
+    )
+
+
+def scene_maker(scene: object) -> SceneMaker | None:
+    """Return the function that makes the step of a scene that was given: a value or a preset.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is neither.
+    """
+    if scene is None:
+        return None
+    if isinstance(scene, str):
+        _check.choice("scene", scene, PRESETS)
+        return lambda _, camera: Step(
+            "scene", f"vizlight.presets.{scene}", Step("", "vizlight.View.from_camera", camera)
+        )
+    _check.instance("scene", scene, Scene)
+    return lambda _question, _camera: scene_step(scene)  # type: ignore[arg-type]
+
+
+def cut(mesh: Step, wishes: Wishes) -> Step:
+    """Return the steps that raise, clip and choose cells of a mesh, after it was read."""
+    part = wishes.part
+    if part.get("warp") is not None:
+        factor, note = wishes.heightened(mesh.run(), part["warp"])
+        mesh = Step("raised", "files.warped", mesh, part["warp"], factor)
+        mesh.note = note
+    for name, low, high in part.get("threshold") or ():
+        mesh = _kept(mesh, name, low, high)
+    for normal, origin in part.get("clip") or ():
+        mesh = Step("clipped", ".clip", mesh, normal=normal, origin=origin)
+        mesh.asked = ("clip", f"{normal}, {origin}")
+    return mesh
+
+
+def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
+    """Return the step that keeps the cells whose values are in a range."""
+    present = [*mesh.run().point_data, *mesh.run().cell_data]
+    if name not in present:
+        raise ValueError(
+            message("threshold", f"the name of an array, {one_of(present)}", repr(name))
+        )
+    # PyVista takes two ends, or one value and what of it is kept: the upper side by default.
+    ends: object = (low, high)
+    if math.isinf(low) or math.isinf(high):
+        ends = low if math.isinf(high) else high
+    side = {"method": "lower"} if math.isinf(low) else {}
+    step = Step("kept", ".threshold", mesh, ends, scalars=name, **side)
+    step.asked = ("threshold", f"{name}, {low:g} to {high:g}")
+    return step

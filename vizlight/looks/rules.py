@@ -1,0 +1,103 @@
+"""Rules: which picture suits which data. One row for each kind of data, the first that fits counts.
+
+To add a row, write its predicate on :class:`Contents`, the question, the roles of the array that it
+shows, the recipe of ``recipes`` that draws it, and the words that say why.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vizlight.looks import recipes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vizlight.looks.contents import Contents, Named, Role
+    from vizlight.looks.recipes import Case, Drawing
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One row of the table.
+
+    Parameters
+    ----------
+    shown : str
+        What is shown.
+    fits : callable
+        Predicate on the contents.
+    question : str
+        Question of the light: a preset, ``"relief"``, or ``"none"`` where nothing bends.
+    roles : tuple of str
+        Roles of the array that is shown, the data having at least one; empty for none.
+    recipe : callable
+        Function that draws it.
+    why : str
+        What the data are, in words.
+    """
+
+    shown: str
+    fits: Callable[[Contents], bool]
+    question: str
+    roles: tuple[Role, ...]
+    recipe: Callable[[Case], Drawing]
+    why: str
+
+    def array(self, contents: Contents) -> Named | None:
+        """Return the array that the rule shows of some contents."""
+        return contents.first(*self.roles) if self.roles else None
+
+    def holds(self, contents: Contents) -> bool:
+        """Return whether the rule fits, and there is an array for it."""
+        return self.fits(contents) and (not self.roles or self.array(contents) is not None)
+
+
+def _is_lines(contents: Contents) -> bool:
+    return contents.dimension == 1
+
+
+def _is_points(contents: Contents) -> bool:
+    return contents.dimension == 0
+
+
+def _is_flat(contents: Contents) -> bool:
+    return contents.flat_axis is not None
+
+
+def _is_map(contents: Contents) -> bool:
+    return contents.flat_axis == 2
+
+
+def _is_surface(contents: Contents) -> bool:
+    return contents.dimension == 2
+
+
+def _is_volume(contents: Contents) -> bool:
+    return contents.dimension == 3
+
+
+#: The table. Of a question that is given, the first row with that question counts.
+RULES = (
+    Rule("lines", _is_lines, "heading", (), recipes.lines, "lines"),
+    Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), recipes.points,
+         "points with values"),
+    Rule("points", _is_points, "shape", (), recipes.points, "points without values"),
+    Rule("sheet", _is_flat, "direction", ("vectors",), recipes.vectors, "a map with vectors"),
+    Rule("sheet", _is_map, "relief", ("heights",), recipes.relief, "a map of heights"),
+    Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), recipes.values,
+         "a map of values"),
+    Rule("sheet", _is_flat, "shape", (), recipes.surface, "a plane without data"),
+    Rule("surface", _is_surface, "direction", ("vectors",), recipes.vectors,
+         "a surface with vectors"),
+    Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), recipes.values,
+         "a surface with values"),
+    Rule("surface", _is_surface, "shape", (), recipes.surface, "a surface without data"),
+    Rule("streamlines", _is_volume, "heading", ("vectors",), recipes.flow, "a volume with vectors"),
+    Rule("isosurface", _is_volume, "shape", ("values", "heights"), recipes.isosurface,
+         "a volume of values"),
+    Rule("hull", _is_volume, "value", ("kinds", "values", "heights", "colors"), recipes.values,
+         "a volume of a few kinds"),
+    Rule("hull", _is_volume, "shape", (), recipes.surface, "a solid without data"),
+)  # fmt: skip

@@ -1,0 +1,239 @@
+"""What is asked of a look beside its question: options, and the steps that they make."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _check
+from vizlight._words import message
+from vizlight.looks.steps import Step
+from vizlight.mesh import georeference, records
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import TypeAlias
+
+    import pyvista as pv
+
+    from vizlight._types import Foreign, Keywords, Vector
+    from vizlight.looks.contents import Named
+    from vizlight.looks.framing import Eye
+    from vizlight.scene import Scene
+
+    #: Function of a question and of the step of a camera that returns the step of a scene.
+    SceneMaker: TypeAlias = Callable[[str, Step], Step]
+
+#: Opening angle of a camera, in degrees.
+ANGLE = 30.0
+#: Backgrounds of the two styles, and the inks on them.
+STYLES = {"paper": "white", "dark": "#14161a"}
+#: Directions toward the eye that have a name.
+VIEWS: dict[str, Vector] = {
+    "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0),
+    "z": (0.0, 0.0, 1.0), "-z": (0.0, 0.0, -1.0), "iso": (1.0, 1.0, 1.0),
+    "isometric": (1.0, 1.0, 1.0), "above": (0.0, 0.0, 1.0), "front": (0.0, -1.0, 0.0),
+}  # fmt: skip
+#: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
+SUN = (315.0, 40.0)
+#: Questions whose light is a preset.
+PRESETS = ("direction", "slope", "heading", "shape", "value")
+
+
+def plain_scene(question: str, camera: Step) -> Step:
+    """Return the step of the scene of a question, where a user gives none.
+
+    ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps.
+    """
+    view = Step("", "vizlight.View.from_camera", camera)
+    if question in PRESETS:
+        return Step("scene", f"vizlight.presets.{question}", view)
+    if question == "none":
+        material = Step("", "vizlight.Material", ambient=1.0, diffuse=0.0)
+        return Step("scene", "vizlight.Scene", lights=[], material=material, view=view)
+    if question == "relief":
+        toward = _of_angles(*SUN)
+        lights = [Step("", "vizlight.Light", direction=toward)]
+        return Step("scene", "vizlight.Scene", lights=lights, view=view)
+    return Step("scene", "vizlight.Scene", view=view)
+
+
+def scene_step(scene: Scene) -> Step:
+    """Return the step that makes a scene which was passed as a value."""
+    return Step("scene", "vizlight.Scene.from_dict", scene.to_dict())
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """Options of a look.
+
+    Parameters
+    ----------
+    question, array : str
+        As for :func:`vizlight.look`.
+    view : str, sequence of float or pyvista.Camera, optional
+        As for :func:`vizlight.look`.
+    size : (int, int)
+        Width and height in pixels.
+    style : {"paper", "dark"}
+        Background.
+    part : mapping
+        What of the data is taken: time, overlay, clip, threshold, contour, level, slice, warp,
+        exaggeration.
+    light : mapping
+        Options of the filter that lights.
+    eye : mapping
+        Options of the camera: up, parallel, zoom.
+    picture : mapping
+        Options of the picture: background, line_width, cmap, clim, scalars, key, backend.
+    make_scene : callable, optional
+        Function that returns the step of the scene.
+    surface : bool
+        Whether the outer surface is taken; otherwise all points are lit.
+    refine : float, optional
+        Largest error between points.
+    """
+
+    question: str = "auto"
+    array: str | None = None
+    view: object = None
+    size: tuple[int, int] = (1200, 800)
+    style: str = "paper"
+    part: Mapping[str, Foreign] = field(default_factory=dict)
+    light: Mapping[str, Foreign] = field(default_factory=dict)
+    eye: Mapping[str, Foreign] = field(default_factory=dict)
+    picture: Mapping[str, Foreign] = field(default_factory=dict)
+    make_scene: SceneMaker | None = None
+    surface: bool = True
+    refine: float | None = None
+
+    @property
+    def background(self) -> str:
+        """Colour behind the data."""
+        given = self.picture.get("background")
+        return STYLES[self.style] if given is None else given
+
+    def scene(self, question: str, camera: Step) -> Step:
+        """Return the step that makes the scene of a question, or the one that was given."""
+        return (self.make_scene or plain_scene)(question, camera)
+
+    def camera(self, mesh: Step, eye: Eye) -> Step:
+        """Return the step that sets the camera on a mesh."""
+        up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
+        fixed = self.fixed_camera()
+        if fixed is not None:
+            return fixed
+        keywords: Keywords = {}
+        if self.view is None:
+            toward, parallel = eye.toward, eye.parallel
+            if up is None and not _usual(eye):
+                up = eye.up
+        else:
+            toward, parallel = direction(self.view), False
+        if up is not None:
+            keywords["up"] = up
+        if parallel or self.eye.get("parallel"):
+            keywords["parallel"] = True
+        if zoom != 1:
+            keywords["zoom"] = zoom
+        aspect = self.size[0] / self.size[1]
+        return Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
+
+    def fixed_camera(self) -> Step | None:
+        """Return the step that sets a camera which was given, None where none was."""
+        camera: Foreign = self.view
+        if not hasattr(camera, "GetPosition"):
+            return None
+        zoom = _check.number("zoom", self.eye.get("zoom", 1.0), low=1e-6)
+        made = Step("camera", "pyvista.Camera")
+        position, focus, up = (
+            tuple(float(x) for x in getattr(camera, name)())
+            for name in ("GetPosition", "GetFocalPoint", "GetViewUp")
+        )
+        made.attributes = {
+            "position": position, "focal_point": focus, "up": self.eye.get("up") or up,
+            "view_angle": float(camera.GetViewAngle()) / zoom,
+        }  # fmt: skip
+        if camera.GetParallelProjection():
+            scale = float(camera.GetParallelScale())
+            made.attributes |= {"parallel_projection": True, "parallel_scale": scale / zoom}
+        elif self.eye.get("parallel"):
+            half = math.dist(position, focus) * math.tan(math.radians(ANGLE / 2))
+            made.attributes |= {"parallel_projection": True, "parallel_scale": half / zoom}
+        return made
+
+    def light_of_surface(self) -> Keywords:
+        """Return the options of light of a surface, whose creases are seen as creases."""
+        return {"feature_angle": "auto"} | dict(self.light)
+
+    def lit(self, mesh: Step, scene: Step, light: Mapping[str, object]) -> Step:
+        """Return the step that lights the points of a mesh, or refines it until they suffice."""
+        if self.refine is not None:
+            return self.step("lit", "refine", mesh, scene, **light, error=self.refine)
+        # The lit mesh shares the arrays of the one that was read.
+        shared = Step("", ".copy", mesh, deep=False)
+        return self.step("lit", "illuminate", shared, scene, **light, inplace=True)
+
+    def step(self, name: str, filter_: str, /, *arguments: object, **keywords: object) -> Step:
+        """Return the step that runs a filter, with a progress bar where one is asked for."""
+        progress = {"progress_bar": True} if self.picture.get("progress") else {}
+        return Step(name, f"vizlight.{filter_}", *arguments, **keywords, **progress)
+
+    @property
+    def colors(self) -> Keywords:
+        """Colour map and limits of an array, where they are given."""
+        names = ("cmap", "clim")
+        return {name: self.picture[name] for name in names if self.picture.get(name) is not None}
+
+    def joined(self, mesh: Step, array: Named) -> Step:
+        """Return the step that joins components to vectors, or the mesh that has them."""
+        if "," not in array.name or array.name in mesh.run().array_names:
+            return mesh
+        return Step("joined", "files.with_vectors", mesh, array.name)
+
+    def section(self, mesh: Step) -> Step:
+        """Return the step that takes the section by a plane."""
+        normal, origin = self.part["slice"]
+        return Step("section", ".slice", mesh, normal=normal, origin=origin)
+
+    def heightened(self, mesh: pv.DataSet, heights: str) -> tuple[float, str]:
+        """Return the factor with which heights can be seen, and the words that say so."""
+        given = self.part.get("exaggeration")
+        if given is not None:
+            return float(given), ""
+        if heights not in records.averaged(mesh, heights).point_data:
+            return 1.0, ""
+        factor = georeference.exaggeration(mesh, heights)
+        words = f"heights are taken {factor:g} times; exaggeration=1 takes them as they are"
+        return factor, words if factor != 1 else ""
+
+
+def direction(view: object) -> Vector:
+    """Return the direction toward the eye of a view: a name, or three numbers.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is neither.
+    """
+    if isinstance(view, str):
+        if view not in VIEWS:
+            expected = f"a direction (x, y, z), a camera, or one of {', '.join(map(repr, VIEWS))}"
+            raise ValueError(message("view", expected, repr(view)))
+        return VIEWS[view]
+    return _check.vector("view", view, direction=True)
+
+
+def _usual(eye: Eye) -> bool:
+    """Return whether the direction up is the one that a camera takes by itself."""
+    usual = (0.0, 1.0, 0.0) if abs(eye.toward[2]) > 0.999 else (0.0, 0.0, 1.0)
+    return np.allclose(eye.up, usual)
+
+
+def _of_angles(azimuth: float, altitude: float) -> Vector:
+    from vizlight.geometry.relief import sun
+
+    return tuple(sun.toward(azimuth, altitude).round(6).tolist())

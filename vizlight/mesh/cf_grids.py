@@ -1,0 +1,695 @@
+"""Grids of netCDF files and of xarray: which axis is east, north and up, as CF and usage say."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.geometry.relief import height_field
+from vizlight.mesh import georeference, meaning, series
+from vizlight.mesh.meaning import Meaning
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from vizlight._types import Array, Bools, Foreign, Indices, Raw
+
+__all__ = ["SUFFIXES", "add", "is_grid", "of_dataset", "read"]
+
+#: File name extensions of netCDF.
+SUFFIXES = (".nc", ".nc4", ".cdf")
+
+#: Largest deviation from equal steps, as a share of a step, of the axes of an image.
+EQUAL = 1e-4
+#: Names of the axes for which cf-xarray has criteria: letters of x, y, z and of the time.
+_LETTERS = {
+    "longitude": "x", "X": "x", "latitude": "y", "Y": "y", "Z": "z", "vertical": "z", "T": "t",
+}  # fmt: skip
+#: Attributes that say what an axis is, the surest first.
+_ATTRIBUTES = (
+    "axis", "standard_name", "units", "_CoordinateAxisType", "cartesian_axis", "positive",
+)  # fmt: skip
+#: Units that say what an axis is, in all spellings.
+_UNITS = {
+    "x": r"deg(ree)?s?[ _]*e(ast)?",
+    "y": r"deg(ree)?s?[ _]*n(orth)?",
+    "z": r"k?pa|hpa|mb|mbar|millibars?|bar|dbar|decibars?|(sigma_)?levels?|layers?",
+    "t": r".* since .*",
+}
+#: Names of longitude and of latitude.
+_LONGITUDE = r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?\d*([_\W].*)?|glam.*"
+_LATITUDE = r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?\d*([_\W].*)?|gphi.*"
+#: Names and first words of long names that say what an axis is.
+_NAMES = {
+    "x": rf"x|x[cthqu]|x[_\d].*|xi(_.*)?|i|n[ix]|{_LONGITUDE}|e|east(ing)?|west_east.*|xaxis"
+    r"|col(umn)?s?|across_?track|pixels?",
+    "y": rf"y|y[cthqv]|y[_\d].*|eta(_.*)?|j|n[jy]|{_LATITUDE}|n|north(ing)?|south_north.*|yaxis"
+    r"|rows?|along_?track|lines?|scan.*",
+    "z": r"z|z[_\d].*|k|nz|.*lev.*|depth.*|.*depth|dept[htuvw]|gdep.*|s_(rho|w)|h(ei)?ght.*"
+    r"|.*height|alt.*|elevation|pres(sure)?.*|isobaric.*|plev.*|bottom_top.*|sigma.*|hybrid.*"
+    r"|lv_.*|vertical.*",
+    "t": r"t|.*time.*|date|dates?|days?|months?|years?|hours?|t\d+|step|tstep",
+}
+#: Pressures in hectopascals of other units.
+_PRESSURES = {
+    "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
+    "millibar": 1.0, "kpa": 10.0, "bar": 1e3, "dbar": 100.0, "decibar": 100.0,
+}  # fmt: skip
+#: Standard and other names of what counts downward though it is no pressure.
+_DOWN = (
+    r"depth.*|dept[htuvw]|gdep.*|.*_depth|atmosphere_(hybrid_)?sigma.*|atmosphere_ln_pressure.*"
+    r"|sigma|hybrid"
+)
+#: Names of heights, which are drawn in the unit of the axes, and of depths, which count downward.
+_HEIGHTS = (
+    r"z|.*altitude.*|.*elevation.*|.*height.*|.*topo.*|.*bathy.*|.*orog.*|dem|.*relief.*|hgt.*|zs"
+    r"|.*depth.*"
+)
+_DEPTHS = r"(sea_floor_depth|depth).*|.*_depth(_below.*)?"
+#: Names of arrays that are no values on a grid: corners of cells and mappings.
+_ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECASE)
+
+
+#: Axes that are no place: of them the first value is taken.
+_MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
+
+
+@dataclass
+class _Axis:
+    """One axis of a grid.
+
+    Attributes
+    ----------
+    ticks : ndarray, shape (N,)
+        Coordinates, rising.
+    order : ndarray of int, shape (N,)
+        Indices along the dimension of these.
+    words : str
+        Words for the meaning.
+    kind : {"degrees", "rotated", "length", "index", ""}
+        Kind of its unit.
+    """
+
+    ticks: Array
+    order: Indices
+    words: str
+    kind: str = ""
+
+
+def is_grid(value: object) -> bool:
+    """Return whether a value is a Dataset or a DataArray of xarray.
+
+    Parameters
+    ----------
+    value : object
+    """
+    return type(value).__module__.startswith("xarray.") and hasattr(value, "coords")
+
+
+def read(
+    path: Path, time: object, at: Mapping[str, object] | None = None, nodata: float | None = None
+) -> pv.DataSet:
+    """Return the variables of a netCDF file on the grid of its largest variable.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    time, at, nodata
+        As for :func:`of_dataset`.
+    """
+    import xarray
+
+    # With all coordinates, corners of cells are none of the variables.
+    # Times stay numbers, which every calendar of a climate model has.
+    with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
+        return of_dataset(file, time, at, nodata, source=str(path))
+
+
+def of_dataset(
+    data: Foreign,
+    time: object = None,
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
+    *,
+    source: str = "the dataset",
+) -> pv.DataSet:
+    """Return the variables of a dataset of xarray on the grid of its largest variable.
+
+    East, north and up are those of CF's attributes, else of usual names, else of the order of the
+    axes, of which the last is x. Of any axis beside these and the time one value is taken.
+
+    Parameters
+    ----------
+    data : xarray.Dataset or xarray.DataArray
+        Data, of which one step is loaded.
+    time : float, int or str, optional
+        Time of a step, as for :func:`.series.chosen`.
+    at : dict, optional
+        Value or index along any other axis, by its name. Default: the first.
+    nodata : float, optional
+        Value that stands for none, as for :func:`.meaning.without_missing`.
+    source : str
+        Name of the data in a warning.
+
+    Returns
+    -------
+    pyvista.DataSet
+        Image, rectilinear grid where steps are unequal, structured grid where each point has a
+        longitude and a latitude of its own, or unstructured one where some have none.
+
+    Raises
+    ------
+    ValueError
+        If there is no variable on a grid, or the coordinates along an axis repeat.
+    """
+    if not hasattr(data, "data_vars"):
+        data = data.to_dataset(name=data.name or "values")
+    return _Reader(data).grid(time, dict(at or {}), nodata, source)
+
+
+def add(mesh: pv.DataSet, other: Foreign, path: Path) -> None:
+    """Add the arrays of a grid of the same points to a mesh, with their meaning.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    other : pyvista.DataSet
+        The other grid.
+    path : pathlib.Path
+        Its file, for the message.
+
+    Raises
+    ------
+    ValueError
+        If the points are others.
+    """
+    same = mesh.n_points == other.n_points
+    if not same or not np.allclose(mesh.points, other.points, rtol=1e-5, atol=0):
+        raise ValueError(f"its overlay '{path}' is a grid of other points")
+    said, more = meaning.of(mesh), meaning.of(other)
+    for name, rows in other.point_data.items():
+        mesh.point_data[name] = np.asarray(rows)
+    said.arrays |= more.arrays
+    said.notes += more.notes
+    meaning.attach(mesh, said)
+
+
+class _Reader:
+    """Reader of one dataset, which notes what the grid means."""
+
+    def __init__(self, data: Foreign) -> None:
+        if any(one.attrs.get("cf_role") == "mesh_topology" for one in data.variables.values()):
+            raise ValueError("a mesh of UGRID, not a grid; convert it to .vtu")
+        self.file, self.said = _with_numbers(data), Meaning()
+        #: Letter of the axis of each dimension, or an empty text, and what says so.
+        self.letters = {str(dim): self._letter(str(dim)) for dim in data.sizes}
+
+    def _coordinate(self, dim: str) -> Foreign:
+        """Return the coordinates along a dimension, None where there are none."""
+        file = self.file
+        if dim in file.variables:
+            return file[dim] if file[dim].dims == (dim,) else None
+        # Coordinates may have another name than their dimension.
+        others = [
+            file[name]
+            for name, values in file.variables.items()
+            if values.dims == (dim,)
+            and values.dtype.kind in "iuf"
+            and _letter_of(str(name), values.attrs)[0]
+        ]
+        return others[0] if len(others) == 1 else None
+
+    def _letter(self, dim: str) -> tuple[str, str]:
+        """Return x, y, z or t for a dimension, or an empty text, and what says so."""
+        along = self._coordinate(dim)
+        letter = ("", "") if along is None else _letter_of(str(along.name), along.attrs)
+        return letter if letter[0] else _letter_of(dim, {})
+
+    def grid(
+        self, time: object, at: dict[str, object], nodata: float | None, source: str
+    ) -> pv.DataSet:
+        """Return the grid; see :func:`of_dataset`."""
+        ticking, step, single = self._step(time)
+        single |= self._chosen(at)
+        fields = self._fields(single)
+        if not fields:
+            raise ValueError("no variable on a grid of two or three axes")
+        # One grid has one set of axes, which those of the largest variable are.
+        named = self._named(max(fields.values(), key=lambda values: int(values.size)).dims)
+        # A section has its place along x and its height along y.
+        dims = [named[letter] for letter in "xyz" if letter in named]
+        places, mapped = self._places(dims, single)
+        axes = [self._axis(dim, places) for dim in dims]
+        if mapped and places is not None and (straight := _straight(*places)) is not None:
+            # Such coordinates are those of rows and columns, written out.
+            for axis, ticks in zip(axes, straight, strict=False):
+                _set_ticks(axis, ticks, "degrees")
+            places, mapped = None, False
+        grid, astray = (
+            _curvilinear(axes, places)
+            if mapped and places is not None
+            else (_of_axes(axes), np.zeros(0, np.bool_))
+        )
+        words = []
+        for name, values in fields.items():
+            if {*values.dims} != {*dims}:
+                continue
+            self.said.add_array(name, values.attrs)
+            rows = np.asarray(values.transpose(*reversed(dims)).values)
+            rows, missing = meaning.without_missing(name, _within(rows, values.attrs), nodata)
+            words += [missing] if missing else []
+            rows = self._heights(name, rows, values.attrs, flat=len(dims) == 2)
+            for i, axis in enumerate(axes):
+                rows = np.take(rows, axis.order, axis=rows.ndim - 1 - i)
+            grid.point_data[name] = np.ascontiguousarray(rows).ravel()
+        self.said.axes = [
+            f"{letter} {axis.words}" for letter, axis in zip("xyz", axes, strict=False)
+        ]
+        if {"x", "y"} <= named.keys():
+            self._set_unit(grid, axes, mapped=mapped)
+        if left := sorted({*fields} - {*grid.point_data}):
+            self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
+        if words:
+            meaning.say(source, words)
+            self.said.notes += words
+        if places is not None:
+            ordered = [
+                np.take(np.take(part, axes[1].order, 0), axes[0].order, 1) for part in places
+            ]
+            self._turn(grid, _angle(*ordered), mapped=mapped)
+        if astray.any():
+            left_cells: Foreign = np.flatnonzero(~astray)
+            grid = grid.extract_cells(left_cells, pass_point_ids=False, pass_cell_ids=False)
+            self.said.notes.append(f"{astray.sum()} cells without a place are left out")
+        meaning.attach(grid, self.said)
+        return series.marked(grid, ticking, step) if len(ticking) > 1 else grid
+
+    def _step(self, time: object) -> tuple[list[float], int, dict[str, int]]:
+        """Return the times of the steps, the index of one, and that along each axis of time."""
+        clocks = [dim for dim, (letter, _) in self.letters.items() if letter == "t"]
+        sizes = self.file.sizes
+        # A file may have several clocks: the one with most steps tells them.
+        clock = max(clocks, key=lambda dim: int(sizes[dim]), default=None)
+        single = dict.fromkeys(clocks, 0)
+        if clock is None or sizes[clock] < 2:
+            if time not in (None, "first", "last"):
+                series.chosen([0.0], time)
+            return [0.0], 0, single
+        along = self._coordinate(clock)
+        ticks = np.arange(sizes[clock]) if along is None else along.values
+        ticking = [float(tick) for tick in ticks]
+        self.said.time = "" if along is None else str(along.attrs.get("units", ""))
+        single[clock] = series.chosen(ticking, time)
+        return ticking, single[clock], single
+
+    def _chosen(self, at: dict[str, object]) -> dict[str, int]:
+        """Return the index along each axis of which a value is chosen."""
+        result = {}
+        for name, value in at.items():
+            if name not in self.file.sizes:
+                raise ValueError(
+                    f"at: no axis {name!r}, but {', '.join(map(str, self.file.sizes))}"
+                )
+            along = self._coordinate(name)
+            count = self.file.sizes[name]
+            ticks = list(range(count)) if along is None else along.values.tolist()
+            texts = [str(tick) for tick in ticks]
+            if str(value) in texts:
+                result[name] = texts.index(str(value))
+            else:
+                result[name] = series.chosen(
+                    [tick if isinstance(tick, int | float) else np.nan for tick in ticks], value
+                )
+            self.said.notes.append(f"{name} {texts[result[name]]}")
+        return result
+
+    def _fields(self, single: dict[str, int]) -> dict[str, Foreign]:
+        """Return the variables of two or three axes, with one value of every other."""
+        fields: dict[str, Foreign] = {}
+        for key, variable in self.file.data_vars.items():
+            name, dims = str(key), [str(dim) for dim in variable.dims]
+            kind = variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size
+            if not kind or _ASIDE.fullmatch(name) or self._is_place(name, variable):
+                continue
+            # Axes of one value, such as a single level, are none of the grid.
+            there = [dim for dim in dims if dim not in single and self.file.sizes[dim] > 1]
+            named = self._named(there)
+            first = {dim: single.get(dim, 0) for dim in dims if dim not in named.values()}
+            for dim in there:
+                if dim in first and f"first of {dim}" not in self.said.notes:
+                    self.said.notes.append(f"first of {dim}")
+            if len(named) in (2, 3):
+                fields[name] = variable.isel(first)
+        return fields
+
+    def _named(self, dims: Sequence[str]) -> dict[str, str]:
+        """Return the dimension of each of x, y and z; what says nothing of itself by its order."""
+        named: dict[str, str] = {}
+        for dim in dims:
+            letter = self.letters[dim][0]
+            if letter in ("x", "y", "z"):
+                named.setdefault(letter, dim)
+        rest = [
+            dim
+            for dim in dims
+            if not self.letters[dim][0] and not re.fullmatch(_MEMBERS, dim, re.IGNORECASE)
+        ]
+        # Beside a known x or y an unknown axis is no height.
+        letters = "xy" if named.keys() & {"x", "y"} else "xyz"
+        free = [letter for letter in letters if letter not in named]
+        return named | dict(zip(free, reversed(rest), strict=False))
+
+    def _is_place(self, name: str, variable: Foreign) -> bool:
+        """Return whether a variable of two axes is a longitude or a latitude."""
+        letter, _ = _letter_of(name, variable.attrs)
+        return letter in ("x", "y") and _in_degrees(name, variable.attrs, strict=True) != ""
+
+    def _places(
+        self, dims: Sequence[str], single: dict[str, int]
+    ) -> tuple[tuple[Array, Array] | None, bool]:
+        """Return the longitude and the latitude of each node, and whether they are its place.
+
+        Where x and y are lengths of a projection they only tell how its axes are turned.
+        """
+        if [self.letters[dim][0] for dim in dims[:2]].count("z") or len(dims) < 2:
+            return None, False
+        kinds = [self._axis(dim, None).kind for dim in dims[:2]]
+        if kinds == ["degrees", "degrees"]:
+            return None, False
+        found: dict[str, Array] = {}
+        for key, variable in self.file.variables.items():
+            name, inner = str(key), [str(dim) for dim in variable.dims if dim not in single]
+            if {*inner} != {*dims[:2]} or variable.dtype.kind not in "iuf":
+                continue
+            if self._is_place(name, variable):
+                letter, _ = _letter_of(name, variable.attrs)
+                index = {dim: i for dim, i in single.items() if dim in variable.dims}
+                rows: Array = np.asarray(variable.isel(index).transpose(dims[1], dims[0]).values)
+                scale = _in_degrees(name, variable.attrs, strict=True) == "radians"
+                # Files may have several, of centres and of corners: the first fits the variable.
+                found.setdefault(letter, np.degrees(rows) if scale else rows.astype(np.float64))
+        if len(found) == 2:
+            return (found["x"], found["y"]), kinds != ["length", "length"]
+        if kinds == ["rotated", "rotated"]:
+            return self._unrotated(dims), True
+        return None, False
+
+    def _unrotated(self, dims: Sequence[str]) -> tuple[Array, Array] | None:
+        """Return longitudes and latitudes of a grid about a rotated pole, if its pole is named."""
+        poles = [
+            one.attrs
+            for one in self.file.variables.values()
+            if "grid_north_pole_latitude" in one.attrs
+        ]
+        if not poles:
+            return None
+        x, y = (np.asarray(self._coordinate(dim).values, np.float64) for dim in dims[:2])
+        lon, lat = np.radians(np.meshgrid(x - poles[0].get("north_pole_grid_longitude", 0.0), y))
+        pole = np.radians(float(poles[0]["grid_north_pole_latitude"]))
+        meridian = float(poles[0].get("grid_north_pole_longitude", 180.0))
+        # On the unit sphere, with the pole of the grid turned about the axis through its side.
+        ahead = np.cos(pole) * np.sin(lat) - np.sin(pole) * np.cos(lat) * np.cos(lon)
+        aside = -np.cos(lat) * np.sin(lon)
+        up = np.sin(pole) * np.sin(lat) + np.cos(pole) * np.cos(lat) * np.cos(lon)
+        return (
+            np.degrees(np.arctan2(aside, ahead)) + meridian,
+            np.degrees(np.arcsin(np.clip(up, -1, 1))),
+        )
+
+    def _axis(self, dim: str, places: object) -> _Axis:
+        """Return the axis along a dimension."""
+        letter, reason = self.letters[dim]
+        along = self._coordinate(dim)
+        by = f" by {reason}" if reason else " by the order of the axes"
+        if along is None or along.dtype.kind not in "iuf":
+            count = int(self.file.sizes[dim])
+            words = f"{dim!r}{by}" + ("" if places is not None else ", by index")
+            return _Axis(np.arange(count, dtype=np.float64), np.arange(count), words, "index")
+        attributes, name = along.attrs, str(along.name)
+        ticks: Array = np.array(along.values, dtype=np.float64)
+        unit = str(attributes.get("units", "")).strip().lower()
+        axis = _Axis(ticks, np.arange(len(ticks)), f"{name!r}{by}")
+        if letter == "z":
+            ticks, axis.words = _up(name, attributes, ticks, by)
+            _set_ticks(axis, ticks, "")
+        elif kind := _in_degrees(name, attributes):
+            text = {"x": "longitude", "y": "latitude"}.get(letter, name)
+            axis.words = f"{text} in degrees{by}"
+            rotated = "grid_" in str(attributes.get("standard_name", "")) or name.startswith(
+                ("grid_l", "rl")
+            )
+            axis.words += " about a rotated pole" if rotated and places is None else ""
+            degrees: Array = np.degrees(ticks) if kind == "radians" else ticks
+            _set_ticks(axis, degrees, "rotated" if rotated else "degrees", around=letter == "x")
+        elif (scale := meaning.metres(unit)) is not None:
+            axis.words = f"{name!r} in m{by}" + (f", from {unit}" if scale != 1 else "")
+            _set_ticks(axis, scale * ticks, "length")
+        else:
+            said = unit or attributes.get("standard_name")
+            axis.words += f" in {unit}" if unit else ""
+            _set_ticks(axis, ticks, "" if said else "index")
+        return axis
+
+    def _heights(self, name: str, rows: Raw, attributes: Foreign, *, flat: bool) -> Raw:
+        """Return heights in metres and up; other values, and all in a volume, as they are."""
+        if not (flat and rows.dtype.kind in "iuf" and _named_so(_HEIGHTS, name, attributes)):
+            return rows
+        unit = str(attributes.get("units", "")).strip()
+        scale = meaning.metres(unit)
+        values: Array = rows.astype(rows.dtype if rows.dtype.kind == "f" else np.float64)
+        if scale is not None and scale != 1:
+            rows = values = (scale * values).astype(values.dtype)
+            self.said.notes.append(f"{name!r} in m, from {unit}")
+            self.said.arrays.setdefault(name, {})["units"] = "m"
+        positive = str(attributes.get("positive", "")).lower()
+        standard = str(attributes.get("standard_name", ""))
+        if positive == "down" or (not positive and re.fullmatch(_DEPTHS, standard)):
+            rows = -values
+            self.said.notes.append(f"{name!r} counts down, its sign is changed")
+        return rows
+
+    def _set_unit(self, grid: pv.DataSet, axes: list[_Axis], *, mapped: bool) -> None:
+        """Keep the unit of x and y with the grid."""
+        kinds = {axis.kind for axis in axes[:2]}
+        if mapped or kinds in ({"degrees"}, {"rotated"}):
+            unit = georeference.DEGREE
+        elif kinds == {"length"}:
+            unit = "metre"
+        elif (
+            "length" not in kinds
+            and len(axes) == 2
+            and georeference.seem_degrees(grid, next(iter(grid.point_data)))
+        ):
+            unit = georeference.DEGREE
+            self.said.notes.append("x and y taken for degrees by their ranges")
+        else:
+            return
+        grid.field_data[georeference.UNIT] = [unit]
+
+    def _turn(self, grid: pv.DataSet, angle: Array, *, mapped: bool) -> None:
+        """Attach vectors that point where the grid is drawn, of components along other axes.
+
+        ``angle`` is that from east to the first axis of the grid, in radians.
+        """
+        volume = grid.n_points // angle.size
+        turn = np.tile(np.ravel(angle), volume)
+        for group in meaning.components(grid):
+            along = meaning.along_grid(self.said.arrays.get(group[0], {}))
+            # On a map in degrees vectors point east and north, else along the axes.
+            if along is None or along != mapped or group[0] not in grid.point_data:
+                continue
+            sign = 1.0 if mapped else -1.0
+            cos, sin = np.cos(turn), sign * np.sin(turn)
+            rows = meaning.vectors(grid, group).astype(np.float64)
+            u, v = rows[:, 0].copy(), rows[:, 1].copy()
+            rows[:, 0], rows[:, 1] = cos * u - sin * v, sin * u + cos * v
+            name = ",".join(group)
+            grid.point_data[name] = rows.astype(np.float32)
+            most = np.degrees(np.nanmax(np.abs((angle + np.pi) % (2 * np.pi) - np.pi)))
+            self.said.notes.append(
+                f"{name!r} turned by up to {most:.0f} degrees to where the grid is drawn"
+            )
+
+
+def _letter_of(name: str, attributes: Mapping[str, Foreign]) -> tuple[str, str]:
+    """Return x, y, z or t for coordinates, or an empty text, and what says so."""
+    from cf_xarray.criteria import coordinate_criteria
+
+    texts = {key: str(value).strip() for key, value in attributes.items()}
+    for attribute in _ATTRIBUTES:
+        text = texts.get(attribute, "").lower()
+        if not text:
+            continue
+        for key, letter in _LETTERS.items():
+            allowed = coordinate_criteria[key].get(attribute, ())
+            if text in [value.lower() for value in allowed]:
+                return letter, attribute
+        if attribute == "units":
+            for letter, pattern in _UNITS.items():
+                if re.fullmatch(pattern, text):
+                    return letter, attribute
+    words = texts.get("long_name", "").lower()
+    sources = [("name", name.lower()), ("long_name", words), ("long_name", words.split(" ")[0])]
+    for source, text in sources:
+        for letter, pattern in _NAMES.items():
+            if text and re.fullmatch(pattern, text):
+                return letter, source
+    return "", ""
+
+
+def _in_degrees(name: str, attributes: Mapping[str, Foreign], *, strict: bool = False) -> str:
+    """Return "degrees" or "radians" for coordinates that are angles, else an empty text.
+
+    Strict: those that are not only in degrees, but said to be a longitude or a latitude.
+    """
+    unit = str(attributes.get("units", "")).strip().lower()
+    earth = _named_so(f"{_LONGITUDE}|{_LATITUDE}", name, attributes)
+    earth |= re.fullmatch(f"{_UNITS['x']}|{_UNITS['y']}", unit) is not None
+    if re.fullmatch(r"deg.*|°.*|o", unit):
+        return "degrees" if earth or not strict else ""
+    if re.fullmatch(r"rad(ian)?s?", unit):
+        return "radians" if earth else ""
+    return "degrees" if earth and unit in ("", "1") else ""
+
+
+def _named_so(pattern: str, name: str, attributes: Mapping[str, Foreign]) -> bool:
+    """Return whether a name, a standard name or a long name follows a pattern."""
+    texts = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
+    return any(re.fullmatch(pattern, str(text).lower()) for text in texts)
+
+
+def _up(name: str, attributes: Mapping[str, Foreign], ticks: Array, by: str) -> tuple[Array, str]:
+    """Return heights that rise, of coordinates that may be pressures or depths, and words."""
+    unit = str(attributes.get("units", "")).strip()
+    pressure, length = _PRESSURES.get(unit.lower()), meaning.metres(unit)
+    positive = str(attributes.get("positive", "")).lower()
+    if pressure is not None:
+        # In the sea a pressure is a depth in decibars.
+        return -pressure * ticks, f"height, pressure in hPa that falls upward{by}"
+    text = f"height {name!r}"
+    if length is not None:
+        ticks, text = length * ticks, f"{text} in m"
+    # Depths below 0 rise already.
+    down = _named_so(_DOWN, name, attributes) and np.nanmean(ticks) > 0
+    if positive == "down" or (not positive and down):
+        return -ticks, f"{text} that counts down{by}"
+    return ticks, text + by
+
+
+def _set_ticks(axis: _Axis, ticks: Array, kind: str, *, around: bool = False) -> None:
+    """Set the coordinates of an axis so that they rise, its order of values, and its kind."""
+    axis.kind = kind
+    if around and np.all(np.isfinite(ticks)):
+        # Across the meridian at which counting begins anew longitudes go on.
+        ticks = np.unwrap(ticks, period=360.0)
+        middle = (ticks.min() + ticks.max()) / 2
+        ticks = ticks - 360.0 * np.ceil((middle - 180.0) / 360.0)
+    order = np.argsort(ticks, kind="stable")
+    ticks = ticks[order]
+    if not np.all(np.diff(ticks) > 0):
+        raise ValueError(f"the axis of {axis.words} has coordinates twice, or none")
+    if around and len(ticks) > 2:
+        step = (ticks[-1] - ticks[0]) / (len(ticks) - 1)
+        if _even(ticks, step) and abs(step * len(ticks) - 360.0) < EQUAL * 360:
+            # Around the earth the last cell ends where the first begins.
+            ticks, order = np.append(ticks, ticks[0] + 360.0), np.append(order, order[0])
+            axis.words += ", closed around the earth"
+    axis.ticks, axis.order = ticks, order
+
+
+def _straight(lon: Array, lat: Array) -> tuple[Array, Array] | None:
+    """Return the longitudes of columns and the latitudes of rows, if that is what they are."""
+    if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
+        return None
+    bend = max(np.abs(lon - lon[:1]).max(), np.abs(lat - lat[:, :1]).max())
+    # Rounded to float32 a longitude of 180 is off by 1.5e-5.
+    step = min(float(np.ptp(lon[0])) / lon.shape[1], float(np.ptp(lat[:, 0])) / lat.shape[0])
+    return (lon[0], lat[:, 0]) if bend < 1e-2 * step else None
+
+
+def _angle(lon: Array, lat: Array) -> Array:
+    """Return the angle in radians from east to the rows of a grid, shape (ny, nx)."""
+    rows = np.unwrap(np.nan_to_num(lon), period=360.0, axis=1)
+    east = np.gradient(rows, axis=1) * np.cos(np.radians(np.nan_to_num(lat)))
+    return np.asarray(np.arctan2(np.gradient(np.nan_to_num(lat), axis=1), east))
+
+
+def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
+    """Return values with NaN outside of the range that a variable states for those that count."""
+    low, high = np.ravel(attributes.get("valid_range", (-np.inf, np.inf))).astype(float)[:2]
+    low = max(low, float(np.ravel(attributes.get("valid_min", -np.inf))[0]))
+    high = min(high, float(np.ravel(attributes.get("valid_max", np.inf))[0]))
+    # xarray has unpacked integers of two bytes, whose range is that of the packed ones.
+    if rows.dtype.kind != "f" or "scale_factor" in attributes or low >= high:
+        return rows
+    outside = (rows < low) | (rows > high)
+    return np.where(outside, rows.dtype.type(np.nan), rows) if outside.any() else rows
+
+
+def _with_numbers(data: Foreign) -> Foreign:
+    """Return a dataset whose times are numbers, as they are in files."""
+    import xarray
+
+    dated = {
+        name: xarray.conventions.encode_cf_variable(one, name=name)
+        for name, one in data.variables.items()
+        if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,))
+    }
+    return data.assign_coords(dated) if dated else data
+
+
+def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:
+    """Return a grid with a place for each node, and a mask of the cells that have none."""
+    lon, lat = places
+    missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
+    # Files fill the places that they have not with one number, such as -999.
+    lon, lat = (height_field.filled(np.where(missing, np.nan, part)) for part in (lon, lat))
+    for along in (1, 0):
+        lon = np.unwrap(lon, period=360.0, axis=along)
+    lon = lon - 360.0 * np.ceil(((lon.min() + lon.max()) / 2 - 180.0) / 360.0)
+    heights = axes[2].ticks if len(axes) > 2 else np.zeros(1)
+    # The order of rows and columns of the file is kept: they follow no axis.
+    for axis, count in zip(axes, reversed(lon.shape), strict=False):
+        axis.order = np.arange(count)
+    shape = (len(heights), *lon.shape)
+    points = np.stack(
+        [
+            np.broadcast_to(lon, shape),
+            np.broadcast_to(lat, shape),
+            np.broadcast_to(heights[:, np.newaxis, np.newaxis], shape),
+        ],
+        axis=-1,
+    )
+    grid = pv.StructuredGrid()
+    grid.dimensions = (shape[2], shape[1], shape[0])
+    grid.points = points.reshape(-1, 3)
+    return grid, np.tile(np.ravel(_without_place(missing, lon)), max(len(heights) - 1, 1))
+
+
+def _without_place(missing: Bools, lon: Array) -> Bools:
+    """Return the cells at a node without a place, or with sides around half of the earth."""
+    parts = [(slice(i, i - 1 or None), slice(j, j - 1 or None)) for i in (0, 1) for j in (0, 1)]
+    lacking = np.any([missing[part] for part in parts], axis=0)
+    wide = np.ptp([lon[part] for part in parts], axis=0) > 180
+    return np.asarray(lacking | wide)
+
+
+def _of_axes(axes: list[_Axis]) -> pv.ImageData | pv.RectilinearGrid:
+    """Return a grid on axes x, y and perhaps z; an image where their steps are equal."""
+    ticks = [axis.ticks for axis in axes] + [np.zeros(1)] * (3 - len(axes))
+    # An axis of one value has no step: any but 0 will do.
+    steps = [(axis[-1] - axis[0]) / max(len(axis) - 1, 1) or 1.0 for axis in ticks]
+    if all(_even(axis, step) for axis, step in zip(ticks, steps, strict=True)):
+        counts = tuple(len(axis) for axis in ticks)
+        return pv.ImageData(dimensions=counts, spacing=steps, origin=[axis[0] for axis in ticks])
+    return pv.RectilinearGrid(*ticks)
+
+
+def _even(axis: Array, step: float) -> bool:
+    return bool(np.all(np.abs(np.diff(axis) - step) <= EQUAL * step))

@@ -1,0 +1,415 @@
+"""What the arrays and axes of a grid mean, and what was assumed of its file, kept with the mesh."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.mesh import records
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    import pyvista as pv
+
+    from vizlight._types import Foreign, Raw
+    from vizlight.mesh.blocks import DataSetT
+
+__all__ = [
+    "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of", "say",
+    "vectors", "with_named", "without_missing",
+]  # fmt: skip
+
+#: Name of vectors, names of components, or the two names of a cross field.
+Named: TypeAlias = str | tuple[str, str]
+#: Field array with the meaning of a mesh, as JSON.
+MEANING = "meaning"
+#: Attributes of an array of a file that are kept.
+KEPT = ("standard_name", "units", "long_name")
+
+
+@dataclass
+class Meaning:
+    """What a file says of its grid.
+
+    Attributes
+    ----------
+    axes : list of str
+        Words for x, y and z, such as "x longitude in degrees by standard_name".
+    arrays : dict
+        Standard name, unit and long name of each point array, as far as the file has them.
+    notes : list of str
+        What is missing, and what was assumed or left out.
+    time : str
+        Unit of the times of its steps, such as "hours since 1900-01-01".
+    """
+
+    axes: list[str] = field(default_factory=list)
+    arrays: dict[str, dict[str, str]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    time: str = ""
+
+    def add_array(self, name: str, attributes: Foreign) -> None:
+        """Keep what the attributes of an array say."""
+        kept = {key: str(attributes[key]) for key in KEPT if attributes.get(key)}
+        if kept:
+            self.arrays[name] = kept
+
+
+def attach(mesh: pv.DataSet, meaning: Meaning) -> None:
+    """Keep the meaning of a grid with its mesh.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which gets the field array ``meaning``.
+    meaning : Meaning
+    """
+    mesh.field_data[MEANING] = [json.dumps(asdict(meaning))]
+
+
+def of(mesh: pv.DataSet) -> Meaning:
+    """Return the meaning of a mesh; an empty one where no reader of grids has made it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    if MEANING not in mesh.field_data:
+        return Meaning()
+    try:
+        table: Foreign = json.loads(str(mesh.field_data[MEANING][0]))
+        return Meaning(**table)
+    # An array of this name may be another program's.
+    except (TypeError, ValueError):
+        return Meaning()
+
+
+def line(mesh: pv.DataSet) -> str:
+    """Return the meaning of a mesh in one line; an empty text where there is none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    meaning = of(mesh)
+    return ", ".join((*meaning.axes, *meaning.notes))
+
+
+#: Parts of standard names by which components of one vector differ.
+_STANDARD = (
+    ("grid_eastward", "grid_northward", "grid_upward"),
+    ("eastward", "northward", "upward"),
+    ("x_", "y_", "z_"),
+)
+#: Usual names of components, and their words in the order x, y, z. The rest of a name, before and
+#: after, is the same for all components.
+_USUAL = (
+    # Velocity_x, vx, B_z, VelX
+    (r"(.+)([xyz])()", "x y z"),
+    # x_wind
+    (r"()([xyz])([_\-. ].+)", "x y z"),
+    # u, u10, uo, uas, UGRD_10m, water_u, 10m_u_component_of_wind
+    (
+        r"(|.*[_\-. ])([uvw])(|[\d_\-. ].*|[oasgbte]|as|os|ice|bar|surf|sfc"
+        r"|(?:st|curr|vel|comp|wi?nd|grd|g[eo]o|gos|flx|tau).*)",
+        "u v w",
+    ),
+    # NEMO's vozocrtx and vomecrty
+    (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
+    (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
+    (r"(.*)(east|north)(.*)", "east north"),
+)
+
+
+def components(mesh: pv.DataSet, /) -> list[tuple[str, ...]]:
+    """Return the arrays of a mesh that are components of one vector.
+
+    Standard names are taken first, such as ``eastward_wind`` and ``northward_wind``, then usual
+    names, such as ``u`` and ``v``, ``u10`` and ``v10``, ``vx``, ``vy`` and ``vz``, ``x_wind`` and
+    ``y_wind``. Half a pair is no vector.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+
+    Returns
+    -------
+    list of tuple of str
+        Names of two or three arrays of one component each, all of points or all of cells, in the
+        order x, y, z.
+    """
+    result: list[tuple[str, ...]] = []
+    table = of(mesh).arrays
+    for data in (mesh.point_data, mesh.cell_data):
+        names = [
+            name
+            for name in data
+            if np.ndim(data[name]) == 1 and np.asarray(data[name]).dtype.kind in "iuf"
+        ]
+        used: set[str] = set()
+        for group in (*_by_standard(names, table), *_by_usual(names, table)):
+            # An array is a component of one vector.
+            if not used.intersection(group):
+                used.update(group)
+                result.append(group)
+    return result
+
+
+def _by_standard(
+    names: Sequence[str], table: dict[str, dict[str, str]]
+) -> Iterator[tuple[str, ...]]:
+    """Yield groups of names by their standard names."""
+    standard = {name: table.get(name, {}).get("standard_name", "").lower() for name in names}
+    counts = Counter(standard.values())
+    # Winds at several heights have one standard name: their own names tell them apart.
+    by_name = {value: name for name, value in standard.items() if value and counts[value] == 1}
+    for value, name in by_name.items():
+        for first, *others in _STANDARD:
+            found = re.search(rf"(?:(?<=_)|^){first}", value)
+            if found is None:
+                continue
+            like = [value[: found.start()] + word + value[found.end() :] for word in others]
+            if like[0] in by_name:
+                yield (name, *(by_name[one] for one in like if one in by_name))
+                break
+
+
+def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterator[tuple[str, ...]]:
+    """Yield groups of names that differ by the letter of their axis alone."""
+    for pattern, parts in _USUAL:
+        groups: dict[tuple[str, ...], dict[str, str]] = {}
+        for name in names:
+            match = re.fullmatch(pattern, name, re.IGNORECASE)
+            if match is not None:
+                head, part, tail = match.groups()
+                # The case of the letter counts: "U" and "v" are no pair.
+                key = (head, tail, str(part[0].isupper()), table.get(name, {}).get("units", ""))
+                groups.setdefault(key, {})[part.lower()] = name
+        for group in groups.values():
+            every = [group[word] for word in parts.split() if word in group]
+            if set(parts.split()[:2]) <= set(group):
+                yield tuple(every)
+
+
+def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
+    """Return vectors of the components that two or three point arrays are.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    names : sequence of str
+        Names of point arrays of one component.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
+        A third component that is missing is 0; where one is missing in the data all are NaN.
+    """
+    columns = [np.asarray(mesh.point_data[name]) for name in names]
+    columns += [np.zeros_like(columns[0])] * (3 - len(columns))
+    kind = np.result_type(np.float32, *(column.dtype for column in columns))
+    rows = np.column_stack(columns).astype(kind)
+    # Half a vector is no direction.
+    rows[~np.isfinite(rows).all(axis=1)] = np.nan
+    return rows
+
+
+def with_named(
+    mesh: DataSetT, named: Named | None, argument: str = "vectors"
+) -> tuple[DataSetT, Named | None]:
+    """Return a mesh with the vectors that are named by their components, and their name.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, which is not changed.
+    named : str or None
+        Name of vectors, or names of their components separated by commas. None takes the only
+        components of the mesh, if it has no array of three components.
+    argument : str
+        Name of the argument for messages.
+
+    Returns
+    -------
+    pyvista.DataSet
+        The mesh itself, or a copy that shares its arrays and has the vectors too.
+    str or None
+        Name of the vectors; what names no components is returned as it is.
+
+    Raises
+    ------
+    ValueError
+        If several vectors could be meant, or the components are no arrays of one component.
+    """
+    if named is None:
+        if any(np.shape(data[key])[1:] == (3,) for data in (mesh.point_data, mesh.cell_data)
+               for key in data):  # fmt: skip
+            return mesh, None
+        groups = components(mesh)
+        if not groups:
+            return mesh, None
+        names = [",".join(group) for group in groups]
+        if len(names) > 1:
+            expected = f"the name of an array, or names of components ({' or '.join(names)})"
+            raise ValueError(_check.message(argument, expected, None))
+        named = names[0]
+    if not isinstance(named, str) or "," not in named or named in mesh.array_names:
+        return mesh, named
+    group = tuple(named.split(","))
+    there = {name: np.ndim(mesh[name]) for name in group if name in mesh.array_names}
+    if len(group) == 2 and set(there.values()) == {2}:
+        expected, remedy = "True for two arrays, a cross field", "pass line_field=True"
+        raise ValueError(_check.message("line_field", expected, False, remedy))
+    if len(there) != len(group) or len(group) not in (2, 3) or set(there.values()) != {1}:
+        expected = "the names of two or three arrays of one component"
+        known = [",".join(one) for one in components(mesh)]
+        remedy = f"there are {' and '.join(known)}" if known else ""
+        raise ValueError(_check.message(argument, expected, repr(named), remedy))
+    # Arrays of cells are averaged to the points.
+    mesh = records.averaged(mesh, *group).copy(deep=False)
+    mesh.point_data[named] = vectors(mesh, group)
+    return mesh, named
+
+
+#: Lengths in metres of other units.
+_METRES = {
+    "m": 1.0, "metre": 1.0, "meter": 1.0, "km": 1e3, "kilometre": 1e3, "kilometer": 1e3,
+    "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2, "mm": 1e-3, "millimetre": 1e-3,
+    "millimeter": 1e-3, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
+    "us survey foot": 1200 / 3937, "us_survey_foot": 1200 / 3937,
+}  # fmt: skip
+
+
+def metres(unit: str) -> float | None:
+    """Return the length of a unit in metres, None where it is no length.
+
+    Parameters
+    ----------
+    unit : str
+        Name of the unit, in singular or plural.
+    """
+    name = unit.strip().lower()
+    return _METRES.get(name, _METRES.get(name.removesuffix("s")))
+
+
+def along_grid(attributes: Mapping[str, str]) -> bool | None:
+    """Return whether a component is along the axes of its grid, not east or north.
+
+    None where the attributes of its array do not tell.
+
+    Parameters
+    ----------
+    attributes : mapping of str to str
+        Standard name and long name, as :class:`Meaning` has them.
+    """
+    standard = attributes.get("standard_name", "").lower()
+    words = f"{standard} {attributes.get('long_name', '').lower()}"
+    if re.search(r"(?<![a-z])[xyij][_ -]|grid|_i_|_j_", words):
+        return True
+    return False if re.search(r"east|north|zonal|meridional", words) else None
+
+
+#: Values that stand for none in files that do not say so, beside those whose digits are all 9.
+_LIMITS = {-(2.0**15), 1 - 2.0**15, 2.0**15 - 1, 2.0**16 - 1, -(2.0**31), 2.0**31 - 1}
+#: Least size of a value that is none, as 1e20, 9.97e36 and 3.4e38 are.
+_HUGE = 1e15
+
+
+def _seems_missing(value: float) -> bool:
+    """Return whether a number is one of those that stand for none."""
+    if value in _LIMITS or abs(value) >= _HUGE:
+        return True
+    digits = f"{abs(value):.6g}".replace(".", "")
+    # 99 may be a number of percents.
+    return len(digits) > (1 if value < 0 else 2) and set(digits) == {"9"}
+
+
+def without_missing(name: str, values: Raw, nodata: float | None = None) -> tuple[Raw, str]:
+    """Return values with NaN where they are missing though the file does not say so.
+
+    One value far outside of all others, repeated, that is usual for this: -9999, -32768, 32767,
+    1e20, -3.4e38 and the like.
+
+    Parameters
+    ----------
+    name : str
+        Name of the array, for the words.
+    values : ndarray
+        Values, NaN where they are known to be missing.
+    nodata : float, optional
+        Value that stands for none, in place of the search; NaN for no further one.
+
+    Returns
+    -------
+    ndarray
+        The values themselves where none is missing, else a copy in floating point.
+    str
+        Words with the value and its share.
+    """
+    if values.dtype.kind not in "iuf" or not values.size:
+        return values, ""
+    finite: Raw = values[np.isfinite(values)] if values.dtype.kind == "f" else values.ravel()
+    missing = [nodata] if nodata is not None else _outliers(finite)
+    words = []
+    for value in missing:
+        if value is None or math.isnan(value):
+            continue
+        # Floating-point numbers are rounded to the type of the values.
+        at = np.isclose(values.astype(np.float64), value, rtol=1e-6, atol=0)
+        if not at.any():
+            continue
+        if values.dtype.kind != "f":
+            values = values.astype(np.float32 if values.dtype.itemsize <= 2 else np.float64)
+        values = np.where(at, np.nan, values).astype(values.dtype)
+        share = at.mean()
+        words.append(f"{100 * share:.2g} % of {name!r} are {value:g}")
+    return values, " and ".join(words)
+
+
+def _outliers(finite: Raw) -> list[float]:
+    """Return the values at the ends of all others that stand for none."""
+    result: list[float] = []
+    rest = finite
+    for _ in range(2):
+        if not rest.size:
+            break
+        for end in (float(rest.min()), float(rest.max())):
+            if not _seems_missing(end):
+                continue
+            inner = rest[rest != end]
+            if not inner.size:
+                continue
+            low, high = float(inner.min()), float(inner.max())
+            gap = low - end if end < low else end - high
+            # A single pixel may be a fault of its own, and is seen to be one where it is huge.
+            repeated = rest.size - inner.size > 1 or abs(end) >= _HUGE
+            if repeated and gap > max(high - low, abs(end) / 2):
+                result.append(end)
+                rest = inner
+    return result
+
+
+def say(path: object, words: Sequence[str]) -> None:
+    """Warn of values that were taken for missing.
+
+    Parameters
+    ----------
+    path : path
+        Path of the file.
+    words : sequence of str
+        Words of :func:`without_missing`.
+    """
+    if words:
+        _check.warn(
+            f"file: '{path}': {'; '.join(words)}, far from all other values: they are taken for "
+            "missing; pass nodata= to name the value, nodata=nan to keep all"
+        )
