@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight.draw.backends import Backend
-    from vizlight.observers.legibility import Direction
+    from vizlight.observers.figures import Direction
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.

@@ -40,12 +40,14 @@ if TYPE_CHECKING:
 #: Largest number of places at which normals are read, each among 900 or more.
 NORMALS = 1024
 #: Structure in arc minutes below which data turn too fast for the hues of a picture: half of the
-#: period at which the eye passes a third of the contrast of red and green.
-FAST = 4.0
+#: period at which the eye passes half of the contrast of red and green.
+FAST = 6.0
 #: Angle in degrees through which data turn in a structure.
 TURN = 90.0
 #: Least number of places of a class of structure, and least readable share of it.
 FEW, HALF = 32, 0.5
+#: Share of the error of chance above which an answer is chance.
+NEAR = 0.9
 #: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
 #: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
@@ -85,20 +87,22 @@ class Places:
             apart=self.apart[rows], colors=self.colors.take(rows), unit=self.unit[rows],
         )  # fmt: skip
 
-    def structure(self, turn: Callable[[Sample], Array]) -> Array:
+    def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
         """Return the length in pixels within which data turn by 90 degrees.
 
         Parameters
         ----------
         turn : callable
-            Function from a sample to unit vectors whose angles are those of the data.
+            Function from a sample to unit vectors.
+        times : int, default: 1
+            Angles between these vectors as multiples of those of the data.
         """
         own = turn(self.here)
         steps = []
         for other in (self.right, self.up):
             cosine = np.einsum("ij,ij->i", own, turn(other))
             steps.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
-        change = np.hypot(*steps)
+        change = np.hypot(*steps) / times
         change[~self.apart] = np.nan
         return np.asarray(TURN / np.maximum(change, 1e-6))
 
@@ -163,10 +167,10 @@ def measure(
             colors = readers.colors_at(seen, own.row, own.column, random, noise)
             beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
             here = sample(part, own, camera)
-            others = [sample(part, pixels.take(rows), camera) for rows in beside]
+            right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
             apart = (beside[0] != ids) & (beside[1] != ids)
             unit = footprint(camera, here.points, height)
-            groups.append(Places(part, here, *others, apart, colors, unit))
+            groups.append(Places(part, here, right, up, apart, colors, unit))
     toward = -np.array(camera.GetDirectionOfProjection())
     reader = _Reader(groups, seed, eye, list(notes))
     return Legibility(
@@ -183,7 +187,7 @@ def measure(
     )
 
 
-def _beside(pixels: Pixels, number: Array, ids: Indices, step: tuple[int, int]) -> Indices:
+def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]) -> Indices:
     """Return the pixels one step on either side of pixels, of the same mesh; else themselves."""
     found = ids.copy()
     for sign in (-1, 1):
@@ -234,7 +238,7 @@ class _Reader:
         if self.scale is None and np.isfinite(lengths).any():
             self.scale = _scale(question, lengths, unit, right)
         chance = TURN / 2 if question != "value" else 0.25
-        unread = bits < FLOOR or float(np.median(error)) >= chance
+        unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
         return {
             "bits": bits,
             "readable": 0.0 if unread else _beyond_chance(right, question),
@@ -271,7 +275,7 @@ class _Reader:
             return None
         start = float(self.random.uniform(0.0, 180.0))
         found = [readers.read_direction(p.here, self.middle, p.colors, start) for p in groups]
-        lengths = np.concatenate([p.structure(_doubled) for p in groups])
+        lengths = np.concatenate([p.structure(_doubled, 2) for p in groups])
         common = self._common("direction", groups, found, lengths)
         return Direction(**_angles(found, common), **common)
 
@@ -296,9 +300,7 @@ class _Reader:
 
     def shape(self) -> Shape | None:
         """Return how surfaces stand."""
-        groups = self._with(
-            "shape", lambda p: p.part.kind != "line" and p.here.normals is not None
-        )
+        groups = self._with("shape", lambda p: p.part.kind != "line" and p.here.normals is not None)
         share = NORMALS / max(1, sum(len(p.here) for p in groups))
         groups = _kept(groups, lambda p: self.random.uniform(size=len(p.here)) < share)
         if not groups:
@@ -320,7 +322,8 @@ class _Reader:
 
     def value(self) -> Value | None:
         """Return values as they are read off the bar."""
-        groups, places = [], list[Array]()
+        groups: list[Places] = []
+        places: list[Array] = []
         for p in self.groups:
             if p.part.values is None or p.part.table is None:
                 continue
@@ -421,16 +424,13 @@ def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
             break
         finest = float(max(2.0**step, lengths[rows].min()))
     length = None if finest is None else finest * float(np.median(unit))
-    return Scale(
-        question=question, pixels=finest, length=length, median=float(np.median(lengths))
-    )
+    return Scale(question=question, pixels=finest, length=length, median=float(np.median(lengths)))
 
 
 def _doubled(here: Sample) -> Array:
     """Return directions in the picture as unit vectors that do not depend on their sign."""
     angle = 2 * readers.course(here)
-    # Half of the angle between these vectors is that of the directions.
-    return np.stack([np.cos(angle / 2) ** 2, np.sin(angle / 2) ** 2, np.sin(angle) / 2**0.5], 1)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
 def _normal(here: Sample) -> Array:
@@ -452,4 +452,3 @@ def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:
 def _table(places: Places) -> pv.LookupTable:
     assert places.part.table is not None
     return places.part.table
-

@@ -79,7 +79,8 @@ class Pixels(NamedTuple):
 
     def take(self, rows: Indices | Bools) -> Pixels:
         """Return some of the pixels."""
-        return Pixels(*(array[rows] for array in self[:4]), self.size)
+        places = self.row[rows], self.column[rows]
+        return Pixels(*places, self.part[rows], self.cell[rows], self.size)
 
 
 def visible(

@@ -126,7 +126,7 @@ def likelihood(colors: Colors, table: Array) -> Array:
 
 
 def posterior(logarithms: Array, sharpness: float = 1.0) -> Array:
-    """Return probabilities of candidates that were equally likely before, with sum 1 in each row."""
+    """Return probabilities of equally likely candidates, with sum 1 in each row."""
     found = np.exp(sharpness * (logarithms - logarithms.max(axis=1, keepdims=True)))
     return np.asarray(found / found.sum(axis=1, keepdims=True))
 
@@ -404,13 +404,17 @@ def steepness(sample: Sample) -> Array:
     return np.abs(dots(_single(sample), sample.eye))
 
 
+def ranks(values: Array) -> Array:
+    """Return the ranks of values from 1; equal values have the mean of theirs."""
+    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+    return np.asarray((np.cumsum(counts) - (counts - 1) / 2)[inverse.ravel()])
+
+
 def rank_correlation(a: Array, b: Array) -> float:
     """Return Spearman's rank correlation; 0 where one of the two is constant."""
     if np.ptp(a) == 0 or np.ptp(b) == 0:
         return 0.0
-    from scipy.stats import rankdata
-
-    return float(np.corrcoef(rankdata(a), rankdata(b))[0, 1])
+    return float(np.corrcoef(ranks(a), ranks(b))[0, 1])
 
 
 def mutual_information(magnitude: Array, signal: Array) -> float:
@@ -441,9 +445,7 @@ def ranked_error(magnitude: Array, signal: Array) -> Array:
 
     The reader answers with the median rank of the places whose signal is in the same class.
     """
-    from scipy.stats import rankdata
-
-    rank = (rankdata(magnitude) - 0.5) / len(magnitude)
+    rank = (ranks(magnitude) - 0.5) / len(magnitude)
     count = min(SIGNALS, max(2, len(signal) // EACH))
     bounds = np.unique(np.quantile(signal, np.linspace(0, 1, count + 1)[1:-1]))
     own = np.searchsorted(bounds, signal)

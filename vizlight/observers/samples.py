@@ -98,7 +98,7 @@ class Sample:
         # conditioned.
         lit = self.options.conditioned is True or tangents is None
         points = np.repeat(self.points, repeat, axis=0)
-        return ShadingInputs(points, tangents=tangents, normals=normals if lit else None)
+        return ShadingInputs(points=points, tangents=tangents, normals=normals if lit else None)
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
         """Return the light of other tangents and normals at the places, shape (M repeat, 3)."""
@@ -259,6 +259,8 @@ def part_on(
     TypeError, ValueError
         If an array is missing or does not fit, as for :func:`vizlight.illuminate`.
     """
+    # A key has no depth by which a cue could fade it.
+    scene = scene.replace(depth_cue=None)
     cells = subdivision.simplices(mesh)
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
