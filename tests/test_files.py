@@ -621,3 +621,32 @@ def test_points_are_displaced_by_vectors():
     mesh["colours"] = np.zeros((mesh.n_points, 3), np.uint8)
     with pytest.raises(ValueError, match="warp: expected an array of one component"):
         files.warped(mesh, "colours", 1.0)
+
+
+def test_an_isosurface_beside_holes_is_finite():
+    grid = pv.ImageData(dimensions=(20, 20, 10))
+    p = grid.points
+    values = 8 - p[:, 2] + np.sin(p[:, 0] / 5)
+    whole = files.surface_of(grid_with(grid, values), "T", 4.0)
+    values[np.hypot(p[:, 0] - 10, p[:, 1] - 10) < 4] = np.nan
+    holed = files.surface_of(grid_with(grid, values), "T", 4.0)
+    assert np.isfinite(holed.points).all()
+    assert 0.7 * whole.area < holed.area < 0.9 * whole.area
+    assert np.isfinite(holed.point_data["T"]).all()
+
+
+def grid_with(grid, values):
+    out = grid.copy()
+    out["T"] = values.copy()
+    return out
+
+
+def test_fine_ground_far_from_the_origin_is_moved_in_stl(tmp_path):
+    ground = pv.ImageData(
+        dimensions=(8, 6, 1), spacing=(0.25, 0.25, 1), origin=(501234, 5312345, 0)
+    )
+    ground["z"] = np.random.default_rng(0).random(48)
+    with pytest.warns(UserWarning, match="moved by .* float32 numbers of .stl do not resolve"):
+        files.write_mesh(ground, tmp_path / "a.stl")
+    solid = pv.read(tmp_path / "a.stl")
+    assert len(np.unique(np.asarray(solid.points)[:, 1])) == 6

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import bz2
 import contextlib
 import errno
+import gzip
+import lzma
 import os
 import re
 import shutil
 import sys
+import tempfile
 import threading
 import time
 import uuid
+import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,6 +40,7 @@ from vizlight.mesh import (
     height_grids,
     meaning,
     normals,
+    ply_points,
     records,
     series,
     short_files,
@@ -50,7 +56,7 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from vizlight._types import Foreign, Raw
+    from vizlight._types import Foreign, Keywords, Raw
 
 __all__ = [
     "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
@@ -71,6 +77,8 @@ SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
+#: Largest rounding of points in a file of float32, as a share of a cell.
+FINE = 1e-2
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -111,7 +119,7 @@ def read(
     path : path, xarray.Dataset or xarray.DataArray
         Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
         .trx) need the extra ``tracts``; netCDF files (.nc, .cdf) and those that PyVista reads by
-        meshio, such as .off, .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
+        meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
         (.tif, .asc, .hgt) the extra ``maps``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
@@ -170,6 +178,10 @@ def read(
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
     overlays = [_path("overlay", one) for one in given]
     _check_there(path, overlays)
+    inner = Path(path.stem).suffix.lower()
+    if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
+        options = {"time": time, "overlay": overlays, "at": at, "nodata": nodata}
+        return _unpacked(path, options)
     reason, mesh, notes = "no points", None, list[str]()
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
@@ -267,6 +279,8 @@ def _whole(
         joined = blocks.highest(found)
         mesh = joined.grid
         notes += [note] if (note := joined.note()) else []
+    if isinstance(mesh, pv.DataSet):
+        normals.drop_empty(mesh)
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
@@ -300,10 +314,35 @@ def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
         )
 
 
-#: Names of packed files end so.
-_PACKED = (".bz2", ".gz", ".xz", ".zip")
+#: Functions that open packed files, by the ends of their names.
+_UNPACK: dict[str, Foreign] = {
+    ".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open,
+}  # fmt: skip
+#: Formats whose readers take them packed.
+_PACKED_ALIKE = (".img", ".mgh", ".nii", ".tt")
+#: Most bytes that are unpacked: a small file can hold any number of zeros.
+MOST_UNPACKED = 1 << 33
 #: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
 _MESHERS = (".mesh", ".meshb", ".msh")
+
+
+def _unpacked(path: Path, options: Keywords) -> pv.DataSet:
+    """Return the mesh of a packed file, from a temporary file of what is in it."""
+    with tempfile.TemporaryDirectory() as folder:
+        inner = Path(folder) / path.stem
+        try:
+            with _UNPACK[path.suffix.lower()](path) as packed, inner.open("wb") as file:
+                while block := packed.read(1 << 20):
+                    file.write(block)
+                    if file.tell() > MOST_UNPACKED:
+                        raise _damaged(path, f"more than {MOST_UNPACKED} bytes are in it")
+        except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
+            raise _damaged(path, _first_line(error)) from error
+        try:
+            return read(inner, **options)
+        except FileError as error:
+            # The name of the temporary file says nothing to anyone.
+            raise FileError(str(error).replace(str(inner), str(path))) from error
 
 
 def _found(
@@ -316,6 +355,11 @@ def _found(
     found: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
+    if path.suffix.lower() == ".ply" and isinstance(found, pv.PolyData):
+        places = ply_points.exact(path)
+        # VTK repeats points whose faces have their own texture coordinates.
+        if places is not None and len(places) == found.n_points:
+            found.points = places
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -367,7 +411,7 @@ def _by_vtk(path: Path) -> pv.DataObject:
     except OSError as error:
         way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        if path.suffix.lower() in _PACKED:
+        if path.suffix.lower() in (*_UNPACK, ".zip"):
             way = "unpack it first"
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
@@ -494,7 +538,20 @@ def surface_of(
     if not found.n_points:
         expected = f"a value between {low:g} and {high:g}"
         raise ValueError(_check.message("level", expected, f"{level:g}"))
-    return found
+    # Beside a hole VTK makes faces with corners that are nowhere.
+    there: Foreign = np.isfinite(np.asarray(found.points)).all(axis=1)
+    return found if there.all() else _kept_points(found, there)
+
+
+def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
+    """Return the cells of a mesh whose points are all kept, with their arrays."""
+    cells = mesh.extract_points(
+        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
+    )
+    surface: pv.PolyData = cells.extract_surface(
+        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
+    )
+    return surface
 
 
 def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
@@ -696,9 +753,9 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     path : path
         Path of the file, in an existing folder. Its extension, one of .vtp, .vtu, .vtk, .vts,
         .vti and .vtr, or .vtm for several blocks, determines the format; .stl has no arrays, and
-        of an image the solid below its active heights. An existing file is
-        replaced. The blocks are in a folder beside the .vtm file, which has its name without the
-        extension.
+        of an image the solid below its active heights; far from the origin it is moved there, with
+        a warning. An existing file is replaced. The blocks are in a folder beside the .vtm file,
+        which has its name without the extension.
 
     Returns
     -------
@@ -717,6 +774,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         mesh = mesh.cast_to_unstructured_grid()
     # STL has no cells but triangles.
     if path.suffix.lower() == ".stl":
+        mesh = _resolved(mesh)
         mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
 
     # Files of blocks are moved there when all of them are whole.
@@ -741,6 +799,21 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     finally:
         with contextlib.suppress(OSError):  # it is removed if nothing is in it
             folder.rmdir()
+
+
+def _resolved(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh moved to the origin if float32, which .stl has, does not resolve its points."""
+    origin = np.array(blocks.near_origin(mesh))
+    # A side of a typical cell, by the area or the volume that a point has.
+    cell = blocks.box(mesh)[1] / max(mesh.n_points, 1) ** 0.5
+    if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * cell:
+        return mesh
+    words = ", ".join(f"{-part:.9g}" for part in origin)
+    _check.warn(
+        f"output: the mesh is moved by ({words}), since the float32 numbers of .stl do not "
+        "resolve its points where it is"
+    )
+    return blocks.moved(mesh, -origin)
 
 
 def _solid(field: pv.ImageData) -> pv.PolyData:

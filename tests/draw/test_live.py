@@ -152,7 +152,7 @@ def test_fur_within_four():
         pv.Sphere(theta_resolution=90, phi_resolution=90), scene, density=0.6, fibres=300,
         length=0.2, segments=40,
     )  # fmt: skip
-    fragments, points = pictures(coat, None, line_width=3)
+    fragments, points = pictures(coat, None, line_width=3, halo=False)
     assert points.std() > 10
     assert np.quantile(np.abs(fragments - points), 0.999) <= 4
 
@@ -225,7 +225,7 @@ def test_coarse_data_are_as_if_they_were_split():
         split[-1]["t"] = tangents
         coarse.append(line)
     scene = Scene(lights=FAR, material=shiny(shininess=40))
-    options = {"tangents": "t", "line_width": 2}
+    options = {"tangents": "t", "line_width": 2, "halo": False}
     fragments, at_points = pictures(pv.merge(coarse, merge_points=False), scene, **options)
     _, expected = pictures(pv.merge(split, merge_points=False), scene, **options)
     covered = np.all([p.max(axis=-1) > 0 for p in (fragments, at_points, expected)], axis=0)

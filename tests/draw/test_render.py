@@ -45,6 +45,7 @@ def drawn(tmp_path):
     return call
 
 
+@pytest.mark.filterwarnings("ignore:data are hardly seen")  # white on white
 def test_luminance_reaches_the_pixels(drawn):
     """A flat grey value v becomes the pixel 255 v: no lighting by VTK, no gamma."""
     plane = pv.Plane(i_size=10, j_size=10)

@@ -8,6 +8,7 @@ from vectors import unit
 
 import vizlight
 from vizlight import Material, Scene, View, render
+from vizlight.draw import strokes
 
 pytestmark = pytest.mark.opengl
 
@@ -114,3 +115,131 @@ def test_bad_input_names_the_option(option):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises((TypeError, ValueError), match="line_diameter: expected"):
         plotter.vizlight.add_mesh(line, **option)
+
+
+def crossing(distance, *, light, ground="white", halo=None, first=0):
+    """Picture of a dark line along x that passes in front of one along y, 5 pixels wide each."""
+    scene = Scene(material=Material(ambient=0.4, diffuse=0, specular=0))
+    lines = [pv.Line((-1, 0, 0), (1, 0, 0)), pv.Line((0, -1, -distance), (0, 1, -distance))]
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = ground
+    for line in (lines[first], lines[1 - first]):
+        # One size, and so one depth of the halo, for both.
+        line.points *= 1.5
+        plotter.vizlight.add_mesh(line, scene=scene, line_width=5, halo=halo, light=light)
+    plotter.camera = looking_down(parallel=True)
+    plotter.reset_camera_clipping_range()
+    return np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+
+
+@pytest.mark.parametrize("ground", ["white", "black"])
+@pytest.mark.parametrize("light", ["fragments", "points"])
+def test_the_line_behind_is_cut_beside_the_one_in_front(light, ground):
+    pictures = [crossing(1.0, light=light, ground=ground, first=first) for first in (0, 1)]
+    back = 1.0 if ground == "white" else 0.0
+    for picture in pictures:
+        # The halo is as wide as the line: rows 92 to 96 and 103 to 107 of the line behind.
+        column, row = picture[:, 99], picture[99]
+        assert np.all(column[[93, 95, 104, 106]] == back)
+        assert column[[80, 120]] == pytest.approx(0.4, abs=0.02)
+        assert row[[85, 93, 95, 104, 106, 115]] == pytest.approx(0.4, abs=0.02)
+    np.testing.assert_array_equal(*pictures)
+
+
+def test_lines_that_touch_have_no_gap_and_a_halo_can_be_left_out():
+    """The gap grows with the distance, up to the width of the halo."""
+    gaps = [
+        int(np.sum(crossing(distance, light="fragments")[60:140, 99] > 0.9))
+        for distance in (0.0, 0.05, 0.1, 0.5)
+    ]
+    assert gaps[0] == 0
+    assert gaps == sorted(gaps)
+    assert 0 < gaps[1] < gaps[2] < gaps[3] <= 10
+    assert np.all(crossing(0.5, light="fragments", halo=False)[60:140, 99] < 0.9)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_lines_on_a_steep_surface_are_whole(parallel):
+    """Half of each line is behind the surface where it is not drawn nearer to the eye."""
+    slope = np.tan(np.radians(50))
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = "black"
+    plane = pv.Plane(i_size=4, j_size=4, i_resolution=1, j_resolution=1)
+    plane.points[:, 2] = slope * plane.points[:, 1]
+    plotter.add_mesh(plane, color="black", lighting=False)
+    plotter.vizlight.add_mesh(pv.Line((-2, 0, 0), (2, 0, 0)), scene=WHITE, line_width=6)
+    plotter.camera = looking_down(parallel=parallel)
+    plotter.reset_camera_clipping_range()
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, 50:150, 0] / 255
+    assert picture.sum(axis=0) == pytest.approx(6, abs=0.3)
+
+
+@pytest.mark.parametrize("light", ["fragments", "points"])
+def test_ends_and_sharp_bends_are_round(light):
+    """Areas, to half a percent: a capsule, and two of them that have a disc in common."""
+    width, length = 20.0, 60.0
+    half = length / 100
+    bent = pv.MultipleLines([(-half, 0, 0), (0, 0, 0), (0, -half, 0)])
+    straight = pv.MultipleLines([(0, half / 2, 0), (0, -half / 2, 0)])
+    disc = np.pi * width**2 / 4
+    # What two capsules at a right angle share: the disc, and a quarter of it filled to a square.
+    shared = 3 / 4 * disc + width**2 / 4
+    for line, area in (
+        (straight, length * width + disc),
+        (bent, 2 * length * width + 2 * disc - shared),
+    ):
+        plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+        plotter.background_color = "black"
+        plotter.vizlight.add_mesh(line, scene=WHITE, line_width=width, halo=0.3, light=light)
+        plotter.camera = looking_down(parallel=True)
+        plotter.reset_camera_clipping_range()
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+        assert picture.sum() == pytest.approx(area, rel=0.005)
+
+
+def test_ends_are_told_by_the_length_of_directions_and_closed_lines_have_none():
+    turn = np.linspace(0, 2 * np.pi, 13)
+    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    ring[-1] = ring[0]
+    lines = pv.MultipleLines(ring).merge(pv.Line(resolution=3))
+    lengths = np.linalg.norm(strokes.directions(lines), axis=1)
+    np.testing.assert_allclose(lengths, [*[1] * 12, 2, 1, 1, 2])
+
+
+def test_translucent_lines_have_no_halo_unless_it_is_asked_for():
+    line, pictures = pv.Line((-1, 0, 0), (1, 0, 0)), []
+    for halo in (None, False, 2.0):
+        plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+        plotter.background_color = "black"
+        plotter.add_mesh(
+            pv.Plane(center=(0, 0, -1), i_size=9, j_size=9), color="red", lighting=False
+        )
+        plotter.vizlight.add_mesh(line, scene=WHITE, line_width=5, opacity=0.5, halo=halo)
+        plotter.camera = looking_down(parallel=True)
+        plotter.reset_camera_clipping_range()
+        pictures.append(np.asarray(plotter.screenshot(return_img=True)))
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert np.any(pictures[2] != pictures[1])
+
+
+@pytest.mark.parametrize("halo", [-1, "wide", np.nan])
+def test_a_halo_is_a_width(halo):
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.raises((TypeError, ValueError), match="halo: expected"):
+        plotter.vizlight.add_mesh(pv.Line(), scene=WHITE, halo=halo)
+
+
+@pytest.mark.parametrize("light", ["auto", "points"])
+def test_pictures_have_halos_where_they_are_asked_for(light):
+    scene = Scene(material=Material(ambient=0.4, diffuse=0, specular=0), view=WHITE.view)
+    back, front = pv.Line((0, -1, -1), (0, 1, -1)), pv.Line((-1, 0, 0), (1, 0, 0))
+    lines = [vizlight.illuminate(line, scene) for line in (front, back)]
+    columns = []
+    for halo in (False, True):
+        picture = shot(
+            pv.MultiBlock(lines), looking_down(parallel=True), size=(200, 200), line_width=5,
+            halo=halo, light=light, background="white",
+        )  # fmt: skip
+        columns.append(picture[[80, 93, 95, 104, 106, 120], 99])
+    assert columns[0] == pytest.approx(0.4, abs=0.02)
+    assert columns[1] == pytest.approx([0.4, 1, 1, 1, 1, 0.4], abs=0.02)

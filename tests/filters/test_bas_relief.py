@@ -54,3 +54,9 @@ def test_a_raised_grid_has_a_relief():
     raised = grid.warp_by_scalar("h")
     known = bas_relief(raised.extract_surface(algorithm="geometry"), resolution=30)
     np.testing.assert_array_equal(bas_relief(raised, resolution=30)["height"], known["height"])
+
+
+def test_a_grid_of_heights_is_raised():
+    grid = pv.ImageData(dimensions=(9, 7, 1))
+    grid["z"] = np.arange(63.0)
+    assert np.ptp(bas_relief(grid, resolution=50)["height"]) > 50

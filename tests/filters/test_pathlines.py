@@ -165,3 +165,27 @@ def test_a_flow_too_fast_for_its_times_is_told():
 
     with pytest.warns(UserWarning, match="crosses up to .* cells between two times: streaklines"):
         last(fast, 2, [[1.0, 0, 0]], kind="streaklines")
+
+
+def test_particles_on_a_map_go_metres_of_the_place(tmp_path):
+    """A wind of 10 m/s for 12 hours at 60 degrees north, where a degree of longitude is 55.6 km."""
+    xr = pytest.importorskip("xarray")
+    shape = (3, 9, 21)
+    wind = {
+        name: (("time", "lat", "lon"), np.full(shape, speed))
+        for name, speed in (("u", 10), ("v", 5))
+    }
+    axes = {
+        "time": ("time", [0.0, 6, 12], {"units": "hours since 2000-01-01"}),
+        "lat": np.linspace(56, 64, 9), "lon": np.linspace(-10, 10, 21),
+    }  # fmt: skip
+    xr.Dataset(wind, axes).to_netcdf(tmp_path / "w.nc")
+    seeds = [[0.0, 60, 0]]
+    *_, last = vizlight.pathlines(tmp_path / "w.nc", seeds=seeds, vectors=("u", "v"))
+    end = np.asarray(last.points)[np.argmax(last["Time"])]
+    degree = 6_371_008.8 * np.pi / 180
+    north = 5 * 43_200 / degree
+    np.testing.assert_allclose(end[1], 60 + north, rtol=1e-6)
+    middle = np.radians(60 + north / 2)
+    np.testing.assert_allclose(end[0], 10 * 43_200 / degree / np.cos(middle), rtol=1e-3)
+    np.testing.assert_allclose(last["u,v"], np.tile([10, 5, 0], (last.n_points, 1)), rtol=1e-6)

@@ -1,5 +1,7 @@
 """Shadows as point scalars: every kind of grid, several lights, real terrain."""
 
+import warnings
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -12,9 +14,15 @@ from studies.relief import hills
 from vizlight import Light, Material, Scene, relief_day, relief_shadow
 from vizlight.filters import relight
 from vizlight.geometry import relief, sun
+from vizlight.geometry.relief import height_field
 
 TOWARD = np.array([0.6, -0.5, 0.4])
 SCENE = Scene(lights=Light(direction=TOWARD), material=shiny(ambient=0.1, specular=0))
+
+
+def continued_shadow(x, y, z, **options):
+    """Return the shadow of a field whose slopes go on for a cell beyond its border."""
+    return relief.shadow(*height_field.continued(x, y, z), **options)[1:-1, 1:-1]
 
 
 @pytest.mark.parametrize("kind", grids())
@@ -25,7 +33,7 @@ def test_every_kind_of_grid_has_the_same_shadow(kind):
     assert grid == before
     assert type(out) is type(grid)
     assert out.active_scalars_name == "t"
-    expected = relief.shadow(X, Y, Z, depth=0.2, direction=TOWARD)
+    expected = continued_shadow(X, Y, Z, depth=0.2, direction=TOWARD)
     i = np.rint((np.asarray(out.points)[:, 0] - X[0]) / 0.5).astype(int)
     j = np.rint((np.asarray(out.points)[:, 1] - Y[0]) / 0.25).astype(int)
     np.testing.assert_allclose(out["t"], expected[j, i], atol=1e-6)
@@ -103,7 +111,7 @@ def test_grid_in_float32_far_from_the_origin():
     far = pv.StructuredGrid(*np.float32(places))
     far["height"] = 100 * Z.ravel().astype(np.float32)
     t = relief_shadow(far, SCENE, depth=30, elevation="height")["t"]
-    expected = relief.shadow(x, y, 100 * Z, depth=30, direction=TOWARD)
+    expected = continued_shadow(x, y, 100 * Z, depth=30, direction=TOWARD)
     np.testing.assert_allclose(t, expected.ravel(), atol=1e-5)
 
 
@@ -389,3 +397,21 @@ def test_a_lit_field_whose_heights_were_active_can_be_lit_again(kind):
     lit = relief_shadow(field, sun=(315, 30), lit=True)
     assert lit.point_data.active_scalars_name != "h"
     relight.from_record(lit)
+
+
+@pytest.mark.parametrize("hole", [False, True])
+def test_a_plane_is_lit_alike_at_its_border_and_beside_a_hole(hole):
+    y, x = np.mgrid[:30, :40]
+    grid = pv.ImageData(dimensions=(40, 30, 1))
+    z = 0.6 * x - 0.1 * y
+    if hole:
+        z[10:14, 8:20] = np.nan
+    grid["h"] = z.ravel()
+    normal = np.array([-0.6, 0.1, 1]) / np.linalg.norm([0.6, 0.1, 1])
+    there = np.isfinite(grid["h"])
+    for azimuth in (90, 270, 30, 135):
+        cosine = float(normal @ sun.toward(azimuth, 40))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            t = relief_shadow(grid, sun=(azimuth, 40))["t"]
+        np.testing.assert_allclose(t[there], max(cosine, 0), atol=0.01 if cosine > 0 else 0.05)

@@ -14,6 +14,7 @@ import vizlight
 from vizlight import _compiled
 from vizlight.draw import live
 from vizlight.filters import relight
+from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import closed_meshes, sky
 from vizlight.shading import engine, loops
 from vizlight.shading.options import LightOptions
@@ -59,6 +60,21 @@ def test_kinds_of_height_fields_agree():
     inner = (np.abs(surface.points[:, :2]) < 5).all(axis=1)
     same = found["sky"][surface["vtkOriginalPointIds"]]
     assert np.abs(rays["sky"] - same)[inner].mean() < 0.05
+
+
+def test_more_error_than_requested_is_said(monkeypatch):
+    """Both figures, in a warning, the record and the report."""
+    monkeypatch.setattr(fields, "MOST", fields.FEWEST)
+    rough = pv.ImageData(dimensions=(20, 20, 1))
+    rough["height"] = np.random.default_rng(0).normal(size=400)
+    with (
+        pytest.warns(UserWarning, match=r"error of the sky is 0\.\d+ .* error=0.001 was requested"),
+        vizlight.report() as told,
+    ):
+        found = vizlight.sky(rough, error=0.001)
+    record = vizlight.provenance(found, "sky")
+    assert record["error"] > record["requested"] == 0.001
+    assert "(0.001 was requested)" in str(told)
 
 
 def test_a_curvilinear_grid_is_below_the_sky_of_a_field():

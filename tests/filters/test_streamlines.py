@@ -12,6 +12,7 @@ from vectors import parts, unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View, streamlines
+from vizlight.mesh import records
 
 SCENE = Scene(lights=Light(direction=(1, -1, 0.8)), view=View(direction=(0.2, -1, 0.3)))
 
@@ -77,6 +78,19 @@ def test_a_surface_conditions_the_lines():
     dark = cosine < -0.05
     np.testing.assert_allclose(shadowed["luminance"][dark], 0.1, rtol=1e-6)
     assert free["luminance"][dark].max() > 0.2
+
+
+@pytest.mark.parametrize("question", ["direction", "slope", "heading"])
+def test_light_that_tells_how_lines_run_has_no_self_shadow_unless_asked(question):
+    """The record says so too, by which the light is computed anew."""
+    sphere, scene = ball(24), getattr(vizlight.presets, question)(SCENE.view)
+    lines, free, shadowed = (
+        streamlines(sphere, scene, vectors="V", seeds=20, conditioned=conditioned)
+        for conditioned in (None, False, True)
+    )
+    np.testing.assert_array_equal(lines["luminance"], free["luminance"])
+    assert np.median(lines["luminance"]) > 1.2 * np.median(shadowed["luminance"])
+    assert records.read(lines, "luminance")["options"]["conditioned"] is False
 
 
 def test_lines_of_a_volume_on_an_isosurface():

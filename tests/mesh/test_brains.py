@@ -115,3 +115,64 @@ def test_odd_data_beside_the_lines_are_named_and_the_rest_is_kept(tmp_path):
     with pytest.warns(UserWarning, match="left out: .*odd"):
         mesh = vizlight.read(tmp_path / "a.trx")
     assert mesh.n_lines == 2
+
+
+def nifti(path, values, affine):
+    nibabel.save(nibabel.Nifti1Image(values, affine), path)
+    return vizlight.read(path)
+
+
+@pytest.mark.parametrize("signs", [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, -1)])
+@pytest.mark.parametrize("axes", [(0, 1, 2), (2, 0, 1)])
+def test_a_volume_is_where_its_affine_says(signs, axes, tmp_path):
+    values = np.random.default_rng(0).random((3, 4, 5)).astype(np.float32)
+    affine = np.eye(4)
+    affine[:3, :3] = (np.diag(signs) * [2.0, 3, 4])[list(axes)]
+    affine[:3, 3] = [-90, -126, -72]
+    mesh = nifti(tmp_path / "v.nii", values, affine)
+    assert isinstance(mesh, pv.ImageData)
+    assert min(mesh.spacing) > 0
+    for ijk in np.ndindex(values.shape):
+        place = (affine @ [*ijk, 1])[:3]
+        assert mesh["NIFTI"][mesh.find_closest_point(place)] == values[ijk]
+        np.testing.assert_allclose(mesh.points[mesh.find_closest_point(place)], place, atol=1e-4)
+
+
+def test_an_oblique_and_a_sheared_volume(tmp_path):
+    turn = scipy.spatial.transform.Rotation.from_euler("xyz", [5, -8, 12], degrees=True).as_matrix()
+    affine = np.eye(4)
+    affine[:3, :3], affine[:3, 3] = turn @ np.diag([1.0, 2, 3]), [5, 6, 7]
+    values = np.arange(60, dtype=np.float32).reshape(3, 4, 5)
+    for kind in (pv.ImageData, pv.StructuredGrid):
+        mesh = nifti(tmp_path / "v.nii", values, affine)
+        assert isinstance(mesh, kind)
+        place = (affine @ [2, 1, 3, 1])[:3]
+        np.testing.assert_allclose(mesh.points[np.argmax(mesh["NIFTI"] == values[2, 1, 3])], place,
+                                   atol=1e-4)  # fmt: skip
+        affine[:3, 0] += 0.3 * affine[:3, 1]
+
+
+def test_steps_of_a_functional_image(tmp_path):
+    values = np.zeros((3, 4, 5, 4), np.int16) + np.arange(4, dtype=np.int16)
+    image = nibabel.Nifti1Image(values, np.eye(4))
+    image.header.set_zooms((1, 1, 1, 2.5))
+    nibabel.save(image, tmp_path / "f.nii.gz")
+    mesh = vizlight.read(tmp_path / "f.nii.gz", time=5.0)
+    assert mesh["NIFTI"].tolist() == [2] * 60
+    assert mesh.field_data["TimeSteps"].tolist() == [0, 2.5, 5, 7.5]
+    nifti(tmp_path / "v.nii", np.zeros((3, 3, 3), np.float32), np.eye(4))
+    with pytest.raises(ValueError, match="time: expected a file of several steps"):
+        vizlight.read(tmp_path / "v.nii", time=3)
+
+
+def test_a_volume_of_freesurfer_and_colours(tmp_path):
+    image = nibabel.MGHImage(
+        np.arange(60, dtype=np.float32).reshape(3, 4, 5), np.diag([-1, 1, 1, 1])
+    )
+    nibabel.save(image, tmp_path / "a.mgz")
+    mesh = vizlight.read(tmp_path / "a.mgz")
+    assert mesh.bounds == (-2, 0, 0, 3, 0, 4)
+    kind = np.dtype([("R", "u1"), ("G", "u1"), ("B", "u1")])
+    colors = np.array([(1, 2, 3)] * 8, kind).reshape(2, 2, 2)
+    mesh = nifti(tmp_path / "c.nii", colors, np.eye(4))
+    assert mesh["NIFTI"].tolist() == [[1, 2, 3]] * 8

@@ -11,16 +11,14 @@ from vizlight import Light, Material, Scene, View
 from vizlight.vtk import hull, normals
 
 
-def test_control_points_are_not_lit():
+def test_control_points_are_lit_where_their_parameters_are_on_the_surface():
     """A Bezier triangle passes through its corners, and half as high as the points between."""
     points = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0.8], [1, 1, 0.8], [0, 1, 0.8]]
     mesh = pv.UnstructuredGrid({pv.CellType.BEZIER_TRIANGLE: np.arange(6)[None]}, np.array(points))
     toward = np.array([1, 2, 6]) / np.sqrt(41)
     scene = far(toward, (0, 0, 1), Material(ambient=0.1, diffuse=0.8, specular=0))
-    with pytest.warns(UserWarning, match="3 of 6 points could not be lit"):
-        lit = vizlight.illuminate(mesh, scene)
-    np.testing.assert_array_equal(lit["luminance_valid"], [1, 1, 1, 0, 0, 0])
-    np.testing.assert_allclose(lit["luminance"][3:], 0.1)
+    lit = vizlight.illuminate(mesh, scene)
+    assert lit["luminance"][3:].min() > 0.7
     # The flat triangles at the corners rise by 0.4 to the middles of the edges.
     normals = unit(np.array([[-0.4, -0.4, 1], [0.4, 0, 1], [0, 0.4, 1]]))
     np.testing.assert_allclose(lit["luminance"][:3], 0.1 + 0.8 * normals @ toward, rtol=1e-5)

@@ -263,3 +263,32 @@ def test_given_normals_of_a_surface_without_an_outer_side_face_the_eye(random):
     both = vizlight.illuminate(pv.MultiBlock([mixed, boy]), scene)
     np.testing.assert_allclose(both[0]["luminance"], expected, atol=1e-6)
     np.testing.assert_array_equal(both[1]["luminance"], lit)
+
+
+@pytest.mark.parametrize("gap", [0.0, np.nan, np.inf])
+@pytest.mark.parametrize("side", [1, -1])
+def test_normals_of_a_file_that_have_gaps_are_filled_by_those_of_the_faces(gap, side):
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
+    outward = unit(np.asarray(ball.points, dtype=float))
+    ball.clear_data()
+    rows = (side * outward).astype(np.float32)
+    rows[::7] = gap
+    ball.point_data["Normals"] = rows
+    ball.point_data.active_normals_name = "Normals"
+    found = normals.given_normals(ball, None, 3)
+    np.testing.assert_array_equal(found[1:7], rows[1:7])
+    assert np.einsum("ij,ij->i", found, side * outward).min() > 0.99
+    ball.point_data["Normals"][:] = gap
+    assert normals.given_normals(ball, None, 3) is None
+
+
+def test_normals_of_a_scan_that_are_all_zero_are_estimated(tmp_path):
+    points = np.random.default_rng(0).random((300, 3)) * [1, 1, 0]
+    scan = pv.PolyData(points)
+    scan.point_data["Normals"] = np.zeros_like(points)
+    scan.point_data.active_normals_name = "Normals"
+    scan.save(tmp_path / "scan.ply")
+    scene = Scene(lights=Light(direction=(0, 0, 1)), view=View(direction=(0, 0, 1)))
+    assert vizlight.illuminate(scan, scene)["luminance"].min() > 0.99
+    scan.save(tmp_path / "scan.vtp")
+    assert "Normals" not in vizlight.read(tmp_path / "scan.vtp").point_data

@@ -17,6 +17,7 @@ from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settl
 from vizlight.draw.live import Fragments, LightAt, Live, draws_light, has_pass, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
+from vizlight.draw.strokes import with_halo
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
@@ -75,6 +76,7 @@ class Component:
         light: LightAt = "auto",
         scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
+        halo: bool | float | None = None,
         **options: Given,
     ) -> pv.Actor | list[pv.Actor]:
         """Add a mesh whose light follows the camera.
@@ -104,6 +106,13 @@ class Component:
         line_diameter : float, optional
             Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
             ``line_width`` in pixels: nearer lines are wider.
+        halo : bool or float, optional
+            Band of the colour of the ground on each side of lines, which tells the line in front
+            where two cross: its width in widths of the line, or False for none. It is the deeper
+            the farther it is from its line, up to 5 % of the size of the lines, so that lines that
+            run together have no gap. Lines with halos have round ends and joints, and are drawn
+            nearer to the eye by their own width, so that a surface on which they lie does not hide
+            them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
             except ``name`` and ``components``, with ``feature_angle="auto"`` by default: where
@@ -150,7 +159,8 @@ class Component:
         lights of a scene must stay fixed; the plotter's lights may follow the camera, at the cost
         of one grid for each of them in each frame.
 
-        Light at the points is bit-identical to the filter's for the same camera. Light in
+        Light at the points is bit-identical to the filter's for the same camera; halos blend the
+        borders of lines with the ground. Light in
         fragments is within 4 of 255 of it on fine meshes.
         """
         plotter = self._open_plotter()
@@ -158,8 +168,7 @@ class Component:
         _check.instance("scene", scene, Scene, optional=True)
         _check.choice("light", light, get_args(LightAt))
         own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
-        if line_diameter is not None:
-            line_diameter = _check.positive("line_diameter", line_diameter)
+        width_of_lines = _check_lines(line_diameter, halo)
         if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
             mesh = mesh.copy(deep=False)
         # Some styles are PyVista's own shading: the mesh is added as it would be without this
@@ -207,7 +216,7 @@ class Component:
                 continue
             shown, tints = (here, {}) if here is not None else tinted(source.mesh)
             # What the caller passes counts over what a tint was made with.
-            keywords_of = tints | keywords_of | {"line_diameter": line_diameter}
+            keywords_of = tints | keywords_of | width_of_lines
             keywords_of |= keywords.whole_range(block, here, keywords_of)
             live = _live(source, used, light, keywords_of)
             live.name = path.lstrip("/") or str(drawing.get("name") or "")
@@ -568,6 +577,15 @@ class Component:
     __plotter_deep_clean__ = __plotter_close__
 
 
+def _check_lines(line_diameter: float | None, halo: bool | float | None) -> Keywords:
+    """Return the keywords of how lines are drawn, checked."""
+    if line_diameter is not None:
+        line_diameter = _check.positive("line_diameter", line_diameter)
+    if halo is not None and not isinstance(halo, bool):
+        halo = _check.number("halo", halo, low=0.0, high=100.0)
+    return {"line_diameter": line_diameter, "halo": halo}
+
+
 def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
 
@@ -604,17 +622,26 @@ def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords
     if stroke.round and stroke.diameter is None:
         # Light at points has no normal across a line: VTK's own tubes are drawn instead.
         drawing["render_lines_as_tubes"] = True
-    return Live(source, scene, Stroke(stroke.diameter), reason=reason)
+        stroke = Stroke()
+    return Live(source, scene, stroke._replace(round=False), reason=reason)
 
 
 def _stroke(source: Source, drawing: Keywords) -> Stroke:
     """Take from keywords how lines are drawn; a surface has none."""
-    diameter = drawing.pop("line_diameter", None)
+    diameter, halo = drawing.pop("line_diameter", None), drawing.pop("halo", False)
     if not has_lines_only(source.mesh):
         return Stroke()
     # Across a line of one pixel there is no roundness to show.
-    wide = diameter is not None or drawing.get("line_width", pv.global_theme.line_width) > 1
-    return Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
+    width = drawing.get("line_width") or pv.global_theme.line_width
+    wide = diameter is not None or width > 1
+    stroke = Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
+    if halo is None:
+        # What is behind a translucent line is meant to be seen.
+        opacity = drawing.get("opacity")
+        halo = opacity is None or (isinstance(opacity, int | float) and opacity >= 1)
+    if halo is False:
+        return stroke
+    return with_halo(stroke, source.mesh, width, None if halo is True else halo)
 
 
 def _reason(source: Source, drawing: Keywords, stroke: Stroke) -> str:

@@ -341,11 +341,11 @@ class Varying(NamedTuple):
 
     ``value`` holds ``{position}``, ``{normal}`` or ``{tangent}``, in view coordinates,
     ``{length}`` or ``{size}``, the length of the normal or of the tangent as it was given, or
-    ``{along}``, the normal as a direction in clip coordinates.
+    ``{along}`` or ``{course}``, the normal or the tangent as a direction in clip coordinates.
     """
 
     name: str
-    kind: Literal["float", "vec3", "vec4"]
+    kind: Literal["float", "vec2", "vec3", "vec4"]
     value: str
 
 
@@ -364,14 +364,30 @@ class Stroke(NamedTuple):
         Diameter in the unit of the mesh; None for a width in pixels.
     round : bool
         Whether each fragment has the normal of the cylinder that the line stands for.
+    halo : float
+        Width of the band of the ground's colour on each side of a line, in widths of the line.
+    depth : float
+        Distance by which the border of the halo is behind the line, in the unit of the mesh.
     """
 
     diameter: float | None = None
     round: bool = False
+    halo: float = 0.0
+    depth: float = 0.0
 
 
 #: Direction of the line at a vertex; its array takes the place of normals.
 ALONG = Varying("vizD", "vec4", "{along}")
+#: The same where normals are those of a surface: the line is lit by its tangents.
+COURSE = Varying("vizD", "vec4", "{course}")
+#: What lines with halos have: the place across a line and past either end, in half widths, and the
+#: changes of depth of the line and of the border of its halo.
+HALO = (
+    Varying("vizLine", "vec3", "vec3(0.0)"),
+    Varying("vizDeep", "vec2", "vec2(0.0)"),
+)
+#: Length of the direction of a line, which is 2 at an end.
+END = Varying("vizEnd", "float", "{length}")
 #: Normal of the cylinder at a fragment, from the tangent and the place across the line.
 CYLINDER_NORMAL = """  vec3 vizLast = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]);
   vec3 vizFront = vizLast == vec3(0.0) ? vec3(0.0, 0.0, 1.0) : -vizP;
@@ -458,10 +474,14 @@ def write(
     if (plan.surface and not stroke.round) or plan.conditioned or plan.fur:
         names.append(Varying("vizN", "vec3", "{normal}"))
         read += _unit("vizN") + _TOWARD[toward]
+        if stroke.halo and (plan.conditioned or plan.fur):
+            names.append(COURSE)
     elif stroke != Stroke():
         # A stroke without normals needs the direction of the line, by which VTK's geometry is
         # widened.
-        names.append(ALONG)
+        names += [ALONG, END] if stroke.halo else [ALONG]
+    if stroke.halo:
+        names += HALO
     if plan.fur or turned:
         names.append(Varying("vizH", "float", "{length} - 1.0"))
     if plan.occluded:

@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw import dialects, glsl
+from vizlight.draw import dialects, glsl, strokes
 from vizlight.draw.glsl import Stroke, Uniform
 from vizlight.filters import lighting, relight
 from vizlight.filters.tint import light_on_colors, map_colors, values_of
@@ -25,7 +25,6 @@ from vizlight.scene.light import NO_ATTENUATION, WHITE, default_lights
 from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
 from vizlight.shading.inputs import Layout
 from vizlight.shading.plan import decide
-from vizlight.vtk import polylines
 from vizlight.vtk.arrays import are_colors, is_of_cells
 
 if TYPE_CHECKING:
@@ -51,7 +50,11 @@ LightAt = Literal["auto", "points", "fragments"]
 LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight values"
 TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
 #: Fragment shader that draws the colours of the points.
-AS_IT_IS = "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n"
+AS_IT_IS = dialects.Replacement(
+    "Fragment",
+    "//VTK::Light::Impl",
+    "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n",
+)
 
 
 class Live:
@@ -191,9 +194,9 @@ class Live:
         channels = 3 if self.scalars is None else 4
         kind = np.float64 if self.scalars is None else np.uint8
         records.attach_rows(self.drawn, COLORS, np.zeros((count, channels), kind))
-        if self._stroke.diameter is not None:
+        if self._stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
-            along = polylines.line_tangents(self.source.mesh).astype(np.float32)
+            along = self.picked(strokes.directions(self.source.mesh)).astype(np.float32)
             records.attach_rows(self.drawn, NORMALS, along)
             self.drawn.GetPointData().SetActiveNormals(NORMALS)
 
@@ -216,14 +219,13 @@ class Live:
     def start(self, actor: vtkActor) -> None:
         """Let an actor draw lit colours as they are, in place of the data's."""
         prop = actor.GetProperty()
-        if self._stroke.diameter is not None:
-            dialects.widen(actor, self._stroke)
-        if self.scene is None:
-            # Without lights VTK multiplies by the sum of both coefficients, which are the material.
-            actor.GetShaderProperty().AddFragmentShaderReplacement(
-                "//VTK::Light::Impl", True, AS_IT_IS, False
-            )
-        else:
+        # Without lights VTK multiplies by the sum of both coefficients, which are the material.
+        as_it_is = [] if self.scene is not None else [AS_IT_IS]
+        if self._stroke != Stroke():
+            strokes.widen(actor, self._stroke, as_it_is)
+        elif as_it_is:
+            dialects.replace(actor, as_it_is)
+        if self.scene is not None:
             # The colours are lit already: these coefficients show them as they are.
             prop.SetAmbient(1.0)
             prop.SetDiffuse(0.0)
@@ -311,6 +313,8 @@ class Live:
         if source is not self.source:
             self.source, self._placed = source, None
         self.show(scene, renderer, actor)
+        if self._stroke.halo:
+            strokes.put_ground(actor, renderer)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""
@@ -318,6 +322,8 @@ class Live:
         # The address is there because another camera may have the same time of change.
         state: list[object] = [camera.GetAddressAsString(""), camera.GetMTime()]
         state += [self.source.mesh.GetMTime(), _elements(actor)]
+        if self._stroke.halo:
+            state.append(renderer.GetBackground())
         if self.scene is None:
             lights = renderer.GetLights()
             state += [lights.GetMTime(), *(light.GetMTime() for light in items(lights))]
@@ -617,7 +623,7 @@ class Fragments(Live):
             # A stroke is widened across the line's own direction, whatever the light takes for its
             # tangent.
             if self._stroke != Stroke():
-                normals = self.picked(polylines.line_tangents(self.source.mesh))
+                normals = self.picked(strokes.directions(self.source.mesh))
         else:
             normals = normals * self._lengths()
         if normals is not None:
@@ -701,7 +707,7 @@ class Fragments(Live):
             written = glsl.write(plan, turned=turned, stroke=self._stroke, data=data)
             texts = dialects.VTK.replacements(written, given)
             if self._stroke != Stroke():
-                texts = dialects.widened(actor, texts, self._stroke)
+                texts = strokes.widened(actor, texts, self._stroke)
             dialects.replace(actor, texts)
             self._key, self._plan = key, plan
         _set_uniforms(given, renderer, actor)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
@@ -19,10 +20,11 @@ from vizlight.draw.backends import (
     window_class,
 )
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
-from vizlight.draw.dialects import widen
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.legends import CornerKey, ink_on, name_no_data
+from vizlight.draw.strokes import directions, put_ground, widen, with_halo
+from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -30,7 +32,6 @@ from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
-from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ class PlotterKeywords(TypedDict, total=False):
     line_width: float
     line_diameter: float | None
     render_lines_as_tubes: bool
+    halo: bool | float
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
     light: PictureLight
@@ -125,6 +127,7 @@ def make_plotter(
     line_width: float = 1.0,
     line_diameter: float | None = None,
     render_lines_as_tubes: bool = False,
+    halo: bool | float = False,
     anti_aliasing: AntiAliasing | None = "auto",
     backend: Backend | None = None,
     light: PictureLight = "auto",
@@ -167,6 +170,10 @@ def make_plotter(
         they stand for: its mean is the light of ``model="cylinder"``. Lines keep their own light
         where it cannot be computed in each fragment, as with ``light="points"``, on a surface that
         conditions it, or in a bundle.
+    halo : bool or float, default: False
+        Band of the colour of the background on each side of lines, which tells the line in front
+        where two cross, as for ``plotter.vizlight.add_mesh``: its width in widths of the line, or
+        True for one width, at least 2 pixels.
     anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
         supersampling where there are lines, which are then drawn narrower than a pixel, else
@@ -208,6 +215,8 @@ def make_plotter(
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
     tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
+    if not isinstance(halo, bool):
+        halo = _check.number("halo", halo, low=0.0, high=100.0)
     meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:
@@ -236,8 +245,8 @@ def make_plotter(
             drawn = plotter.renderer.GetPass()
             pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
             # Supersampling draws a picture that many times as wide and shrinks it.
-            lines = {"line_width": line_width * pixel, "line_diameter": line_diameter}
-            lines["render_lines_as_tubes"] = tubes
+            lines: Keywords = {"line_width": line_width * pixel, "line_diameter": line_diameter}
+            lines |= {"render_lines_as_tubes": tubes, "halo": halo}
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
@@ -340,7 +349,7 @@ def save_png(
         Path of the picture, in an existing folder.
     **options
         Options of :func:`make_plotter`: camera, rows, size, scalars, cmap, clim, bar, background,
-        line_width, line_diameter, render_lines_as_tubes, anti_aliasing, backend, light, key.
+        line_width, line_diameter, render_lines_as_tubes, halo, anti_aliasing, backend, light, key.
 
     Returns
     -------
@@ -358,7 +367,7 @@ def save_png(
     path = check_output(path, (".png",))
     plotter = make_plotter(panels, **options)
     try:
-        return replace_file(path, plotter.screenshot, doing="draw")
+        return replace_file(path, partial(save_seen, plotter, path), doing="draw")
     finally:
         plotter.close()
 
@@ -429,10 +438,13 @@ def _draw(
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
         if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
             continue
-        diameter = width["line_diameter"] if lines else None
-        if diameter is not None:
+        stroke = Stroke(width["line_diameter"]) if lines else Stroke()
+        if lines and width["halo"] is not False:
+            share = None if width["halo"] is True else width["halo"]
+            stroke = with_halo(stroke, mesh, width["line_width"], share)
+        if stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
-            shown["vizlight along"] = polylines.line_tangents(mesh).astype(np.float32)
+            shown["vizlight along"] = directions(mesh).astype(np.float32)
             shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data
         values: Foreign = array_of(mesh, panel.scalars)
@@ -456,8 +468,10 @@ def _draw(
             line_width=width["line_width"],
             show_scalar_bar=False,
         )
-        if diameter is not None:
-            widen(actor, Stroke(diameter))
+        if stroke != Stroke():
+            widen(actor, stroke)
+        if stroke.halo:
+            put_ground(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)
@@ -554,6 +568,6 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     path = check_output(path, IMAGES)
     try:
         plotter.reset_camera_clipping_range()
-        return replace_file(path, plotter.screenshot, doing="draw")
+        return replace_file(path, partial(save_seen, plotter, path), doing="draw")
     finally:
         plotter.close()

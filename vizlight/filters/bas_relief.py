@@ -9,7 +9,7 @@ import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import closed_meshes
+from vizlight.mesh import closed_meshes, height_grids
 
 if TYPE_CHECKING:
     from vizlight._types import Array, VectorLike
@@ -32,8 +32,8 @@ def bas_relief(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        Surface, closed or open, or a mesh whose outer surface is taken, such as a raised grid; not
-        changed.
+        Surface, closed or open, or a mesh whose outer surface is taken; a level grid is raised by
+        its active scalars. Not changed.
     direction : vector of 3 components, default: (0, 0, 1)
         Direction toward the eye, which is at infinity.
     up : vector of 3 components, optional
@@ -67,6 +67,8 @@ def bas_relief(
     The depth is sampled at the nodes by :func:`vizlight.geometry.relief.depth_map.depth_map`,
     without OpenGL. Source: cos-theta, figure 1, lights a bas-relief of a statue.
     """
+    if isinstance(mesh, height_grids.Grid):
+        mesh = height_grids.raised(mesh)
     vertices, triangles = closed_meshes.triangles_of(mesh, "mesh")
     frame = _eye_frame(direction, up)
     resolution = _check.integer("resolution", resolution, low=2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
@@ -12,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
-from vizlight.mesh import records
+from vizlight.mesh import cf_grids, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
@@ -58,6 +59,9 @@ class PathlineOptions(LightOptions):
         _check.choice("kind", self.kind, get_args(Kind))
         _check.fields(self, _check.number, "step", low=1e-3)
         _check.fields(self, _check.integer, "seed", low=0)
+        names: object = self.vectors
+        if isinstance(names, list | tuple):
+            _check.set_fields(self, vectors=",".join(map(str, names)))
         records.refuse_unnamed("vectors", self.vectors)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
@@ -107,8 +111,9 @@ def pathlines(
     times : array_like, shape (S,), optional
         Times of a sequence of meshes, rising. Default: their field array ``TimeValue``.
     vectors : str, optional
-        Name of a point array of 3 components, of the same name at each step. Default: the active
-        vectors of the first.
+        Name of a point array of 3 components, of the same name at each step, or of components,
+        such as ``"u,v"``. Default: the active vectors of the first, or its only components. On a
+        map in degrees they are metres a second, east and north.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
         Points at which particles start; a number stands for points of the mesh, drawn without
         repetition from those that move at the first time.
@@ -169,11 +174,14 @@ def pathlines(
     """
     asked = PathlineOptions.of(locals())
     scene = as_scene(scene)
+    # Steps of a netCDF file are read with their meaning.
+    if isinstance(series, str | Path) and Path(series).suffix.lower() in cf_grids.SUFFIXES:
+        series = cf_grids.Steps(Path(series))
     steps = Series(series, asked.times)
     first = steps.mesh(0)
     vectors = asked.vectors
     if vectors is None:
-        vectors = first.point_data.active_vectors_name
+        vectors = first.point_data.active_vectors_name or meaning.only_vectors(first)
     if vectors is None:
         expected = "the name of a point array of 3 components"
         raise ValueError(_check.message("vectors", expected, None))

@@ -14,7 +14,7 @@ from vizlight import _check, _progress
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
 from vizlight.mesh import blocks, normals, records, subdivision
-from vizlight.mesh.sky import VOXELS, skies
+from vizlight.mesh.sky import MANY, VOXELS, skies
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.shading.options import Options, check_sides
@@ -117,9 +117,9 @@ def sky(
     -------
     pyvista.DataSet or pyvista.MultiBlock
         With the point array ``sky`` in [0, 1] and ``sky_provenance``, which holds the ``error``
-        that was found, the numbers of ``directions`` per point and of ``rays``, and the ``method``;
-        of surfaces also ``between``, the error of values interpolated at 95 of 100 places on the
-        faces, and ``dark``, the number of points that see nothing.
+        that was found beside the one ``requested``, the numbers of ``directions`` per point and of
+        ``rays``, and the ``method``; of surfaces also ``between``, the error of values interpolated
+        at 95 of 100 places on the faces, and ``dark``, the number of points that see nothing.
         ``sky_valid`` marks points that have no sky: in a hole, without a normal, or buried inside a
         surface. They have the share of the nearest point that has one.
 
@@ -131,9 +131,10 @@ def sky(
     Warns
     -----
     UserWarning
-        Once, with the count, if points have no sky, and if points of a surface see nothing; once,
-        if the sky changes inside of triangles, if a volume has many sharp edges, which cannot be
-        split, and if a package that is missing makes many points slow.
+        Once, with both figures, if the error found is larger than the one requested. Once, with
+        the count, if points have no sky, and if points of a surface see nothing; once, if the sky
+        changes inside of triangles, if a volume has many sharp edges, which cannot be split, and if
+        a package that is missing makes many points slow.
 
     Notes
     -----
@@ -142,12 +143,13 @@ def sky(
     away from its centre. A point of a line has the mean over the circumference of its tube. An
     endless slope of angle b sees (1 + cos b) / 2; light from other points is not part of V.
 
-    Fields: horizons of scan lines, exact for near cells; holes hide nothing, and heights beyond the
-    border are those of the border. The error is measured at random nodes against every cell in the
-    way. Surfaces and lines: rays in float32; the error is that of two halves of the rays, pooled
-    over points like each other, which is no bound for a single point. A point that sees nothing
-    has the sky of a place beside it on its largest triangle: where faces meet inward, rounding
-    puts the point itself on the wrong side of one.
+    Fields: horizons through every cell, of large ones by scan lines, exact for near cells; holes
+    hide nothing, and heights beyond the border are those of the border. The error is measured by
+    half of the azimuths, and at random nodes against every cell in the way. Which way is taken
+    depends on the field and the error alone. Surfaces and lines: rays in float32; the error is that
+    of two halves of the rays, pooled over points like each other, which is no bound for a single
+    point. A point that sees nothing has the sky of a place beside it on its largest triangle: where
+    faces meet inward, rounding puts the point itself on the wrong side of one.
 
     The mean of :func:`vizlight.relief_shadow` over the sky is V only at depth 0: with a depth it
     differs by 0.015 on smooth and 0.23 on rough ground.
@@ -322,6 +324,18 @@ def _attach(
     """Attach skies to meshes, with their records."""
     lost = total = dark = 0
     bent, length = 0.0, 0.0
+    errors = [made.error for made in found if made.error is not None]
+    requested = max((made.requested for made in found), default=0.0)
+    if (largest := max(errors, default=0.0)) > requested:
+        _check.warn(
+            f"the error of the sky is {largest:.2g} at 95 of 100 points, and error={requested:g} "
+            "was requested, which needs more directions than are tried"
+        )
+    if len(errors) < len(found):
+        _check.warn(
+            f"the error of the sky is not known, and error={requested:g} was requested: lines of "
+            f"more than {MANY} voxels are not compared with rays; error={VOXELS / 2:g} takes rays"
+        )
     for mesh, made in zip(meshes, found, strict=True):
         arrays: dict[str, Raw] = {asked.name: made.share}
         dark += made.dark

@@ -19,6 +19,7 @@ from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
 from vizlight.scene.keywords import named
+from vizlight.scene.presets import PRESETS
 from vizlight.scene.scene import as_scene
 from vizlight.shading.options import LightOptions
 from vizlight.vtk import polylines
@@ -40,6 +41,8 @@ TANGENTS = "Tangents"
 RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
+#: Presets whose light tells how lines run, which the self-shadow of a surface would hide.
+OF_LINES = ("direction", "slope", "heading")
 #: Largest length of a line in cell lengths.
 REACH = 1200
 
@@ -170,7 +173,8 @@ def streamlines(
         box. A line ends after 1,200 cell lengths in any case.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
-        :func:`vizlight.illuminate`. Default: whether there is a surface.
+        :func:`vizlight.illuminate`. Default: whether there is a surface, but not in the light of
+        ``presets.direction``, ``slope`` and ``heading``, which tells how the lines themselves run.
     facing, feature_angle, bundle, occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`; edges of the surface are split.
     progress_bar
@@ -252,6 +256,8 @@ def light_lines(
     options = dataclasses.replace(options, vectors=vectors)
     mesh = records.averaged(mesh, *_names(options.vectors))
     scene = as_scene(scene)
+    if options.conditioned is None and _tells_of_lines(scene):
+        options = dataclasses.replace(options, conditioned=False)
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)
@@ -265,6 +271,12 @@ def light_lines(
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
+
+
+def _tells_of_lines(scene: Scene) -> bool:
+    """Return whether a scene has the light of a preset that tells how lines run."""
+    presets = (PRESETS[name]() for name in OF_LINES)
+    return any((p.lights, p.material) == (scene.lights, scene.material) for p in presets)
 
 
 def _check_mesh(mesh: object, argument: str) -> None:

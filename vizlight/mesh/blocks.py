@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet,
+    vtkHyperTreeGrid,
+    vtkMultiBlockDataSet,
+)
 
 from vizlight import _check
 from vizlight.mesh import joining
@@ -66,6 +70,8 @@ def _way(mesh: object) -> str:
     """Return how what is no mesh becomes one."""
     if isinstance(mesh, pv.PartitionedDataSet):
         return "pass pyvista.MultiBlock(list(mesh))"
+    if isinstance(mesh, vtkHyperTreeGrid):
+        return "convert it by VTK's vtkHyperTreeGridToUnstructuredGrid, and wrap its output"
     return "read files by vizlight.read, wrap VTK objects by pyvista.wrap"
 
 

@@ -10,15 +10,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.mesh import meaning, series
+from vizlight.mesh.georeference import UNIT
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from vizlight._types import AnyArray, Foreign
 
-__all__ = ["SURFACES", "is_freesurfer", "overlay", "read", "tracks_of_tt"]
+__all__ = [
+    "SURFACES", "VOLUMES", "is_freesurfer", "overlay", "read", "tracks_of_tt", "volume",
+]  # fmt: skip
 
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
 SURFACES = (".gii", ".gii.gz", ".mz3")
+#: Ends of names of volumes.
+VOLUMES = (
+    ".nii", ".nii.gz", ".mgz", ".mgh", ".mnc", ".head", ".brik", ".brik.gz",
+)  # fmt: skip
+#: Largest cosine between axes that are at right angles: affines are in float32.
+SQUARE = 1e-5
 #: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
 _FREESURFER, _CURV = (b"\xff\xff\xfe", b"\xff\xff\xfd", b"\xff\xff\xff"), b"\xff\xff\xff"
 #: Codes of GIFTI for points and for triangles.
@@ -76,6 +88,86 @@ def read(path: Path) -> pv.PolyData:
     for key, rows in arrays.items():
         mesh.point_data[key] = rows
     return mesh
+
+
+def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
+    """Return a volume by nibabel in its frame: RAS, in millimetres, by the affine of its header.
+
+    Of a file of several steps, such as a functional image, one is loaded.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of a file of NIfTI, FreeSurfer (.mgz), AFNI (.head) or MINC (.mnc).
+    time : float, int or str, optional
+        Time of the step, as for :func:`.series.chosen`.
+
+    Raises
+    ------
+    ValueError
+        If it has no numbers on a grid of three axes.
+    """
+    import nibabel
+
+    image: Foreign = nibabel.load(path)
+    affine, shape = np.asarray(image.affine, dtype=np.float64), image.shape
+    steps = int(shape[3]) if len(shape) > 3 else 1
+    part: Foreign = image.dataobj
+    times, index = [], 0
+    if steps > 1:
+        zooms = image.header.get_zooms()
+        # Headers without a duration have 0, and steps are then counted.
+        width = float(zooms[3]) if len(zooms) > 3 and zooms[3] > 0 else 1.0
+        times = [width * i for i in range(steps)]
+        index = series.chosen(times, time)
+    elif time not in (None, "first", "last"):
+        raise series.NoStepError(f"time: expected a file of several steps, got '{path.name}'")
+    # Slices of the proxy read a single step of the file.
+    rows = np.asanyarray(part[..., index] if len(shape) == 4 else part)
+    # A vector at each voxel has its components on the fifth axis.
+    if rows.ndim == 5 and rows.shape[3] == 1:
+        rows = rows[:, :, :, 0]
+    if rows.dtype.names:  # colours
+        rows = np.stack([rows[name] for name in rows.dtype.names], axis=-1)
+    rows = rows.reshape(*rows.shape, *[1] * (3 - rows.ndim))
+    if rows.ndim not in (3, 4) or rows.dtype.kind not in "biuf":
+        raise ValueError(f"{rows.dtype} numbers of shape {rows.shape} are no volume")
+    # Axes of the storage that run to the left, to the back or down are turned over, and put in
+    # order, with their values: the places stay.
+    turn = nibabel.io_orientation(affine)
+    rows = nibabel.apply_orientation(rows, turn)
+    counts = rows.shape[:3]
+    affine = affine @ nibabel.orientations.inv_ornt_aff(turn, shape[:3] + (1,) * (3 - len(shape)))
+    grid = _of_affine(affine, counts)
+    kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
+    flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
+    grid.point_data["NIFTI"] = flat
+    grid.field_data[UNIT] = ["millimetre"]
+    said = meaning.Meaning(axes=["x to the right", "y forward", "z up"])
+    said.axes[-1] += (
+        f", in mm by the affine of the header (stored {''.join(nibabel.aff2axcodes(image.affine))})"
+    )
+    meaning.attach(grid, said)
+    return grid if steps < 2 else series.marked(grid, times, index)
+
+
+def _of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.StructuredGrid:
+    """Return a grid whose point i, j, k is at the affine times these."""
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    axes = affine[:3, :3] / np.where(spacing > 0, spacing, 1)
+    if np.allclose(axes.T @ axes, np.eye(3), atol=SQUARE):
+        image = pv.ImageData(dimensions=counts, spacing=spacing, origin=affine[:3, 3])
+        if not np.allclose(axes, np.eye(3), atol=1e-7):
+            image.direction_matrix = axes
+        return image
+    # Sheared: no axes at right angles.
+    ijk = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(
+        -1, 3, order="F"
+    )
+    grid = pv.StructuredGrid()
+    grid.dimensions = counts
+    grid.points = ijk @ affine[:3, :3].T + affine[:3, 3]
+    return grid
 
 
 def overlay(path: Path, count: int) -> dict[str, AnyArray]:

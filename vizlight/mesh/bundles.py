@@ -160,9 +160,9 @@ def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
         # The default diameter depends on how crowded the lines are, which a first medium tells.
         coarse = geometry.medium(*lines, voxel=voxel)
         ids = lines.ids[:: max(1, len(lines.ids) // SAMPLE)]
-        lengths = geometry.line_lengths(*lines)[ids]
+        halves = geometry.line_halves(*lines)[ids]
         tangents = _tangents(*lines)[ids]
-        places = coarse.targets(lines.points[ids], tangents, lengths)
+        places = coarse.targets(lines.points[ids], tangents, halves)
         depth = coarse.crowded(places, SIDES)
         # The optical depth is that per diameter times the diameter in voxels: it is limited here.
         if depth * diameter > bundle.depth * voxel:
@@ -199,19 +199,19 @@ class Dimmed:
             points = points.astype(np.float64) + np.array(inputs.origin)
         vectors = inputs.normals if inputs.tangents is None else inputs.tangents
         rows = None if vectors is None else np.asarray(vectors[:])
-        lengths: Array | None = None
+        halves: Array | None = None
         if inputs.tangents is not None:
             # Length 0 stands for a point on no line of the medium, which adds nothing to its depth.
-            lengths = np.zeros(len(points))
+            halves = np.zeros((len(points), 2, 3))
             if work.own and polylines.has_lines_only(mesh):
-                lengths = polylines.of_points(mesh, geometry.line_lengths)
+                halves = polylines.of_points(mesh, geometry.line_halves)
         if rows is not None and len(rows) * inputs.repeat == len(points):
             # One vector may serve several points, as on a fibre of fur.
             rows = np.repeat(rows, inputs.repeat, axis=0)
         if rows is not None and rows.shape != points.shape:
             # Several tangents per point: a surface or a volume that light reaches from all sides.
-            rows = lengths = None
-        self._targets = points, rows, lengths
+            rows = halves = None
+        self._targets = points, rows, halves
         # None has no bytes for a digest; an empty array stands for it.
         arrays = (np.empty(0) if x is None else x for x in self._targets)
         self._source = f"{work.source} {records.source(*arrays)}"

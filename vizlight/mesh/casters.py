@@ -107,24 +107,39 @@ class FieldCaster:
         # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
         grid = georeference.in_metres(grid)
         found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
-        field = self._field = height_field.make(found.x, found.y, found.z, border=options.border)
+        # Where the ground goes on beyond the border and in holes its slope does, for one cell.
+        self._rim = int(options.border == "extend")
+        nodes = height_field.continued(found.x, found.y, found.z) if self._rim else (
+            found.x, found.y, found.z
+        )  # fmt: skip
+        field = self._field = height_field.make(*nodes, border=options.border)
         self._normal, self._found = height_field.normals(field), found
         # From the axes of the mesh to those of the grid's rows and columns.
         self._turn = np.eye(3) if found.turn is None else found.turn
         # The nodes are then others than the points of the mesh.
         sampled = isinstance(found, Raster)
-        self.depth = _depth(options.depth, height_field.default_depth(field))
+        # By the nodes of the grid, without the ring.
+        inner = dataclasses.replace(
+            field,
+            x=field.x[self._rim :][: len(found.x)] - field.x[self._rim],
+            y=field.y[self._rim :][: len(found.y)] - field.y[self._rim],
+            heights=self._inner(field.heights),
+            top=float(np.nanmax(found.z) - np.nanmin(found.z)),
+        )
+        self.depth = _depth(options.depth, height_field.default_depth(inner))
         self.points = found.points()
         known = np.isfinite(found.z)
         # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
-        upright = found.to_points(np.where(known[..., np.newaxis], self._normal @ self._turn, 0))
+        upright = found.to_points(
+            np.where(known[..., np.newaxis], self._inner(self._normal) @ self._turn, 0)
+        )
         # Interpolated from the nodes around, normals are shorter than 1.
         self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = found.covered() & (found.to_points(known * 1.0) > 0)
-        if georeference.UNIT in grid.field_data and 0 < field.top < UNSEEN * field.size:
-            wanted = georeference.ENOUGH[0] * field.size / field.top * options.exaggeration
+        if georeference.UNIT in grid.field_data and 0 < inner.top < UNSEEN * inner.size:
+            wanted = georeference.ENOUGH[0] * inner.size / inner.top * options.exaggeration
             _check.warn(
-                f"the heights of the map range over {field.top / field.size:.1g} of its side, a "
+                f"the heights of the map range over {inner.top / inner.size:.1g} of its side, a "
                 f"relief that nobody sees; pass exaggeration={10 ** round(np.log10(wanted)):g}"
             )
         # The oracle follows single rays; it knows fields as they are, not resampled ones.
@@ -133,14 +148,22 @@ class FieldCaster:
 
     def of(self, light: Light, report: Callable[[int], None]) -> Array:
         """Return t at all points; ``report`` takes the number of rays followed so far."""
+        rays, nodes = self._field.heights.size, self._found.z.size
         t = shadowing.ratio(
             self._field, self._normal, self.depth, direction=self._turned(light.direction),
-            position=self._turned(light.position), report=report,
+            position=self._turned(light.position),
+            report=lambda done: report(done * nodes // rays),
         )  # fmt: skip
+        t = self._inner(t).copy()
         t[np.isnan(self._found.z)] = 0
         t = self._found.to_points(t)
         t[~self.valid] = 0
         return t
+
+    def _inner(self, rows: Array) -> Array:
+        """Return what is at the nodes of the grid itself."""
+        end = -self._rim or None
+        return rows[self._rim : end, self._rim : end]
 
     def reference(self, point: int, light: Light) -> float:
         """Return t at one point by an independent method; NaN where that does not apply."""

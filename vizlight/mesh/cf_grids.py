@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["SUFFIXES", "add", "is_grid", "of_dataset", "read"]
+__all__ = ["SUFFIXES", "Steps", "add", "is_grid", "of_dataset", "read"]
 
 #: File name extensions of netCDF.
 SUFFIXES = (".nc", ".nc4", ".cdf")
@@ -171,6 +171,29 @@ def of_dataset(
     if not hasattr(data, "data_vars"):
         data = data.to_dataset(name=data.name or "values")
     return _Reader(data).grid(time, dict(at or {}), nodata, source)
+
+
+class Steps:
+    """Reader of the steps of a netCDF file, one at a time.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._time = path, 0.0
+        #: Times of the steps.
+        self.time_values = series.of(read(path, "first"))
+
+    def set_active_time_value(self, time: float) -> None:
+        """Set the time of the step that is read."""
+        self._time = time
+
+    def read(self) -> pv.DataSet:
+        """Return the grid of the step that was asked for."""
+        return read(self._path, self._time)
 
 
 def add(mesh: pv.DataSet, other: Foreign, path: Path) -> None:

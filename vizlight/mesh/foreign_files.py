@@ -15,7 +15,7 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, cf_grids, georeference, polylines
+from vizlight.mesh import brains, cf_grids, geomview, georeference, polylines, scene_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,10 +28,12 @@ PACKAGES = {
     ".tck": ("nibabel", "tracts"),
     ".trx": ("trx-python", "tracts"),
     ".gii": ("nibabel", "tracts"),
+    ".nii": ("nibabel", "tracts"),
+    ".mgz": ("nibabel", "tracts"),
 } | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
-        ".meshb", ".msh", ".nas", ".node", ".off", ".post", ".su2", ".tec", ".ugrid", ".vol",
+        ".meshb", ".msh", ".nas", ".node", ".post", ".su2", ".tec", ".ugrid", ".vol",
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
@@ -64,7 +66,7 @@ def read(
     *,
     at: Mapping[str, object] | None = None,
     nodata: float | None = None,
-) -> pv.DataSet | None:
+) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
     if suffix in (".trk", ".tck"):
@@ -73,12 +75,20 @@ def read(
         return _polylines(*brains.tracks_of_tt(path), {}, {})
     if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
         return brains.read(path)
+    if path.name.lower().endswith(brains.VOLUMES):
+        return brains.volume(path, time)
     if suffix == ".trx":
         return _tracts_of_trx(path)
     if suffix in cf_grids.SUFFIXES:
         return cf_grids.read(path, time, at, nodata)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path, nodata)
+    if suffix in scene_files.SUFFIXES:
+        return scene_files.read(path)
+    if suffix == ".off":
+        return geomview.read_off(path)
+    if suffix == ".mesh" and geomview.is_mesh(path):
+        return geomview.read_mesh(path)
     if suffix == ".dem":
         _refuse_narrow(path)
     if suffix == ".inp" and _head(path, 1) == b"*":

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "motion", "rates", "read",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "is_map", "motion", "rates", "read",
     "scale_to_one", "seem_degrees", "stretch",
 ]  # fmt: skip
 
@@ -127,7 +127,7 @@ def scale_to_one(mesh: pv.DataSet, traced: pv.DataSet) -> Array:
     ndarray, shape (3,)
     """
     x, y, z = traced.bounds_size
-    if _is_map(mesh) and traced.GetMaxSpatialDimension() == 3 and min(max(x, y), z) > 0:
+    if is_map(mesh) and traced.GetMaxSpatialDimension() == 3 and min(max(x, y), z) > 0:
         side = max(x, y)
         return np.array([1 / side, 1 / side, 1 / z])
     return np.full(3, 1 / blocks.box(traced)[1])
@@ -146,7 +146,7 @@ def motion(mesh: pv.DataSet, traced: pv.DataSet, vectors: Array, scale: Array) -
         Scale of each axis, as a share of that of x.
     """
     factors = scale / scale[0]
-    if _is_map(mesh):
+    if is_map(mesh):
         factors = factors * rates(mesh, np.asarray(traced.points, dtype=np.float64))
     elif np.all(factors == 1):
         return vectors
@@ -154,8 +154,13 @@ def motion(mesh: pv.DataSet, traced: pv.DataSet, vectors: Array, scale: Array) -
     return np.asarray(rows * np.reshape(factors, (-1, 1, 3))).reshape(vectors.shape)
 
 
-def _is_map(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is a map in degrees, or was one."""
+def is_map(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a map in degrees, or was one.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
     return _in_degrees(mesh) or LATITUDE in mesh.field_data
 
 

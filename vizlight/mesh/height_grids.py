@@ -12,7 +12,7 @@ import scipy
 from vizlight import _check
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
-from vizlight.mesh import blocks, records, subdivision
+from vizlight.mesh import blocks, georeference, records, subdivision
 from vizlight.vtk.arrays import GridPoints, points_of
 
 if TYPE_CHECKING:
@@ -239,6 +239,26 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
     size = np.hypot(x, y)
     # Takes the direction of the rows to the x axis; heights stay.
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
+
+
+def raised(grid: Grid) -> Grid:
+    """Return a grid of one level layer raised by its heights; any other as it is.
+
+    Parameters
+    ----------
+    grid : pyvista.ImageData, pyvista.RectilinearGrid or pyvista.StructuredGrid
+        Grid; one in degrees becomes one in metres.
+    """
+    name = elevation_name(grid)
+    if name is None or grid.dimensions[2] != 1 or grid.bounds_size[2] > 0:
+        return grid
+    grid = georeference.in_metres(grid)
+    points: Array = np.array(grid.points, dtype=np.float64)
+    points[:, 2] = grid.point_data[name]
+    out = pv.StructuredGrid()
+    out.dimensions = grid.dimensions
+    out.points = points
+    return out
 
 
 def heights_name(grid: pv.DataSet) -> str | None:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of", "say",
-    "vectors", "with_named", "without_missing",
+    "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
+    "only_vectors", "say", "seconds", "vectors", "with_named", "without_missing",
 ]  # fmt: skip
 
 #: Name of vectors, names of components, or the two names of a cross field.
@@ -223,6 +223,30 @@ def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
     return rows
 
 
+def only_vectors(mesh: pv.DataSet, argument: str = "vectors") -> str | None:
+    """Return the names of the only components of a mesh, None where it has other vectors or none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    argument : str
+        Name of the argument for messages.
+
+    Raises
+    ------
+    ValueError
+        If several vectors could be meant.
+    """
+    data = (mesh.point_data, mesh.cell_data)
+    if any(np.shape(part[key])[1:] == (3,) for part in data for key in part):
+        return None
+    names = [",".join(group) for group in components(mesh)]
+    if len(names) > 1:
+        expected = f"the name of an array, or names of components ({' or '.join(names)})"
+        raise ValueError(_check.message(argument, expected, None))
+    return names[0] if names else None
+
+
 def with_named(
     mesh: DataSetT, named: Named | None, argument: str = "vectors"
 ) -> tuple[DataSetT, Named | None]:
@@ -251,17 +275,7 @@ def with_named(
         If several vectors could be meant, or the components are no arrays of one component.
     """
     if named is None:
-        if any(np.shape(data[key])[1:] == (3,) for data in (mesh.point_data, mesh.cell_data)
-               for key in data):  # fmt: skip
-            return mesh, None
-        groups = components(mesh)
-        if not groups:
-            return mesh, None
-        names = [",".join(group) for group in groups]
-        if len(names) > 1:
-            expected = f"the name of an array, or names of components ({' or '.join(names)})"
-            raise ValueError(_check.message(argument, expected, None))
-        named = names[0]
+        named = only_vectors(mesh, argument)
     if not isinstance(named, str) or "," not in named or named in mesh.array_names:
         return mesh, named
     group = tuple(named.split(","))
@@ -299,6 +313,22 @@ def metres(unit: str) -> float | None:
     """
     name = unit.strip().lower()
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
+
+
+#: Seconds of the units of times, by their first letters.
+_SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
+
+
+def seconds(unit: str) -> float:
+    """Return the length of a unit of time in seconds; 1 for none.
+
+    Parameters
+    ----------
+    unit : str
+        Name of the unit, such as "hours since 1900-01-01".
+    """
+    name = unit.strip().lower()
+    return next((size for word, size in _SECONDS.items() if name.startswith(word)), 1.0)
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

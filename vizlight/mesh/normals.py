@@ -411,6 +411,16 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     return out
 
 
+def drop_empty(mesh: pv.DataSet) -> None:
+    """Remove the active normals of a mesh that was just read if all are NaN or of no length.
+
+    Programs write such normals of scans and surfaces where they know none.
+    """
+    rows = mesh.point_data.active_normals
+    if rows is not None and not np.any(np.nan_to_num(rows)):
+        del mesh.point_data[mesh.point_data.active_normals_name or ""]
+
+
 def keep_normals(mesh: pv.PolyData) -> None:
     """Keep the normals of a surface without creases at points that only their arrays tell apart.
 

@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
 from vizlight.geometry.lines.simplices import Columns
-from vizlight.mesh import polylines, records
+from vizlight.mesh import georeference, meaning, polylines, records
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Foreign
@@ -78,8 +78,11 @@ class Carrier:
 
     def __init__(self, mesh: pv.DataSet) -> None:
         self._mesh = mesh.copy(deep=False)
+        # Of a map vectors are metres a second, and times are in the unit of its file.
+        self._seconds = meaning.seconds(meaning.of(mesh).time) if georeference.is_map(mesh) else 1.0
         # The probe interpolates every array of its source, and all but the vectors in vain.
-        self._mesh.clear_data()
+        self._mesh.clear_point_data()
+        self._mesh.clear_cell_data()
         k = mesh.GetMaxSpatialDimension()
         sizes = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
         # A cell that is turned inside out has a negative volume.
@@ -99,6 +102,14 @@ class Carrier:
         both = self._both(places)
         return np.asarray((1 - share) * both[:, :3] + share * both[:, 3:])
 
+    def _rates(self, places: Array) -> Array:
+        """Return the factors that take vectors to motion in the coordinates of the mesh."""
+        return self._seconds * georeference.rates(self._mesh, places)
+
+    def _motion(self, places: Array, share: float) -> Array:
+        """Return the motion at places after a share of the interval, in the unit of the times."""
+        return self.at(places, share) * self._rates(places)
+
     def _both(self, places: Array) -> Array:
         both = np.full((len(places), 6), np.nan)
         inside = np.flatnonzero(np.all(np.isfinite(places), axis=1))
@@ -114,7 +125,7 @@ class Carrier:
     def count(self, places: Array, duration: float, step: float) -> int:
         """Return the number of steps of an interval, each of at most ``step`` cell lengths."""
         both = self._both(places).reshape(len(places), 2, 3)
-        speed = np.linalg.norm(both, axis=2)
+        speed = np.linalg.norm(both * self._rates(places)[:, np.newaxis], axis=2)
         # The fastest particle sets the step of all, which advance together.
         fastest = float(np.nanmax(speed)) if np.any(np.isfinite(speed)) else 0.0
         wanted = fastest * duration / (step * self._cell) if self._cell else 1.0
@@ -127,8 +138,8 @@ class Carrier:
         """
         middle = share + width / 2
         # A stage outside of the mesh is NaN, and so is the sum: the line ends before this step.
-        a = self.at(places, share)
-        b = self.at(places + duration / 2 * a, middle)
-        c = self.at(places + duration / 2 * b, middle)
-        d = self.at(places + duration * c, share + width)
+        a = self._motion(places, share)
+        b = self._motion(places + duration / 2 * a, middle)
+        c = self._motion(places + duration / 2 * b, middle)
+        d = self._motion(places + duration * c, share + width)
         return np.asarray(places + duration / 6 * (a + 2 * b + 2 * c + d))

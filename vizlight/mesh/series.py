@@ -13,7 +13,7 @@ from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
 from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, meaning
 from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:
@@ -136,6 +136,7 @@ class Series:
             If the step has no such point array of 3 components.
         """
         mesh, name = self.mesh(step), f"vectors, {self.name(step)}"
+        mesh = meaning.with_named(mesh, array)[0] if "," in array else mesh
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"

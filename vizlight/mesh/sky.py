@@ -57,6 +57,8 @@ class Sky(NamedTuple):
         Number of points of a surface that see nothing.
     between : float
         Error of values interpolated between the points of a surface, of 95 of 100 places.
+    requested : float
+        Error that was requested.
     """
 
     share: Array
@@ -65,6 +67,13 @@ class Sky(NamedTuple):
     record: Record
     dark: int = 0
     between: float = 0.0
+    requested: float = 0.0
+
+    @property
+    def error(self) -> float | None:
+        """Error that 95 of 100 points keep to; None where it is not known."""
+        value = self.record["error"]
+        return value if isinstance(value, float) else None
 
 
 class _Shape(NamedTuple):
@@ -132,7 +141,11 @@ def skies(
     if shapes:
         made = _by_rays([*shapes.values()], error, up, diameter, report)
         found |= dict(zip(shapes, made, strict=True))
-    return [found[number] for number in range(len(meshes))]
+    skies_in_order = [found[number] for number in range(len(meshes))]
+    return [
+        sky._replace(record=sky.record | {"requested": error}, requested=error)
+        for sky in skies_in_order
+    ]
 
 
 def is_grid(mesh: pv.DataSet) -> bool:
@@ -171,11 +184,11 @@ def _of_field(
     share = field.to_points(made.share)
     valid: Bools = np.isfinite(share)
     record: Record = {
-        "method": "horizons" if made.near else "horizons by NumPy",
+        "method": made.method,
         "error": made.error, "directions": made.azimuths, "rays": made.azimuths * share.size,
     }  # fmt: skip
     # Told only where it takes long enough to be noticed.
-    if (reason := _compiled.why_not()) and share.size > SLOW:
+    if (reason := _compiled.why_not()) and share.size > fields.SMALL:
         _check.warn(f"the sky takes ten times as long by NumPy: {reason}")
     points = field.points()
     return Sky(_filled(share, valid, points), valid, opened, record)
@@ -321,8 +334,8 @@ def in_medium(
     if normals is not None:
         targets = medium.targets(points, normals)
     else:
-        lengths = polylines.of_points(mesh, media.line_lengths)
-        targets = medium.targets(points, polylines.line_tangents(mesh), lengths)
+        halves = polylines.of_points(mesh, media.line_halves)
+        targets = medium.targets(points, polylines.line_tangents(mesh), halves)
     return medium.sky(targets, thick, SIDES)
 
 

@@ -18,16 +18,18 @@ def relief_ratio(
     way: VectorLike | None, end: VectorLike | None = None, base: float = -math.inf,
     wall: bool = False,
 ) -> float:  # fmt: skip
-    """Return t of a point of a height field, its ray cut at every plane of nodes.
+    """Return t of a node of a height field, its ray cut at every plane of nodes.
 
-    Between two cuts the height of the surface above it is a quadratic, known from three places.
+    Within the four cells around the node, where all of them have a surface and contain the ray's
+    start, the solid is what lies below the plane through the node. Elsewhere, between two cuts, the
+    height of the surface above the ray is a quadratic, known from three places.
 
     Parameters
     ----------
     x, y, z : ndarray, shapes (nx,), (ny,), (ny, nx)
         Coordinates of the nodes, and their heights.
     place, normal : ndarray, shape (3,)
-        Point, and its unit normal.
+        Node, and its unit normal.
     depth : float
         Depth of the ray's start below the point, above 0.
     way : vector of 3 components or None
@@ -49,14 +51,16 @@ def relief_ratio(
     along = toward - (start if end is not None else 0)
     # A sine or a cosine of a right angle is not 0 in a computer.
     along[np.abs(along) < 4 * np.finfo(float).eps * np.abs(along).max()] = 0
+    near, flat = _beside(x, y, z, place, normal, start, along, endless=end is None, wall=wall)
     highest = max(float(np.nanmax(z) - start[2]), 0.0)
     if end is None or along[2] > highest:
         # There is no solid above the highest node.
-        along = along * (highest / along[2])
+        cut = highest / along[2]
+        along, near = along * cut, near / cut if cut else math.inf
     bounds = ((x, start[0], along[0]), (y, start[1], along[1]), ([base], start[2], along[2]))
     # Shares of the ray at which it crosses a plane of nodes, or the base.
     cuts = [(np.asarray(at) - first) / step for at, first, step in bounds if step]
-    known = np.concatenate([[0.0, 1.0], *cuts])
+    known = np.concatenate([[0.0, 1.0, near], *cuts])
     ends = np.unique(known[(known >= 0) & (known <= 1)])
     low, high = ends[:-1], ends[1:]
     three = start + np.stack([low, (low + high) / 2, high])[..., np.newaxis] * along
@@ -77,9 +81,43 @@ def relief_ratio(
     # Where no cell has a surface the ray is outside of the solid.
     share = _positive(*np.where(np.isfinite(f), parts, -1.0))
     share[~(middle[:, 2] > base)] = 0
-    inside = float(share @ (high - low)) * math.hypot(*along)
+    # What is within the four cells is below the plane instead.
+    share[high <= near] = 0
+    inside = float(share @ (high - low)) * math.hypot(*along) + flat
     # t = d / r, and 1 where r is less than d (cos-theta, section 3).
     return float(depth / max(inside, depth))
+
+
+def _beside(
+    x: Array, y: Array, z: Array, place: Array, normal: Array, start: Array, along: Array, *,
+    endless: bool, wall: bool,
+) -> tuple[float, float]:  # fmt: skip
+    """Return where a ray leaves the four cells around its node, as a share of it.
+
+    Second comes the length of what is below the node's plane before that.
+    """
+    share = math.inf
+    spans = []
+    for nodes, at, first, step in zip((x, y), place, start, along, strict=False):
+        k = int(np.argmin(np.abs(nodes - at)))
+        last = len(nodes) - 1
+        if wall and k in (0, last):
+            return 0.0, 0.0
+        spans.append(slice(max(k - 1, 0), k + 2))
+        # Beyond the border a cell is as wide as the last one.
+        low = nodes[k - 1] if k > 0 else 2 * nodes[0] - nodes[1]
+        high = nodes[k + 1] if k < last else 2 * nodes[last] - nodes[last - 1]
+        if not low <= first <= high:
+            return 0.0, 0.0
+        if step:
+            share = min(share, ((high if step > 0 else low) - first) / step)
+    if not np.isfinite(z[spans[1], spans[0]]).all():
+        return 0.0, 0.0
+    share = max(min(share, math.inf if endless else 1.0), 0.0)
+    rise, gap = float(normal @ along), float(normal @ (place - start))
+    # At the plane normal . (start + s along - place) is 0.
+    below = min(share, gap / rise) if rise > 0 else share
+    return share, below * math.hypot(*along)
 
 
 def _above(

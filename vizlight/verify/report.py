@@ -470,8 +470,11 @@ def noted_sky(points: int) -> Iterator[Callable[[Sequence[Record]], None]]:
 def _of_sky(record: Record) -> str:
     """Return the errors of a sky in words."""
     found = "  error unknown"
-    if record["error"] is not None:
-        found = f"  error {record['error']:.2g} or less at 95 of 100 points, as estimated"
+    error, requested = record["error"], record["requested"]
+    if isinstance(error, float) and isinstance(requested, float):
+        found = f"  error {error:.2g} or less at 95 of 100 points, as estimated"
+        if error > requested:
+            found += f" ({requested:g} was requested)"
     found += f", {record['method']}"
     if "between" in record:
         found += f"; between the points {record['between']:.2g} or less at 95 of 100 places"

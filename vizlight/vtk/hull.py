@@ -22,7 +22,8 @@ from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFi
 from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight.vtk.arrays import points_of
-from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, dimensions, finite_faces, places
+from vizlight.vtk.bezier import as_lagrange
+from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, dimensions, finite_faces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -70,8 +71,9 @@ def is_curved(mesh: Dataset) -> bool:
 def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     """Return the outer surface of a mesh, and the index of each of its points in the mesh.
 
-    The index is -1 where the mesh has no such point. Each curved cell is replaced by a flat cell
-    with the same nodes. Points without cells have a surface of all points without cells.
+    Each curved cell is replaced by a flat cell with the same nodes; those of a cell of Bezier are
+    the places of its surface at the parameters of its control points. Points without cells
+    have a surface of all points without cells.
     """
     if not mesh.GetNumberOfCells():
         bare, points = vtkPolyData(), vtkPoints()
@@ -81,6 +83,8 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     curved = is_curved(mesh)
     numbered: Foreign = mesh
     if curved:
+        # Of cells of Bezier the control points are not on the surface.
+        mesh = as_lagrange(mesh) if isinstance(mesh, vtkUnstructuredGrid) else mesh
         # VTK's ids of the nodes of curved cells are those within the cell, so the points of the
         # mesh are numbered here.
         numbered = mesh.NewInstance()
@@ -101,12 +105,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     surface: vtkPolyData = take.GetOutput()
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
-    if not curved:
-        return surface, ids
-    # The control points of Bezier cells are not on the surface.
-    skin = places(surface)
-    off = np.abs(skin - places(mesh)[ids]).max(axis=1, initial=0)
-    return surface, np.where(off <= 1e-5 * np.abs(skin).max(initial=0), ids, -1)
+    return surface, ids
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:

@@ -351,7 +351,10 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
 
 
 def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
-    """Return the normals in ``value`` or the active ones of the mesh, None if they are computed."""
+    """Return the normals in ``value`` or the active ones of the mesh, None if they are computed.
+
+    Where active ones have no length, or are not finite, those of the faces stand in their place.
+    """
     if value is not None:
         return vectors_of(mesh, "normals", value, n)
     if n != 3:
@@ -362,8 +365,16 @@ def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
     if carried is None:
         return None
     found = vectors_of(mesh, "normals", carried.GetName() or as_numpy(carried), 3)
-    known = np.all(np.isfinite(found), axis=1)
-    return found if known.all() else np.where(known[:, np.newaxis], found, 0)
+    longest = np.abs(found).max(axis=1, initial=0)
+    known = (longest > 0) & (longest < np.inf)
+    if known.all():
+        return found
+    # Files have normals of no length, or NaN, where their writer knew none: the faces do.
+    if not known.any():
+        return None
+    of_faces = computed_normals(mesh, sides=False).vectors
+    against = np.einsum("ij,ij->", of_faces[known], kernels.unit_rows(found[known])) < 0
+    return np.where(known[:, np.newaxis], found, -of_faces if against else of_faces)
 
 
 def computed_normals(

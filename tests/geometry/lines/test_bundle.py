@@ -138,10 +138,12 @@ def some_lines(kind, random, count=1200, length=0.5):
     return middles, tangents
 
 
-def shares(middles, tangents, light, near, length, diameter, random, tries):
+def shares(middles, tangents, light, near, length, diameter, random, tries, ends=False):
     """Return the mean share of a light at points of lines by rays, and by the medium."""
     own = random.integers(len(middles), size=tries)
-    places = middles[own] + random.uniform(-0.5, 0.5, (tries, 1)) * length * tangents[own]
+    at = random.choice([-0.5, 0.5], (tries, 1)) if ends else random.uniform(-0.5, 0.5, (tries, 1))
+    places = middles[own] + at * length * tangents[own]
+    halves = np.stack([(0.5 - at) * tangents[own], -(0.5 + at) * tangents[own]], axis=1) * length
     way = np.asarray(light) - places if near else np.tile(np.asarray(light, float), (tries, 1))
     reach = np.linalg.norm(way, axis=1) if near else np.full(tries, np.inf)
     way = unit(way)
@@ -151,7 +153,7 @@ def shares(middles, tangents, light, near, length, diameter, random, tries):
         for x in (-0.375, -0.125, 0.125, 0.375)
     ]
     lines = pieces(middles, tangents, length, 2 * diameter)
-    targets = lines.targets(places, tangents[own], np.full(tries, length))
+    targets = lines.targets(places, tangents[own], halves)
     left = lines.dimmed(targets, diameter, [(light, near)])[:, 0]
     return np.mean(free), left.mean()
 
@@ -191,6 +193,35 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name):
     assert error.std() / np.sqrt(len(error)) < 0.012
     assert np.abs(error).max() < 0.06
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
+
+
+@pytest.mark.parametrize("length", [0.5, 0.03])
+@pytest.mark.parametrize("kind", ["isotropic", "layered"])
+def test_ends_of_lines_are_as_right_as_their_inner_points(kind, length):
+    """Also of lines that are shorter than a voxel."""
+    random, diameter = np.random.default_rng(12), 0.02
+    light, count = (0.3, -0.4, 0.866), round(600 / length)
+    found = [
+        shares(*some_lines(kind, random, count), light, False, length, diameter, random, 150, True)
+        for _ in range(6)
+    ]
+    error = np.diff(found, axis=1)
+    # Lines of a length of 1.5 diameters are hardly cylinders.
+    most = 0.01 if length > 10 * diameter else 0.02
+    assert abs(error.mean()) < most + 2 * error.std() / np.sqrt(len(error))
+
+
+def test_halves_of_lines():
+    """Of the longest line of a point, along the segments beside it; none at a line's end."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 2, 0], [1, 5, 0], [np.nan, 0, 0], [7.0, 7, 7]])
+    ids, offsets = np.array([0, 1, 2, 1, 3, 4, 3]), np.array([0, 3, 3, 5, 7])
+    halves = bundle.line_halves(points, ids, offsets)
+    wanted = np.zeros((6, 2, 3))
+    wanted[0, 0] = 3, 0, 0
+    wanted[1, 0] = 0, 5, 0
+    wanted[2, 1] = 0, -3, 0
+    wanted[3, 1] = 0, -5, 0
+    assert np.array_equal(halves, wanted)
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ and Lambert). The sum is taken on a grid in the light's own frame: each piece of
 over the 8 voxels around it, the voxels are summed along the light, and the sum is read at a point
 from the 8 voxels around that. All lengths are in voxels.
 
-Two corrections are in closed form. A point of a line does not shade itself: a straight line adds
-1/3 to its own depth, since the hat function of the voxels has the mean 2/3 of its square and half
-of the line lies on the light's side; a line that is short as the light sees it adds less. And lines
+Two corrections are in closed form. A point of a line does not shade itself: what both halves of
+its line add to its depth in the mean follows from the hat function of the voxels, from the
+direction of each half and from the place where it ends. A long straight line adds 1/3. And lines
 are spread at random within a voxel, so the mean of the exponential is above the exponential of the
 mean, which a factor ``1 + d / 4`` of the depth makes up for: it stands for the lines, d wide, that
 lie in one another's shadow.
@@ -17,6 +17,7 @@ lie in one another's shadow.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -33,8 +34,9 @@ if TYPE_CHECKING:
 __all__ = ["Medium", "Targets", "directions", "medium"]
 
 
-#: Depth of a straight line at its own points, per diameter.
-OWN = 1 / 3
+#: Mean square of the hat function of voxels across a line, and numbers of lengths and of angles in
+#: the table of what half a line adds to its own depth.
+ACROSS, LENGTHS, ANGLES = 2 / 3, 65, 65
 #: Least side of a voxel in diameters.
 LEAST_VOXEL = 2.0
 #: Voxels along a side of the blocks by which pieces are sorted, and more blocks than there are.
@@ -77,15 +79,16 @@ class Targets(NamedTuple):
         Whether a point is finite; others are not dimmed.
     vectors : ndarray of float32, shape (3, N), or None
         Unit tangents of lines or unit normals of a surface.
-    lengths : ndarray of float32, shape (N,), or None
-        Length of the line of the medium that a point belongs to, 0 for none; None for a surface,
-        which light reaches from the side of its normals alone.
+    halves : ndarray of float32, shape (2, 3, N), or None
+        Vectors along both halves of the line of the medium that a point belongs to, as long as
+        these, 0 for none; None for a surface, which light reaches from the side of its normals
+        alone.
     """
 
     places: Array
     known: Bools
     vectors: Array | None = None
-    lengths: Array | None = None
+    halves: Array | None = None
 
     def facing(self, toward: Array) -> Array:
         """Return the share of light from a direction that points receive, for both its ends.
@@ -105,7 +108,7 @@ class Targets(NamedTuple):
         # A thin cylinder shows a lamp its diameter times the sine of the angle between them.
         cosine = np.einsum("i...,i...->...", toward.reshape(3, -1), self.vectors)
         # A surface is lit on the side of its normal alone, so both ends of the direction differ.
-        if self.lengths is None:
+        if self.halves is None:
             return np.maximum([cosine, -cosine], 0)
         # A line is lit alike from either end. Rounding may leave a cosine just above 1.
         sine = np.sqrt(np.maximum(1 - cosine * cosine, 0))
@@ -117,27 +120,77 @@ class Targets(NamedTuple):
             np.take(self.places, order, axis=1),
             self.known[order],
             None if self.vectors is None else np.take(self.vectors, order, axis=1),
-            None if self.lengths is None else self.lengths[order],
+            None if self.halves is None else np.take(self.halves, order, axis=2),
         )
 
-    def own(self, facing: Array, width: Array | float = 1.0) -> Array | float:
+    def own(self, toward: Array, width: Array | float = 1.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
         Parameters
         ----------
-        facing : ndarray, shape (2, N)
-            Shares of light of :meth:`facing`.
+        toward : ndarray, shape (3,) or (3, N)
+            Unit direction.
         width : ndarray, shape (N,), or float
             Width of the voxels at the points, in voxels of the medium.
+
+        Returns
+        -------
+        ndarray, shape (2, N), or 0.0
+            Depths toward the direction and toward its opposite.
         """
-        if self.lengths is None or self.vectors is None:
+        if self.halves is None:
             return 0.0
-        # A line that is short as the light sees it fills only a part of its own voxels.
-        seen = self.lengths * facing[0]
+        forth, back = np.zeros((2, self.places.shape[1]))
+        for half in self.halves:
+            along = np.einsum("i...,i...->...", toward.reshape(3, -1), half)
+            across = np.sqrt(np.maximum(np.einsum("ij,ij->j", half, half) - along * along, 0))
+            ahead, whole = _half(across / width, np.arctan2(along, across))
+            # What is ahead of a point in one direction is behind it in the other.
+            forth, back = forth + ahead, back + whole - ahead
         # A depth per diameter is a length over an area, so in wider voxels it is less in
         # proportion.
-        share: Array = np.minimum(seen / (2 * width), 1) * np.float32(OWN) / width
-        return share
+        depths: Array = np.stack([forth, back]) * (ACROSS / width)
+        return depths.astype(np.float32)
+
+
+def _half(reach: Array, angle: Array) -> tuple[Array, Array]:
+    """Return what half a line adds to the depth at its own start, and that from either side.
+
+    ``reach`` is its length across the light in voxels, ``angle`` its elevation toward the light.
+    """
+    table = _halves()
+    row = np.minimum(reach, 2.0) * ((LENGTHS - 1) / 2)
+    column = (angle / np.pi + 0.5) * (ANGLES - 1)
+    i = np.minimum(row.astype(np.intp), LENGTHS - 2)
+    j = np.clip(column.astype(np.intp), 0, ANGLES - 2)
+    u, v = row - i, column - j
+    low, high = (table[i + k, j] + v * (table[i + k, j + 1] - table[i + k, j]) for k in (0, 1))
+    # Straight toward the light and straight away together: the whole of the spread line.
+    first, last = (table[i + k, 0] + table[i + k, -1] for k in (0, 1))
+    return low + u * (high - low), first + u * (last - first)
+
+
+@cache
+def _halves() -> Array:
+    """Return the table of :func:`_half`, its angles from straight away to straight toward.
+
+    A piece at a distance v across the light and v tan(a) along it is spread and read by hat
+    functions, in the mean over the places of the grid by a cubic B-spline of v; the sum along the
+    light is that of the spline.
+    """
+    fine = 8
+    v = np.linspace(0, 2, fine * (LENGTHS - 1) + 1)
+    weight = np.where(v < 1, 2 / 3 - v * v + v**3 / 2, (2 - v) ** 3 / 6)
+    angles = np.linspace(-np.pi / 2, np.pi / 2, ANGLES)
+    # Beyond two voxels the whole of a piece is on one side.
+    along = np.clip(v[:, np.newaxis] * np.tan(angles), -2, 2)
+    s = np.abs(along)
+    # The integral of the spline from 0 on, which is 1/2 at 2.
+    inner, outer = 2 * s / 3 - s**3 / 3 + s**4 / 8, 1 / 2 - (2 - s) ** 4 / 24
+    values = weight[:, np.newaxis] * (0.5 + np.sign(along) * np.where(s < 1, inner, outer))
+    steps = (values[1:] + values[:-1]) / 2 * (v[1] - v[0])
+    table: Array = np.concatenate([np.zeros((1, ANGLES)), np.cumsum(steps, axis=0)])[::fine]
+    return table
 
 
 @dataclass(frozen=True)
@@ -160,7 +213,7 @@ class Medium:
     voxel: float
 
     def targets(
-        self, points: Array, vectors: Array | None = None, lengths: Array | None = None, /
+        self, points: Array, vectors: Array | None = None, halves: Array | None = None, /
     ) -> Targets:
         """Return points that the medium dims.
 
@@ -170,8 +223,9 @@ class Medium:
             Positions in the unit of the lines.
         vectors : ndarray, shape (N, 3), optional
             Tangents of lines or normals of a surface, of any length.
-        lengths : ndarray, shape (N,), optional
-            Lengths of the lines that the points belong to, for tangents.
+        halves : ndarray, shape (N, 2, 3), optional
+            Both halves of the lines that the points belong to, for tangents; see
+            :func:`line_halves`.
 
         Returns
         -------
@@ -191,9 +245,10 @@ class Medium:
                 rows = rows / largest
                 rows /= np.sqrt((rows * rows).sum(axis=0))
             unit = np.where(np.isfinite(rows), rows, 0).astype(np.float32)
-        if lengths is not None:
-            lengths = np.minimum(lengths / self.voxel, FARTHEST).astype(np.float32)
-        return Targets(np.ascontiguousarray(places), known, unit, lengths)
+        if halves is not None:
+            halves = np.clip(halves.transpose(1, 2, 0) / self.voxel, -FARTHEST, FARTHEST)
+            halves = np.ascontiguousarray(halves, np.float32)
+        return Targets(np.ascontiguousarray(places), known, unit, halves)
 
     def depths(self, places: Array, toward: VectorLike, /) -> tuple[Array, Array]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
@@ -301,7 +356,7 @@ class Medium:
             # The last row of the frame is the direction with length 1, whatever length was given.
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
-            return _left(depth, targets.own(targets.facing(toward)), _crowded(thick))
+            return _left(depth, _ahead(targets.own(toward)), _crowded(thick))
         # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
         lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
         depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
@@ -310,15 +365,15 @@ class Medium:
         way /= np.maximum(size(way), NARROWEST)
         width = np.maximum(width, NARROWEST)
         # The depth has the factor for crowded lines, and so must what is taken off it.
-        own = targets.own(targets.facing(way.astype(np.float32)), width) * crowding(thick / width)
+        own = _ahead(targets.own(way.astype(np.float32), width)) * crowding(thick / width)
         return _left(depth, own, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
-        own = targets.own(facing)
-        forth, back = (_left(d, own, _crowded(thick)) for d in self.depths(targets.places, toward))
+        depths = np.stack(self.depths(targets.places, toward))
+        forth, back = _left(depths, targets.own(toward), _crowded(thick))
         # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
@@ -329,7 +384,7 @@ class Medium:
         for way in ways:
             forth, back = self.depths(targets.places, way)
             # Without the point's own line, which does not dim it however crowded the lines are.
-            total += (forth + back) / 2 - targets.own(targets.facing(way.astype(np.float32)))
+            total += (forth + back) / 2 - np.mean(targets.own(way.astype(np.float32)), axis=0)
         return float(np.median(total[targets.known]) / len(ways)) if targets.known.any() else 0.0
 
 
@@ -389,19 +444,42 @@ def segment_starts(connectivity: Indices, offsets: Indices, /) -> Indices:
     return np.flatnonzero(inside)
 
 
-def line_lengths(points: Array, connectivity: Indices, offsets: Indices, /) -> Array:
-    """Return the length of the longest line that each point belongs to, 0 for none."""
+def line_halves(points: Array, connectivity: Indices, offsets: Indices, /) -> Array:
+    """Return both halves of the longest line that each point belongs to, shape (N, 2, 3).
+
+    Each is a vector along the segment beside the point, as long as the line from the point to its
+    end and to its start; 0 where there is none.
+    """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
-    size = np.zeros(len(connectivity) + 1)
-    size[first] = np.linalg.norm(ends[first + 1] - ends[first], axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        vectors = ends[first + 1] - ends[first]
+        size = np.linalg.norm(vectors, axis=1)
     # The running sum would carry NaN from one line to all that follow.
-    size[~np.isfinite(size)] = 0
-    along = np.concatenate([[0.0], np.cumsum(size)])
-    length = along[offsets[1:]] - along[offsets[:-1]]
-    found = np.zeros(len(points))
-    np.maximum.at(found, connectivity, np.repeat(length, np.diff(offsets)))
+    good = np.isfinite(size) & (size > 0)
+    steps, ways = np.zeros(len(connectivity)), np.zeros((len(connectivity), 3))
+    steps[first[good]] = size[good]
+    ways[first[good]] = vectors[good] / size[good, np.newaxis]
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    line = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    place = along[:-1]
+    ahead, behind = along[offsets[1:]][line] - place, place - along[offsets[:-1]][line]
+    halves = np.zeros((len(connectivity), 2, 3))
+    halves[:, 0] = ahead[:, np.newaxis] * ways
+    # The segment before a point begins at the point before it, of the same line.
+    before = np.concatenate([np.zeros((1, 3)), ways[:-1]])
+    before[offsets[:-1][np.diff(offsets) > 0]] = 0
+    halves[:, 1] = -behind[:, np.newaxis] * before
+    found = np.zeros((len(points), 2, 3))
+    # Of equal indices the last value stays: that of the longest line.
+    order = np.argsort(ahead + behind, kind="stable")
+    found[connectivity[order]] = halves[order]
     return found
+
+
+def _ahead(depths: Array | float) -> Array | float:
+    """Return the first of two rows of depths."""
+    return depths if isinstance(depths, float) else depths[0]
 
 
 def _left(depth: Array, own: Array | float, thick: float, /) -> Array:

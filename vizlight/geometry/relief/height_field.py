@@ -181,6 +181,49 @@ def filled(heights: Array) -> Array:
     return result
 
 
+def continued(x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+    """Return a field with a ring of nodes more, at which the slope of the last cells goes on.
+
+    Nodes of holes that are next to heights are such, too. At a border and beside a hole the
+    surface so has no bend, by which a node would be lit as if the ground were level there.
+
+    Parameters
+    ----------
+    x, y : ndarray, shapes (nx,), (ny,)
+        Nodes, rising.
+    z : ndarray, shape (ny, nx)
+        Heights, NaN in holes.
+
+    Returns
+    -------
+    tuple of ndarray, shapes (nx + 2,), (ny + 2,), (ny + 2, nx + 2)
+        NaN where no two heights in a row, a column or a diagonal are next to a node.
+    """
+    x, y = (
+        np.concatenate([2 * axis[:1] - axis[1:2], axis, 2 * axis[-1:] - axis[-2:-1]])
+        for axis in (x, y)
+    )
+    # Two more rings on each side, from which no height comes.
+    wide = np.pad(np.asarray(z, dtype=np.float64), 3, constant_values=np.nan)
+    rows, columns = len(y), len(x)
+
+    def at(row: int, column: int) -> Array:
+        return wide[2 + row : 2 + row + rows, 2 + column : 2 + column + columns]
+
+    total, count = np.zeros((rows, columns)), np.zeros((rows, columns))
+    # Straight ways first: corners have diagonals alone.
+    for ways in (((0, 1), (0, -1), (1, 0), (-1, 0)), ((1, 1), (1, -1), (-1, 1), (-1, -1))):
+        open_nodes = count == 0
+        for row, column in ways:
+            guess = 2 * at(row, column) - at(2 * row, 2 * column)
+            fits = open_nodes & np.isfinite(guess)
+            total[fits] += guess[fits]
+            count[fits] += 1
+    here = at(0, 0)
+    with np.errstate(invalid="ignore"):
+        return x, y, np.where(np.isfinite(here), here, total / count)
+
+
 def normals(field: Field) -> Array:
     """Return the upward unit normal at each node, shape (ny, nx, 3).
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Slice, VectorLike
+    from vizlight._types import Array, Bools, Indices, Slice, VectorLike
     from vizlight.geometry.relief.height_field import Border, Field
 
 
@@ -144,12 +144,14 @@ def shadow(
 
     Notes
     -----
-    On a plane t is the cosine of the angle between n and the direction from p' to the light, for
-    every d. The error there is at most ``(8 + S/d) eps``, where S is the size of the
-    field, and 8 eps at depth 0. As d goes to 0, t goes to the clamped cosine where nothing occludes
-    the light and to 0 elsewhere; depth 0 gives this limit. Where d is much less than the spacing, t
-    depends on the slope of the cell on the side of a node that faces the light. The source prints
-    ``t = r/d`` once; the correct ratio is d/r. Source: cos-theta, sections 2 and 3.
+    Within the four cells around a node the solid is what lies below the plane through the node
+    across its normal; elsewhere, and where p' is outside of these cells, it is the field. So t is
+    the cosine of the angle between n and the direction from p' to the light where the ray leaves
+    that plane within the cells and meets nothing behind them, and on a plane for every d. The
+    error there is at most ``(8 + S/d) eps``, where S is the size of the field, and 8 eps at depth
+    0. As d goes to 0, t goes to the clamped cosine where nothing behind the four cells occludes
+    the light and to 0 elsewhere; depth 0 gives this limit. The source prints ``t = r/d`` once; the
+    correct ratio is d/r. Source: cos-theta, sections 2 and 3.
     """
     field = height_field.make(x, y, z, border=border)
     depth = _check.number("depth", depth, low=0.0)
@@ -234,24 +236,69 @@ def ratio(
     limit = depth <= LEAST_DEPTH * field.size
     shape, normals, heights = field.heights.shape, normal.reshape(-1, 3), field.heights.ravel()
 
-    def start(rows: Slice) -> Array:
-        row, column = np.divmod(np.arange(rows.start, rows.stop), shape[1])
-        # The source's p' is a depth below the node along its normal; for the limit it is the node.
-        nodes = np.stack([field.x[column], field.y[row], heights[rows]])
-        return nodes if limit else nodes - depth * normals[rows].T
+    # The length r, inside the solid, from which t is made below.
+    t = np.empty(len(heights))
+    around = _Around(field)
+    # Decided once for the rays of all blocks, which are then all followed in one way.
+    fast = walks.walk.pays(walks.SAVED * len(t))
+    least = 1e-6 * min(np.diff(field.x).min(), np.diff(field.y).min())
 
-    # First these are the lengths r, from which t is made below.
-    t = _lengths(field, start, len(heights), ways, report)
-    if limit:
-        # A ray that grazes its own cell by rounding has not been occluded.
-        free = t <= 1e-6 * min(np.diff(field.x).min(), np.diff(field.y).min())
-        for rows in _pool.blocks(len(t), BLOCK):
-            cosine = np.einsum("ij,ji->i", normals[rows], ways(start(rows))[0])
-            t[rows] = np.where(free[rows], np.clip(cosine, 0, 1), 0)
-    else:
-        # r of less than d, of a ray that leaves aside, counts as d.
-        t = depth / np.maximum(t, depth)
+    def work(rows: Slice) -> int:
+        numbers = np.arange(rows.start, rows.stop)
+        row, column = np.divmod(numbers, shape[1])
+        nodes = np.stack([field.x[column], field.y[row], heights[rows]])
+        # The source's p' is a depth below the node along its normal; for the limit it is the node.
+        start = nodes if limit else nodes - depth * normals[rows].T
+        way, reach = ways(start)
+        cosine = np.einsum("ij,ji->i", normals[rows], way)
+        leave = np.minimum(around.leave(row, column, start, way), reach)
+        # What is vertical never leaves the cells, and meets nothing behind them.
+        _follow(field, start + np.where(leave < walks.FAR, leave, 0.0) * way, way,
+                reach - leave, t[rows], fast=fast)  # fmt: skip
+        if limit:
+            # A ray that grazes a cell by rounding has not been occluded.
+            t[rows] = np.where(t[rows] <= least, np.clip(cosine, 0, 1), 0)
+            return int(rows.stop)
+        with np.errstate(divide="ignore"):
+            below = np.where(cosine > 0, depth / cosine, np.inf)
+        inside = t[rows] + np.minimum(leave, below)
+        inside[inside >= 0.5 * walks.FAR] = np.inf
+        # r of less than d counts as d.
+        t[rows] = depth / np.maximum(inside, depth)
+        return int(rows.stop)
+
+    for done in _pool.run(work, _pool.blocks(len(t), BLOCK)):
+        report(done)
     return t.reshape(shape)
+
+
+class _Around:
+    """The four cells around each node of a field."""
+
+    def __init__(self, field: Field) -> None:
+        # Beyond the border a cell is as wide as the last one.
+        self.x, self.y = (
+            np.concatenate([[2 * axis[0] - axis[1]], axis, [2 * axis[-1] - axis[-2]]])
+            for axis in (field.x, field.y)
+        )
+        count = (len(field.y) + 1) * (len(field.x) + 1)
+        empty = np.isneginf(field.bounds.largest[:count]).reshape(len(field.y) + 1, -1)
+        some = empty[:-1, :-1] | empty[:-1, 1:] | empty[1:, :-1] | empty[1:, 1:]
+        #: Whether all four have a surface: no wall stands beside the node.
+        self.whole: Bools = ~some
+
+    def leave(self, row: Indices, column: Indices, start: Array, way: Array) -> Array:
+        """Return distances at which rays leave these cells, 0 for those that start outside."""
+        distance = np.full(len(row), np.inf)
+        inside = self.whole[row, column]
+        axes = (self.x, column, start[0], way[0]), (self.y, row, start[1], way[1])
+        for nodes, at, place, step in axes:
+            low, high = nodes[at], nodes[at + 2]
+            inside &= (low <= place) & (place <= high)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                out = (np.where(step > 0, high, low) - place) / step
+            distance = np.minimum(distance, np.where(step == 0, np.inf, out))
+        return np.where(inside, np.maximum(distance, 0.0), 0.0)
 
 
 def _lengths(
@@ -259,11 +306,10 @@ def _lengths(
     start: Callable[[Slice], Array],
     count: int,
     ways: Callable[[Array], tuple[Array, Array]],
-    report: Callable[[int], None] = lambda _: None,
 ) -> Array:
     """Return the lengths inside the solid of rays, whose starts (3, N) a function of rows gives."""
     length = np.empty(count)
-    # Asked once for the rays of all blocks, which are then all followed in one way.
+    # Decided once for the rays of all blocks, which are then all followed in one way.
     fast = walks.walk.pays(walks.SAVED * count)
 
     def work(rows: Slice) -> int:
@@ -272,8 +318,8 @@ def _lengths(
         _follow(field, places, *ways(places), length[rows], fast=fast)
         return int(rows.stop)
 
-    for done in _pool.run(work, _pool.blocks(count, BLOCK)):
-        report(done)
+    for _ in _pool.run(work, _pool.blocks(count, BLOCK)):
+        pass
     return length
 
 

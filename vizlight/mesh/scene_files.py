@@ -1,0 +1,62 @@
+"""Files of scenes, VRML and 3DS: each shape where its transforms put it."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+import pyvista as pv
+from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from vizlight._types import Foreign
+
+_IMPORTERS = {".wrl": vtkVRMLImporter, ".vrml": vtkVRMLImporter, ".3ds": vtk3DSImporter}
+SUFFIXES = tuple(_IMPORTERS)
+#: VTK's parser of VRML keeps its state in variables of the process.
+_LOCK = threading.Lock()
+
+
+def read(path: Path) -> pv.MultiBlock:
+    """Return the shapes of a scene that have points, in the space of the whole.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of a file whose suffix is among ``SUFFIXES``.
+    """
+    importer: Foreign = _IMPORTERS[path.suffix.lower()]()
+    importer.SetFileName(str(path))
+    found, empty = pv.MultiBlock(), 0
+    with _LOCK:
+        importer.Update()
+        actors = importer.GetRenderer().GetActors()
+        every = [actors.GetItemAsObject(i) for i in range(actors.GetNumberOfItems())]
+        for actor in every:
+            if (shape := _placed(actor)) is not None:
+                found.append(shape)
+            else:
+                empty += 1
+    if empty and found.n_blocks:
+        _check.warn(f"file: '{path}': {empty} of {len(every)} shapes are left out: no points")
+    return found
+
+
+def _placed(actor: Foreign) -> pv.PolyData | None:
+    """Return the shape of an actor where it stands, None if it has no points."""
+    mapper = actor.GetMapper()
+    if mapper is None:
+        return None
+    mapper.Update()
+    shape = mapper.GetInput()
+    if shape is None or not shape.GetNumberOfPoints():
+        return None
+    # Normals are turned as normals, which a scale of unequal factors leaves upright.
+    placed: pv.PolyData = pv.wrap(shape).transform(
+        pv.array_from_vtkmatrix(actor.GetMatrix()), transform_all_input_vectors=False, inplace=False
+    )
+    return placed
