@@ -129,7 +129,7 @@ def save_picture(
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
         plotter.vizlight.add_key(demo.scene, corner="lower right", exponent=2)
-        wrong = demo.rows[-1][-1].legend_median
+        wrong = demo.rows[-1][-1].median
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")

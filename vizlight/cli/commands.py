@@ -346,7 +346,7 @@ def light(
     explain
         Print what is computed and what is skipped.
     legibility
-        Print what an ideal reader reads back from the picture.
+        Print what a reader reads back from the picture.
     sky
         Take the ambient light from an even sky.
     refine

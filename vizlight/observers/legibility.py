@@ -160,7 +160,7 @@ def legibility(
     --------
     >>> import vizlight
     >>> ball = vizlight.legibility(pv.Sphere(), vizlight.presets.shape(), samples=256)
-    >>> ball.shape.median < 10
+    >>> ball.shape.median < 20
     True
     >>> ball.direction is None
     True
