@@ -73,7 +73,6 @@ WITHOUT = {
     ("page", "line_field"): "it matters between points, to refine and to the report",
     ("page", "components"): "a page shows one picture",
     ("shell", "positions"): "lights in n-space are for scripts",
-    ("shell", "occlusion"): "it is --sky there",
 }
 
 

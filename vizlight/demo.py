@@ -128,7 +128,7 @@ def save_picture(
         plotter.subplot(0, 1)
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
-        plotter.vizlight.add_key(demo.scene, corner="lower right", exponent=2)
+        plotter.vizlight.add_key(demo.scene, exponent=2)
         wrong = demo.rows[-1][-1].median
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]

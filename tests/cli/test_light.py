@@ -44,7 +44,8 @@ def test_the_picture_is_that_of_the_whole(parts, view, tmp_path, done):
         place = [[20, 9, 14], [4.5, 5.5, 7], [0, 0, 1]]
         (tmp_path / "camera.json").write_text(json.dumps(place), encoding="utf-8")
         view = ("--view", "camera.json")
-    more = (*CONTOUR, "--size", "150x100", *view)
+    view = view or ("--view", "1,1,1")
+    more = (*CONTOUR, "--size", "150x100", "--no-key", "--headlight", *view)
     lit = ("light", *parts, *more, "-o", "lit.pvtp", "-o", "lit.png")
     done(*lit)
     done("light", "whole.vtu", *more, "-o", "lit.vtp")
@@ -57,7 +58,7 @@ def test_the_picture_is_that_of_the_whole(parts, view, tmp_path, done):
     camera = render.camera_on(whole, (1, 1, 1), aspect=1.5)
     if "--parallel" in view:
         camera = render.camera_on(whole, (1, 0.5, 0.45), aspect=1.5, parallel=True)
-    elif view:
+    elif "camera.json" in view:
         camera.position, camera.focal_point = place[:2]
     panel = render.Panel(whole, "luminance")
     (drawn,) = render.pictures([panel], camera=camera, size=(150, 100), light="points")
@@ -104,9 +105,9 @@ def test_pieces_are_split_at_creases_as_one_file(done):
         part = box.remove_cells(np.flatnonzero((turned > 0) == i))
         part.clear_data()
         part.save(f"part{i}.vtp")
-    parts = ("light", "part0.vtp", "part1.vtp", "--view", "3,2,1", "-o", "a.pvtp")
-    done(*parts)
-    done("light", "whole.vtp", *parts[3:5], "-o", "b.vtp")
+    seen = ("--view", "3,2,1", "--headlight", "--no-key")
+    done("light", "part0.vtp", "part1.vtp", *seen, "-o", "a.pvtp")
+    done("light", "whole.vtp", *seen, "-o", "b.vtp")
     lit, whole = vizlight.read("a.pvtp"), vizlight.read("b.vtp")
     assert len(np.unique(whole["luminance"])) < len(box.points)
     own, other = (
@@ -149,7 +150,7 @@ def test_the_page_is_private_and_opened(shell, done):
 def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, done):
     out = done("view ball.vtp --scalars height -o kept.html --no-browser")
     assert "page     kept.html" in out
-    assert 'live_html(lit, None, "ball.html"' in done("view ball.vtp --script")
+    assert 'export_html("ball.html"' in done("view ball.vtp --script")
     assert shell == []
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
 

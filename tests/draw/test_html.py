@@ -285,7 +285,7 @@ def test_the_light_of_the_sky_is_switched_off_and_on(opened, tmp_path):
     scene = Scene(lights=FAR, material=shiny(ambient=0.5))
     pages = {}
     for name, options in (("sky", {"occlusion": "sky"}), ("open", {})):
-        command = ["a.vtp", "--sky"] if options else ["a.vtp"]
+        command = ["a.vtp", "--occlusion=sky"] if options else ["a.vtp"]
         path = vizlight.live_html(ball, scene, tmp_path / f"{name}.html", source=command, **options)
         pages[name], _ = opened(path, bare=False, **WIDE)
     page, switch = pages["sky"], pages["sky"].get_by_label("Light of the sky in hollows")

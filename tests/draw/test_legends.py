@@ -1,4 +1,4 @@
-"""Words of scalar bars in the picture; a key in the corner: its colours and its place."""
+"""Words of scalar bars in the picture; keys in the margin: their colours and their places."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import View, presets
-from vizlight.draw import render
+from vizlight.draw import legends, render
 
 pytestmark = pytest.mark.opengl
 SIZE = (400, 300)
@@ -85,43 +85,64 @@ def test_what_is_asked_for_stays():
     assert (bar.GetLabelFormat(), bar.GetTitle()) == ("%.1f", NAME)
 
 
-def picture(**options):
-    """Return a picture with a plane that covers the left side, and the key's colours."""
-    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    plotter.background_color = "black"
-    plotter.enable_parallel_projection()
-    field = pv.Plane(i_size=2, j_size=2)
-    scene = presets.shape()
-    plotter.vizlight.add_mesh(field, scene=scene)
-    plotter.view_xy()
-    plotter.camera.parallel_scale = 1.6
-    plotter.camera.position, plotter.camera.focal_point = (0.8, 0.9, 5), (0.8, 0.9, 0)
-    made = plotter.vizlight.add_key(size=0.3, **options)
-    seen = np.asarray(plotter.screenshot(return_img=True))
-    return seen, made
+def picture(size=SIZE, keys=1, **options):
+    """Return pictures with and without keys of a plane that fills its part, and the key."""
+    seen = []
+    for count in (0, keys):
+        plotter = pv.Plotter(off_screen=True, window_size=size)
+        plotter.background_color = "black"
+        scene = presets.shape()
+        plotter.vizlight.add_mesh(pv.Plane(i_size=9, j_size=9), scene=scene)
+        plotter.view_xy()
+        plotter.camera.zoom(4)
+        made = [plotter.vizlight.add_key(**options) for _ in range(count)]
+        seen.append(np.asarray(plotter.screenshot(return_img=True)).astype(int))
+    return seen[1], made[-1]
 
 
-def corner_of(seen, right, upper):
-    half = seen[: SIZE[1] // 2] if upper else seen[SIZE[1] // 2 :]
-    return half[:, SIZE[0] // 2 :] if right else half[:, : SIZE[0] // 2]
+def margin_of(size, key=0.2):
+    """Return the columns and the rows that the margin leaves to the data."""
+    share = legends.data_share(size, key)
+    return int(size[0] * share[0]), int(size[1] * share[1])
 
 
-def test_the_key_is_in_the_freest_corner_in_the_colours_of_its_mesh():
-    seen, made = picture()
-    there = corner_of(seen, right=True, upper=False)
+@pytest.mark.parametrize("size", [(400, 300), (300, 400), (900, 600)])
+def test_the_key_stands_in_a_margin_and_the_data_in_the_rest(size):
+    seen, made = picture(size)
+    wide, high = margin_of(size)
+    # The plane fills the part of the data; the plate has a colour of its own.
+    data = seen[: high - 2, : wide - 2]
+    assert data.min() > 60
+    plate = seen[:, wide + 2 :] if wide < size[0] else seen[high + 2 :]
+    ground = np.round(255 * legends.PLATE).astype(int)
+    assert np.abs(plate[2, 2] - ground).max() <= 1
     # The middle of the ball, which has one colour, the lightest.
-    whole = there.reshape(-1, 3).astype(int)
     lightest = made["rgb"][np.argmin(np.hypot(*made.points[:, :2].T))].astype(int)
-    assert (np.abs(whole - lightest).max(axis=1) <= 3).any()
-    # Words and a ball of 45 pixels in radius.
-    assert 0.9 * np.pi * 45**2 < (whole.max(axis=1) > 10).sum() < 1.6 * np.pi * 45**2
+    assert (np.abs(plate - lightest).max(axis=2) <= 3).any()
 
 
-def test_a_corner_that_is_named():
-    seen, _ = picture(corner="upper left")
-    assert corner_of(seen, right=False, upper=True).max() > 100
-    with pytest.raises(ValueError, match="corner: expected 'auto'"):
-        picture(corner="middle")
+def test_keys_stack_in_the_margin():
+    one, _ = picture(keys=1)
+    three, _ = picture(keys=3)
+    wide, _ = margin_of(SIZE)
+    rows = [
+        np.ptp(np.nonzero((seen[:, wide + 2 :] > 60).any(axis=(1, 2)))[0]) for seen in (one, three)
+    ]
+    assert rows[1] > 1.5 * rows[0]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [
+        (-1, 1, ["-1.0", "-0.5", "0.0", "0.5", "1.0"]),
+        (236, 1080, ["400", "600", "800", "1000"]),
+        (-6.08e-7, 4.5, ["0", "1", "2", "3", "4"]),
+        (0, 3.2e6, ["0", "1e6", "2e6", "3e6"]),
+        (5, 5, ["5"]),
+    ],
+)
+def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):
+    assert [word for _, word in legends.even_numbers(low, high)] == words
 
 
 def test_the_key_of_the_live_light_has_its_exponent():
@@ -145,9 +166,10 @@ def test_the_default_light_has_the_key_of_what_it_shows(valued):
     given = {"scalars": "speed", "cmap": "viridis"} if valued else {"color": "white"}
     plotter.vizlight.add_mesh(ball, show_scalar_bar=False, **given)
     made = plotter.vizlight.add_key()
-    words = ["2", "speed (grey: no data)", "5"] if valued else ["a ball in this light"]
+    words = ["2", "5"] if valued else ["a ball in this light"]
     assert list(made.field_data["words"]) == words
     if valued:
+        assert made.field_data["title"][0] == "speed (grey: no data)"
         expected = presets.key(vizlight.Scene(), cmap="viridis", clim=(2, 5))
         np.testing.assert_array_equal(made["rgb"], expected["rgb"])
 
@@ -157,9 +179,7 @@ def test_pictures_have_keys():
     key = presets.key(presets.shape())
     options = {"size": SIZE, "scalars": "rgb", "background": "black"}
     plain, keyed = (next(iter(render.pictures([ball], key=one, **options))) for one in (None, key))
-    changed = np.abs(plain.astype(int) - keyed).max(axis=2) > 10
-    rows, columns = np.nonzero(changed)
-    assert changed.sum() > 0.9 * np.pi * 30**2
-    # All of it in one corner.
-    assert np.ptp(rows) < 100
-    assert np.ptp(columns) < 140
+    wide, _ = margin_of(SIZE)
+    # The data have moved to the left of the plate, on which the key stands.
+    assert (plain[:, wide + 2 :] == 0).all() or (plain != keyed).any()
+    assert (keyed[:, wide + 2 :].astype(int).max(axis=2) > 100).sum() > 0.9 * np.pi * 30**2

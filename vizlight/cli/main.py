@@ -34,6 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _complain
+            words = _with_command(words)
             if HELP.intersection(words):
                 # By itself the app reads all arguments of the command before it prints its help.
                 app.help_print([word for word in words if word not in HELP])
@@ -50,6 +51,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     finally:
         logging.disable(logging.NOTSET)
     return result if isinstance(result, int) else OK
+
+
+def _with_command(words: list[str]) -> list[str]:
+    """Return the words of a command; ``vizlight FILE`` is short for ``vizlight light FILE``."""
+    is_file = words and not words[0].startswith("-") and words[0] not in app
+    return ["light", *words] if is_file and Path(words[0]).suffix else words
 
 
 def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:

@@ -120,9 +120,9 @@ class Lights:
     Parameters
     ----------
     question
-        Light for one question, with its key: direction, slope, heading, shape or value.
+        Question that the light answers, with its key: direction, slope, heading, shape, value.
     key
-        Draw the key of --for into the picture.
+        Draw the key of the colours and of the light beside the picture.
     light
         Direction x,y,z to a far light, or azimuth,altitude in degrees.
     light_position
@@ -178,7 +178,7 @@ class Eye:
     Parameters
     ----------
     view
-        Direction x,y,z to the eye, or a JSON file of a camera position. Default: 1,1,1.
+        Direction x,y,z to the eye, or a JSON file of a camera. Default: what suits the data.
     up
         Direction x,y,z that is up in the picture, or x, y or z. Default: z, or y seen along z.
     parallel
@@ -201,13 +201,15 @@ class Output:
     Parameters
     ----------
     output
-        File .png .html .glb .vtp .vtu .vtk .vts .vti .vtr .vtm, or a folder.
+        File .png .html .mp4 .glb .vtp .vtu .vtk .vts .vti .vtr .vtm, or a folder.
     paraview
         Script .py that shows it in ParaView, lit in each fragment, and a .vtp beside it.
     size
         Width and height of the picture in pixels.
+    style
+        House style: paper, on white, or dark.
     background
-        Colour behind the mesh. Default: white, or black behind lines and points.
+        Colour behind the mesh. Default: that of the style.
     line_width
         Width of lines in pixels.
     backend
@@ -223,6 +225,7 @@ class Output:
     output: Outputs | None = None
     paraview: Path | None = None
     size: str = "1200x800"
+    style: Literal["paper", "dark"] = "paper"
     background: str | None = None
     line_width: float = 1.0
     backend: Backend | None = None
@@ -238,12 +241,15 @@ class Color:
 
     Parameters
     ----------
+    array
+        Array that is shown, by what it holds: values, heights, vectors, or U,V for components.
     scalars
         Array that colours the picture, times the light; or direction, for lines.
     cmap
-        Name of the colour map of --scalars.
+        Name of the colour map.
     """
 
+    array: str | None = None
     scalars: str | None = None
     cmap: str | None = None
 

@@ -64,16 +64,16 @@ def complain(text: object) -> None:
     _put(sys.stderr, f"vizlight: {text}\n")
 
 
-def draw(picture: Callable[[], Path]) -> int:
+def draw(write: Callable[[], Path], kind: str = "picture") -> int:
     """Draw a picture and return the exit code; without a library that draws print a message."""
     from vizlight import render
 
     try:
-        made = picture()
+        path = write()
     except render.BackendError as error:
         complain(error)
         return LACKING
-    say(f"picture  {made}")
+    say(f"{kind:8} {path}")
     return OK
 
 

@@ -13,7 +13,7 @@ from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.html import Shown, write_page
-from vizlight.draw.legends import PLACES, CornerKey, ink_on, name_no_data, settle
+from vizlight.draw.legends import Margin, ink_on, name_no_data, settle
 from vizlight.draw.live import Fragments, LightAt, Live, draws_light, has_pass, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
@@ -30,6 +30,7 @@ from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import ArrayLike
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike, Foreign, Given, Keywords
-    from vizlight.draw.legends import Corner
     from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
 
@@ -63,6 +63,7 @@ class Component:
         self._plotter = weakref.ref(plotter)
         self._lives: dict[str, Live] = {}
         self._observed: list[tuple[vtkRenderer, int]] = []
+        self._margins: dict[str, Margin] = {}
         #: What was said to be lost.
         self._lost: set[str] = set()
 
@@ -231,12 +232,14 @@ class Component:
         /,
         *,
         question: Question | None = None,
-        corner: Corner = "auto",
         size: float = 0.2,
         color: ColorLike | None = None,
         **options: Given,
     ) -> pv.PolyData:
-        """Draw the key of the light in a corner of the picture, with its words.
+        """Draw the key of the light, with its words, in a margin beside the data.
+
+        The margin is at the right of a picture that is wider than tall, else below; several keys
+        stack there. The data are drawn in the rest of the picture.
 
         Parameters
         ----------
@@ -247,9 +250,6 @@ class Component:
         question : {"direction", "slope", "heading", "shape", "value"}, optional
             What the key tells. Default: the question of the preset, see
             :func:`vizlight.presets.key`.
-        corner : {"auto", "lower left", "lower right", "upper left", "upper right"}
-            Corner of the picture. ``"auto"``: the one in which the data have the fewest points when
-            the first frame is drawn.
         size : float, default: 0.2
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
         color : colour, optional
@@ -275,18 +275,44 @@ class Component:
         for the camera when it is added.
         """
         plotter = self._open_plotter()
-        _check.choice("corner", corner, ("auto", *PLACES))
-        size = _check.number("size", size, low=0.02, high=1.0)
         if scene is None:
             scene, own = self._first_light(plotter, question)
             options = own | options
         asked: Keywords = {"question": question}
         made = key(scene, **(asked | options))
-        ink = _check.color("color", color)
-        if ink is None:
-            ink = ink_on(plotter.background_color)
-        CornerKey(made, corner, size, ink).show(plotter.renderer)
+        self.show_key(made, size=size, color=color)
         return made
+
+    def show_key(
+        self, mesh: pv.PolyData, /, *, size: float = 0.2, color: ColorLike | None = None
+    ) -> None:
+        """Draw a key that was made by :func:`vizlight.presets.key` in the margin.
+
+        Parameters
+        ----------
+        mesh : pyvista.PolyData
+            Key.
+        size : float, default: 0.2
+            Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
+        color : colour, optional
+            Colour of the words of the first key, as for :meth:`add_key`.
+
+        Raises
+        ------
+        RuntimeError
+            If the plotter is closed.
+        TypeError, ValueError
+            If an argument does not fit.
+        """
+        plotter = self._open_plotter()
+        size = _check.number("size", size, low=0.02, high=1.0)
+        renderer = plotter.renderer
+        if _address(renderer) not in self._margins:
+            ink = _check.color("color", color)
+            if ink is None:
+                ink = ink_on(plotter.background_color)
+            self._margins[_address(renderer)] = Margin(renderer, ink)
+        self._margins[_address(renderer)].add(mesh, size)
 
     def _first_light(
         self, plotter: pv.BasePlotter, question: Question | None
@@ -310,7 +336,14 @@ class Component:
         raise ValueError(_check.message("scene", expected, None, remedy))
 
     def export_html(
-        self, path: str | Path, /, *, title: str = "", panel: bool = True, key: bool = True
+        self,
+        path: str | Path,
+        /,
+        *,
+        title: str = "",
+        panel: bool = True,
+        key: bool = True,
+        source: Sequence[str] = (),
     ) -> Path:
         """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
 
@@ -327,6 +360,9 @@ class Component:
             Whether the panel of the sliders is open at first.
         key : bool, default: True
             Whether the key is shown where the light of the first mesh comes from a preset.
+        source : sequence of str, optional
+            File, and options of the command that lights it alike, as for
+            :func:`vizlight.live_html`.
 
         Returns
         -------
@@ -349,8 +385,9 @@ class Component:
             left out.
         """
         return write_page(
-            path, self.shown(), self._open_plotter(), title=title, panel=panel, key=key
-        )
+            path, self.shown(), self._open_plotter(), title=title, panel=panel, key=key,
+            source=source,
+        )  # fmt: skip
 
     def shown(self) -> list[Shown]:
         """Return the visible meshes with live light, for a page whose camera is set.
@@ -573,6 +610,7 @@ class Component:
         self._observed.clear()
         # VTK may keep the actors.
         self._lives.clear()
+        self._margins.clear()
 
     __plotter_deep_clean__ = __plotter_close__
 

@@ -1,43 +1,37 @@
-"""What explains the colours: scalar bars whose words fit, and a key in the freest corner."""
+"""What explains the colours: scalar bars whose words fit, and keys in a margin of their own."""
 
 from __future__ import annotations
 
+import math
 import textwrap
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkRenderingCore import (
     vtkActor2D,
     vtkCoordinate,
     vtkPolyDataMapper2D,
+    vtkRenderer,
     vtkTextActor,
 )
 
-from vizlight.draw.live import items, matrix_of
-from vizlight.filters.key import WORDS
+from vizlight.filters.key import NAMES, RANGE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
+    import pyvista as pv
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-    from vtkmodules.vtkRenderingCore import vtkRenderer
 
     from vizlight._types import Array, Color, Keywords
 
-Place: TypeAlias = Literal["lower left", "lower right", "upper left", "upper right"]
-Corner: TypeAlias = Place | Literal["auto"]
-#: Corners in the order in which they are taken where none is free: 0 is left or lower, 1 the other.
-PLACES: dict[Place, tuple[int, int]] = {
-    "lower left": (0, 0), "lower right": (1, 0), "upper left": (0, 1), "upper right": (1, 1),
-}  # fmt: skip
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
-MARGIN, LETTERS = 0.025, 0.026
+MARGIN, LETTERS = 0.025, 0.032
+#: Share of the ink in the colour of the plate below keys, and width of a bar as a share of a disc.
+PLATE, BAR_WIDE = 0.05, 0.25
 #: Sum of the channels of a background above which words on it are black.
 LIGHT_BACKGROUND = 1.2
-#: Most points of an actor that are looked at for a free corner.
-MOST = 20_000
 #: Keywords that say how large a bar is and where it stands: with any of them it is left as asked.
 PLACED = {
     "fmt", "height", "label_font_size", "n_labels", "position_x", "position_y", "title_font_size",
@@ -113,25 +107,99 @@ def name_no_data(bar: vtkScalarBarActor) -> None:
     bar.SetNanAnnotation(NO_DATA_NAME)
 
 
-class CornerKey:
-    """A key and its words, drawn over a renderer's picture.
+class Margin:
+    """Strip beside the data with the keys of a picture on a plate.
+
+    It is at the right of a picture that is wider than tall, else below. The renderer of the data
+    gives up that part of its viewport, so that nothing is drawn over the data.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+        Renderer of the data.
+    ink : (r, g, b)
+        Colour of the words.
+    """
+
+    def __init__(self, renderer: vtkRenderer, ink: Color) -> None:
+        self._whole = renderer.GetViewport()
+        self._ink, self._keys, self._pixels = ink, list[MarginKey](), (0, 0)
+        self._plate = vtkRenderer()
+        ground = np.array(renderer.GetBackground())
+        self._plate.SetBackground(*(ground + PLATE * (np.array(ink) - ground)))
+        self._plate.InteractiveOff()
+        renderer.GetRenderWindow().AddRenderer(self._plate)
+        # The renderer holds the observer, and that the margin. VTK's stubs know no names of events.
+        renderer.AddObserver("StartEvent", lambda caller, _: self.place(caller))  # type: ignore[arg-type]
+
+    def add(self, mesh: pv.PolyData, size: float) -> None:
+        """Add a key below the others."""
+        self._keys.append(MarginKey(mesh, size, self._ink))
+        for part in self._keys[-1].props:
+            self._plate.AddViewProp(part)
+        self._pixels = (0, 0)
+
+    def place(self, renderer: vtkRenderer) -> None:
+        """Put the keys in their places, if the size of the picture has changed."""
+        left, bottom, right, top = self._whole
+        wide, high = renderer.GetRenderWindow().GetSize()
+        width, height = int(wide * (right - left)), int(high * (top - bottom))
+        if (width, height) == self._pixels or not width or not height:
+            return
+        self._pixels = (width, height)
+        size = max(key.size for key in self._keys)
+        share_x, share_y = data_share((width, height), size)
+        split = left + share_x * (right - left), top - share_y * (top - bottom)
+        renderer.SetViewport(left, split[1], split[0], top)
+        plate = (split[0], bottom, right, top) if share_x < 1 else (left, bottom, right, split[1])
+        self._plate.SetViewport(*plate)
+        room = width * (1 - share_x) or width, height * (1 - share_y) or height
+        self._lay_out(room, min(width, height), beside=share_x < 1)
+
+    def _lay_out(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
+        """Stack the keys in the middle of a strip, smaller where they would not fit."""
+        axis = 1 if beside else 0
+        scale = 1.0
+        for _ in range(4):
+            letters, gap = LETTERS * short * scale, MARGIN * short * scale
+            boxes = [key.fit(short * scale, letters, room[0] - 2 * gap) for key in self._keys]
+            total = sum(box[axis] for box in boxes) + gap * (len(boxes) + 1)
+            if total <= room[axis]:
+                break
+            scale *= 0.98 * room[axis] / total
+        place = (room[axis] - total) / 2 + gap
+        for key, box in zip(self._keys, boxes, strict=True):
+            if beside:
+                key.draw((room[0] / 2, room[1] - place - box[1] / 2), box, letters)
+            else:
+                key.draw((place + box[0] / 2, room[1] / 2), box, letters)
+            place += box[axis] + gap
+
+
+class MarginKey:
+    """A key and its words, drawn in pixels.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
         Key, as :func:`vizlight.presets.key` returns it.
-    corner : str
-        Corner, or ``"auto"`` for the one with the fewest points of data.
     size : float
-        Width of the key, as a share of the shorter side of the picture.
+        Width of a disc, as a share of the shorter side of the picture.
     ink : (r, g, b)
         Colour of the words.
     """
 
-    def __init__(self, mesh: pv.PolyData, corner: Corner, size: float, ink: Color) -> None:
-        self._mesh, self._size = mesh.copy(), size
-        self._corner, self._pixels = corner, (0, 0)
+    def __init__(self, mesh: pv.PolyData, size: float, ink: Color) -> None:
+        self.size = size
+        self._mesh = mesh.copy()
         self._flat = np.asarray(mesh.points, dtype=np.float64)
+        words = [str(word) for word in mesh.field_data[WORDS]]
+        #: Words along a bar that stands: numbers or names, and their shares of its height.
+        self._marks, self._title = _marks(mesh, words)
+        if self._marks:
+            # A bar stands: its length runs upward.
+            self._flat = self._flat[:, [1, 0, 2]] * (1, 1, 1)
+        self._lines: list[str] = []
         mapper, in_pixels = vtkPolyDataMapper2D(), vtkCoordinate()
         in_pixels.SetCoordinateSystemToViewport()
         mapper.SetInputData(self._mesh)
@@ -139,58 +207,129 @@ class CornerKey:
         mapper.SetScalarModeToUsePointFieldData()
         mapper.ColorByArrayComponent(RGB, 0)
         mapper.SetColorModeToDirectScalars()
-        self.actor = vtkActor2D()
-        self.actor.SetMapper(mapper)
-        self.words = [_text(str(word), ink) for word in mesh.field_data[WORDS]]
-        self._bar = len(self.words) > 1
-        if self._bar:
-            self.words[0].GetTextProperty().SetJustificationToLeft()
-            self.words[-1].GetTextProperty().SetJustificationToRight()
+        picture = vtkActor2D()
+        picture.SetMapper(mapper)
+        self._heading = _text("", ink)
+        self._labels = [_text(word, ink) for _, word in self._marks]
+        for label in self._labels:
+            style = label.GetTextProperty()
+            style.SetJustificationToLeft()
+            style.SetVerticalJustificationToCentered()
+        self.props = [picture, self._heading, *self._labels]
 
-    def show(self, renderer: vtkRenderer) -> None:
-        """Draw the key over the pictures of a renderer from now on."""
-        for part in (self.actor, *self.words):
-            renderer.AddViewProp(part)
-        # The renderer holds the observer, and that the key. VTK's stubs know no names of events.
-        renderer.AddObserver("StartEvent", lambda caller, _: self.place(caller))  # type: ignore[arg-type]
+    def fit(self, short: float, letters: float, width: float) -> tuple[float, float]:
+        """Return the width and height in pixels that the key takes at a size of letters."""
+        self._half = self.size * short / 2
+        columns = max(int(width / (LETTER * letters)), 6)
+        parts = [textwrap.wrap(part, columns) for part in self._title.splitlines()]
+        self._lines = [line for part in parts for line in part]
+        below = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
+        if not self._marks:
+            return min(2 * self._half, width), 2 * self._half + below
+        longest = max(len(word) for _, word in self._marks)
+        tall = max(4.0 * self._half, 1.3 * LINE * letters * len(self._marks))
+        bar = 2 * BAR_WIDE * self._half
+        return bar + (0.6 + LETTER * longest) * letters, tall + letters + below
 
-    def place(self, renderer: vtkRenderer) -> None:
-        """Put the key in its corner, if the size of the picture has changed."""
-        width, height = renderer.GetSize()
-        if (width, height) == self._pixels or not width or not height:
+    def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
+        """Place the key about the middle of its box."""
+        x, y = middle
+        size = max(round(letters), 8)
+        for text in (self._heading, *self._labels):
+            text.GetTextProperty().SetFontSize(size)
+        self._heading.SetInput("\n".join(self._lines))
+        words = LINE * letters * len(self._lines)
+        if self._marks:
+            tall = box[1] - letters - words - (0.5 * letters if self._lines else 0)
+            # The title stands above a bar, whose numbers stand at its right.
+            low, left = y - box[1] / 2 + letters / 2, x - box[0] / 2
+            bar = 2 * BAR_WIDE * self._half
+            flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
+            self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
+            for label, (share, _) in zip(self._labels, self._marks, strict=True):
+                label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
+            self._heading.SetPosition(x, y + box[1] / 2 - words)
             return
-        self._pixels, short = (width, height), min(width, height)
-        half, letters, margin = self._size * short / 2, LETTERS * short, MARGIN * short
-        # A picture's shorter side is the measure of all: keys look alike in wide and tall windows.
-        half *= 1 + self._bar  # A bar is twice as wide, for a word at each end.
-        tall = half * np.ptp(self._flat[:, 1]) / 2
-        # The words stand below and may be wider than the key.
-        words = [len(text.GetInput()) for text in self.words]
-        title = len(words) > 2
-        below = words[0] + words[-1] + 2 if self._bar else words[0]
-        # Letters of Arial are about 0.6 of their height wide, half of that on either side.
-        wide = max(half, 0.3 * letters * max(below, *words))
-        line = 1.6 * letters
-        box = np.array([2 * wide, 2 * tall + line * (1 + title)])
-        if self._corner == "auto":
-            self._corner = _freest(renderer, box + 2 * margin)
-        right, upper = PLACES[self._corner]
-        # The pixels of the viewport count from the lower left.
-        x = margin + wide if not right else width - margin - wide
-        low = margin if not upper else height - margin - box[1]
+        self._heading.SetPosition(x, y - box[1] / 2)
+        top = y + box[1] / 2
+        self._move(self._flat * self._half + np.array([x, top - self._half, 0]))
+
+    def _move(self, places: Array) -> None:
         moved = vtkPoints()
-        y = low + line + tall
-        # The key is drawn in pixels of the viewport, over all that the camera sees.
-        for point in self._flat * half + (x, y, 0):
+        for point in places:
             moved.InsertNextPoint(*point)
         self._mesh.SetPoints(moved)
-        # The numbers stand below the ends of a bar, and what they are above it.
-        places = [(x - half, low), (x + half, low)] if self._bar else [(x, low)]
-        if title:
-            places.insert(1, (x, y + tall + line - 1.3 * letters))
-        for text, at in zip(self.words, places, strict=True):
-            text.GetTextProperty().SetFontSize(max(round(letters), 8))
-            text.SetPosition(*at)
+
+
+def data_share(size: tuple[int, int], key: float) -> tuple[float, float]:
+    """Return the shares of the width and of the height of a picture that the margin leaves.
+
+    Parameters
+    ----------
+    size : (int, int)
+        Width and height in pixels.
+    key : float
+        Width of a key, as a share of the shorter side.
+    """
+    width, height = size
+    strip = (key + 2 * MARGIN) * min(width, height)
+    # Numbers of a bar need as much room as the key.
+    strip = min(1.15 * strip, 0.5 * max(width, height))
+    return (1 - strip / width, 1.0) if width >= height else (1.0, 1 - 1.7 * strip / height)
+
+
+def _marks(mesh: pv.PolyData, words: list[str]) -> tuple[list[tuple[float, str]], str]:
+    """Return the words along a bar with their shares of its height, and the title of a key."""
+    title = str(mesh.field_data[TITLE][0]) if TITLE in mesh.field_data else ""
+    if len(words) == 1:
+        return [], f"{title}\n{words[0]}" if title else words[0]
+    if NAMES in mesh.field_data:
+        names = [str(name) for name in mesh.field_data[NAMES]]
+        return [((i + 0.5) / len(names), name) for i, name in enumerate(names)], title
+    if RANGE not in mesh.field_data:
+        return [(0.0, words[0]), (1.0, words[-1])], title
+    low, high = (float(value) for value in mesh.field_data[RANGE])
+    ticks = even_numbers(low, high)
+    spread = (high - low) or 1.0
+    return [((tick - low) / spread, word) for tick, word in ticks], title
+
+
+def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:
+    """Return at most some round numbers within a range, and their digits.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range.
+    most : int, default: 5
+        Largest number of numbers.
+    """
+    if not low < high:
+        return [(low, f"{low:.4g}")]
+    rough = (high - low) / max(most - 1, 1)
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(s * power for s in (1, 2, 2.5, 5, 10, 20) if _count(low, high, s * power) <= most)
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    # A whole multiple of the step: zero is 0 and not a rest of rounding.
+    values = [i * step for i in range(first, last + 1)]
+    size = max(abs(low), abs(high))
+    places = max(-math.floor(math.log10(step) + 1e-9), 0) + (step / power == 2.5)
+    if size >= 1e5 or size < 1e-3:
+        return [(value, _power(value)) for value in values]
+    return [(value, f"{value:.{places}f}") for value in values]
+
+
+def _count(low: float, high: float, step: float) -> int:
+    return math.floor(high / step + 1e-9) - math.ceil(low / step - 1e-9) + 1
+
+
+def _power(value: float) -> str:
+    """Return a large or small number in few digits: 2e5, 0."""
+    if value == 0:
+        return "0"
+    digits, power = f"{value:.3e}".split("e")
+    return f"{float(digits):g}e{int(power)}"
 
 
 def ink_on(background: pv.Color) -> Color:
@@ -207,37 +346,3 @@ def _text(word: str, ink: Color) -> vtkTextActor:
     style.SetJustificationToCentered()
     style.SetVerticalJustificationToBottom()
     return made
-
-
-def _freest(renderer: vtkRenderer, box: Array) -> Place:
-    """Return the corner whose box of pixels has the fewest points of what is shown."""
-    size = np.array(renderer.GetSize(), dtype=np.float64)
-    at = _on_screen(renderer)
-    counts: dict[Place, int] = {}
-    for name, place in PLACES.items():
-        low = np.where(place, size - box, 0.0)
-        inside = np.all((at >= low) & (at <= low + box), axis=1)
-        counts[name] = int(np.count_nonzero(inside))
-    return min(counts, key=lambda name: counts[name])
-
-
-def _on_screen(renderer: vtkRenderer) -> Array:
-    """Return the pixels of points of all actors that are shown, at most some of each."""
-    width, height = renderer.GetSize()
-    camera = renderer.GetActiveCamera()
-    matrix = matrix_of(camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1))
-    found = [np.empty((0, 2))]
-    for actor in items(renderer.GetActors()):
-        data = actor.GetMapper().GetInput() if actor.GetMapper() is not None else None
-        if not actor.GetVisibility() or data is None or not data.GetNumberOfPoints():
-            continue
-        points = np.asarray(pv.wrap(data).points, dtype=np.float64)
-        # Some thousand points tell a free corner as well as all do.
-        points = points[:: max(len(points) // MOST, 1)]
-        whole = matrix @ matrix_of(actor.GetMatrix())
-        # Homogeneous coordinates: behind the eye the divisor turns negative, which is out of every
-        # box.
-        seen = np.column_stack([points, np.ones(len(points))]) @ whole.T
-        with np.errstate(all="ignore"):
-            found.append((seen[:, :2] / seen[:, 3:] + 1) / 2 * (width, height))
-    return np.concatenate(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -22,7 +23,7 @@ from vizlight.draw.backends import (
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
-from vizlight.draw.legends import CornerKey, ink_on, name_no_data
+from vizlight.draw.legends import ink_on, name_no_data
 from vizlight.draw.strokes import directions, put_ground, widen, with_halo
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
@@ -187,8 +188,7 @@ def make_plotter(
         (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene that is
         exported to a page needs "points", because the page has no such shaders.
     key : pyvista.PolyData, optional
-        Key of the light, as :func:`vizlight.presets.key` returns it, in the corner of the last
-        panel where it covers the least of the data.
+        Key of the light, as :func:`vizlight.presets.key` returns it, in a margin of the last panel.
 
     Returns
     -------
@@ -258,7 +258,7 @@ def make_plotter(
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
             plotter.reset_camera_clipping_range()
         if key is not None:
-            CornerKey(key, "auto", KEY_SIZE, ink).show(plotter.renderer)
+            plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
         if bar:
             made = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
@@ -506,6 +506,7 @@ def canvas(
     *,
     background: ColorLike = "white",
     off_screen: bool = True,
+    draws: bool = True,
     backend: Backend | None = None,
 ) -> pv.Plotter:
     """Return an empty plotter, such as a look fills.
@@ -518,6 +519,8 @@ def canvas(
         Colour behind the data.
     off_screen : bool, default: True
         Whether no window is shown.
+    draws : bool, default: True
+        Whether it must be able to draw; a page is written without an OpenGL library too.
     backend : {"egl", "osmesa"}, optional
         OpenGL library of an offscreen picture; see :func:`choose_backend`.
 
@@ -538,11 +541,23 @@ def canvas(
     if not _check.boolean("off_screen", off_screen):
         plotter = pv.Plotter(window_size=pixels)
     else:
-        with window_class(choose_backend(backend)):
+        with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
     plotter.enable_anti_aliasing("msaa", multi_samples=8)
     return plotter
+
+
+def _window_of(
+    backend: Backend | None, *, must_draw: bool
+) -> contextlib.AbstractContextManager[None]:
+    """Return a context for windows that need no display."""
+    try:
+        return window_class(choose_backend(backend))
+    except BackendError:
+        if must_draw:
+            raise
+        return contextlib.nullcontext()
 
 
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:

@@ -30,6 +30,10 @@ __all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
 Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
+#: Names of the field arrays with the range of a bar of values, and the names of kinds.
+RANGE, NAMES = "range", "names"
+#: Name of the field array with what the whole key is about.
+TITLE = "title"
 #: Words beside the key of each question: below it, or at the two ends of a bar.
 TEXTS: dict[str, tuple[str, ...]] = {
     "direction": ("direction on the screen",),
@@ -81,7 +85,7 @@ def key(
     clim : (float, float), optional
         Values at the ends of that map, which become its words. Default: the ends of a lookup table.
     title : str, optional
-        What the values are, which stands above the bar.
+        What the values are, which stands above a bar, or what the light shows.
 
     Returns
     -------
@@ -114,10 +118,36 @@ def key(
     if asked == "value":
         if clim is None and isinstance(cmap, pv.LookupTable):
             clim = cmap.scalar_range
-        words = words if clim is None else numerals(_check.vector("clim", clim))
-        words[1:1] = [_check.text("title", title)] if title else []
+        names = _names_of(cmap)
+        if names:
+            made.field_data[NAMES] = names
+        if clim is not None:
+            made.field_data[RANGE] = _check.vector("clim", clim)
+            words = numerals(_check.vector("clim", clim))
     made.field_data[WORDS] = words
+    if title:
+        made.field_data[TITLE] = [_check.text("title", title)]
     return made
+
+
+def _names_of(cmap: ColorMap) -> list[str]:
+    """Return the names of the kinds of a lookup table, in the order of their numbers."""
+    return [name for _, name in _annotated(cmap)]
+
+
+def _annotated(cmap: ColorMap) -> list[tuple[float, str]]:
+    """Return the numbers and the names of the kinds of a lookup table, in their order."""
+    import pyvista as pv
+
+    if not isinstance(cmap, pv.LookupTable):
+        return []
+    count = cmap.GetNumberOfAnnotatedValues()
+    # A table of names alone has no numbers, and PyVista's own look-up fails at it.
+    names = cmap.GetAnnotations()
+    if not count or names is None or names.GetNumberOfValues() < count:
+        return []
+    rows = range(count)
+    return sorted((cmap.GetAnnotatedValue(i).ToDouble(), cmap.GetAnnotation(i)) for i in rows)
 
 
 def question_of(scene: Scene) -> Question:
@@ -204,7 +234,11 @@ def colors_of(
     seen = _in_frame_of_eye(scene)
     if question == "value":
         table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
-        at = np.rint((x + 1) / 2 * (len(table) - 1)).astype(int)
+        if _annotated(cmap):
+            # One swatch for each kind, whatever the gaps between their numbers.
+            kinds = np.array([number for number, _ in _annotated(cmap)])
+            table = table[np.rint(kinds - cmap.scalar_range[0] - 0.5).astype(int)]
+        at = np.minimum(((x + 1) / 2 * len(table)).astype(int), len(table) - 1)
         # The bar runs from the least light below to full light above.
         darkest = max(seen.material.ambient * seen.ambient_intensity, LEAST)
         return on_colors(table[at], darkest + (1 - darkest) * (y / BAR + 1) / 2)

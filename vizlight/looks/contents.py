@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -25,8 +25,10 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 SAMPLE = 20_000
 #: Most distinct values of an array of kinds, such as materials or labels.
 MOST_KINDS = 12
-#: Extent across a flat mesh, as a share of its longest side.
-FLAT = 1e-6
+#: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
+EQUAL = 0.5
+#: Extent across a flat surface, and across a slab of cells, as a share of its second side.
+FLAT, SLAB = 1e-6, 0.01
 #: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
 #: bounds, masks.
 _NO_DATUM = {
@@ -34,6 +36,12 @@ _NO_DATUM = {
     "valid", "normal", "normals", "bnds", "bounds", "point", "points", "coord", "coords",
     "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons", "lat",
     "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
+}  # fmt: skip
+#: Words in the names of kinds, whose numbers may be many.
+_KIND_WORDS = {
+    "block", "body", "class", "classes", "domain", "group", "groups", "label", "labels", "layer",
+    "mat", "material", "materials", "part", "parts", "phase", "region", "regions", "segment",
+    "zone",
 }  # fmt: skip
 #: Words of a name: runs of letters, of which a capital begins another.
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
@@ -98,9 +106,10 @@ class Contents:
 
     @cached_property
     def flat_axis(self) -> int | None:
-        """Axis across which a surface has no extent, None where it has one across each."""
-        thin = np.flatnonzero(self.sides <= FLAT * self.sides.max())
-        return int(thin[-1]) if self.dimension == 2 and len(thin) else None
+        """Axis across which a surface or a slab has no extent, None where it has one."""
+        share = {2: FLAT, 3: SLAB}.get(self.dimension, -1.0)
+        thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
+        return int(thin[-1]) if len(thin) else None
 
     @cached_property
     def arrays(self) -> tuple[Named, ...]:
@@ -131,7 +140,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     """Return the arrays that are data, the best for a picture first.
 
     The active array comes first, then numbers in floating point, those of points before those of
-    cells, and kinds last; each in the order of the mesh. What a filter of light made is left out.
+    cells, and kinds last, those of cells first, which are materials more often than those of
+    points; each in the order of the mesh. What a filter of light made is left out.
     """
     made = records.all_made(mesh)
     described = []
@@ -141,6 +151,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
                 continue
             values = np.asarray(data[name])
             array = _described(name, values, of_cells=of_cells, named=True)
+            if array is not None and _HEIGHTS.search(_words_of(mesh, name)):
+                array = replace(array, role="heights" if array.role == "values" else array.role)
             if array is not None:
                 described.append(array)
     if raster and len(described) == 1 and described[0].role == "values":
@@ -154,9 +166,17 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
 
     def rank(array: Named) -> tuple[bool, bool, bool]:
-        return (array.role == "kinds", array.name not in active, array.of_cells)
+        kinds = array.role == "kinds"
+        return (kinds, array.name not in active, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _words_of(mesh: pv.DataSet, name: str) -> str:
+    """Return the standard name and the long name of an array, as far as its file has them."""
+    attributes = meaning.of(mesh).arrays.get(name, {})
+    standard = attributes.get("standard_name", "")
+    return f"{standard} {'' if standard else attributes.get('long_name', '')}".lower()
 
 
 def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:
@@ -165,7 +185,9 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     Constants are none, nor are arrays of text.
     """
     words = [word.lower() for word in _WORDS.findall(name)] or [""]
-    if named and (words[-1] in _NO_DATUM or words[0] == "vtk"):
+    # VTK numbers the groups of an .obj file, most of which are drawing aids.
+    of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
+    if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
         return None
     lower = name.lower()
     if are_colors(values):
@@ -184,11 +206,25 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return None
     distinct = len(np.unique(finite))
     whole = bool(np.all(finite == np.round(finite)))
-    if whole and distinct <= MOST_KINDS:
+    if whole and (distinct <= MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
         role = "heights" if _HEIGHTS.search(lower) else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _are_labels(values: Raw) -> bool:
+    """Return whether integers are labels of regions: neighbours mostly equal, else far apart."""
+    if values.dtype.kind not in "iu" or len(values) < 2:
+        return False
+    middle = len(values) // 2
+    run = np.asarray(values[max(middle - SAMPLE, 0) : middle + SAMPLE], dtype=np.int64)
+    inside = (run[1:] != 0) & (run[:-1] != 0)
+    steps = np.abs(np.diff(run))[inside]
+    if len(steps) < 2 or np.mean(steps == 0) < EQUAL:
+        return False
+    jumps = steps[steps > 0]
+    return len(jumps) > 0 and float(np.median(jumps)) > 1
 
 
 def kinds_of(mesh: pv.DataSet, name: str) -> Sequence[float]:

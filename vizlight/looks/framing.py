@@ -42,6 +42,10 @@ class Eye:
     words: str = ""
 
 
+#: Eye that sees three sides alike.
+ISOMETRIC = Eye((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
+
+
 def eye_of(mesh: pv.DataSet, contents: Contents) -> Eye:
     """Return from where a mesh is seen best.
 
@@ -101,7 +105,7 @@ def _of_points(points: Array) -> Eye:
     """Return the eye from which points spread most."""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
-        return Eye((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
+        return ISOMETRIC
     spreads = []
     for way in _ways():
         right, up = _plane(way)

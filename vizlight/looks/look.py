@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,28 +12,29 @@ import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
+from vizlight.draw.render import IMAGES
 from vizlight.looks import options as look_options
 from vizlight.looks import recipes
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source
-from vizlight.mesh import blocks, georeference, series
+from vizlight.mesh import blocks, georeference, height_grids, series
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Foreign, Given
-    from vizlight.looks.contents import Named
-    from vizlight.looks.recipes import Drawing
+    from vizlight._types import Given, Keywords
+    from vizlight.looks.contents import Named, Role
+    from vizlight.looks.recipes import Drawing, Recipe
     from vizlight.looks.wishes import Wishes
     from vizlight.scene import Scene
 
 __all__ = ["Look", "look"]
 
-#: Endings of the names of pictures, pages, and movies.
-PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
+#: Endings of the names of pages, movies and glTF, and of all files that a look writes.
 PAGES, MOVIES, GLTF = (".html", ".htm"), (".mp4", ".gif"), (".glb",)
+FORMATS = (*IMAGES, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
+#: Files that hold all parts of a result.
+TOGETHER = (*PAGES, ".vtm")
 #: Most other questions that are listed.
 MOST_OTHERS = 5
 
@@ -83,32 +85,31 @@ class Look:
     array: str | None
     reason: str
     others: tuple[Other, ...]
-    _wishes: Wishes
-    _drawing: Drawing
-    _file: str | None = None
+    wishes: Wishes = dataclasses.field(repr=False)
+    drawing: Drawing = dataclasses.field(repr=False)
 
     @property
     def mesh(self) -> pv.DataSet | pv.MultiBlock:
         """Mesh that is drawn, with its light as point arrays."""
-        mesh: pv.DataSet = self._drawing.lit.run()
+        mesh: pv.DataSet = self.drawing.lit.run()
         return mesh
 
     @property
     def scene(self) -> Scene:
         """Lights, material and view."""
-        scene: Scene = self._drawing.scene.run()
+        scene: Scene = self.drawing.scene.run()
         return scene
 
     @property
     def view(self) -> pv.Camera:
         """Camera of the picture."""
-        camera: pv.Camera = self._drawing.camera.run()
+        camera: pv.Camera = self.drawing.camera.run()
         return camera
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What a reader should know, such as a factor of heights."""
-        return tuple(self._drawing.notes)
+        return tuple(self.drawing.notes)
 
     def plotter(self, *, off_screen: bool = True) -> pv.Plotter:
         """Return a plotter that shows the picture, which the caller must close."""
@@ -153,9 +154,8 @@ class Look:
         BackendError
             If a picture is asked for and no OpenGL library can draw here.
         """
-        last = self.steps([path])
-        result: Path | list[Path] = [step.run() for step in last][-1]
-        return result[0] if isinstance(result, list) else Path(result)
+        results = [[step.run() for step in steps][-1] for steps in self.steps(path)]
+        return results[0][0] if isinstance(results[0], list) else Path(results[0])
 
     def script(self, *paths: str | Path) -> str:
         """Return Python that does the same without ``look``.
@@ -165,42 +165,67 @@ class Look:
         *paths : path
             Files that the script writes, as :meth:`save` does. Default: ``look.png``.
         """
-        return source([self.steps(paths or ["look.png"])])
+        every = [self.steps(path) for path in paths or ["look.png"]]
+        return source([steps for written in every for steps in written])
 
-    def steps(self, paths: Sequence[str | Path]) -> list[Step]:
-        """Return the steps that write files, in their order."""
-        last: list[Step] = []
-        every = (*PICTURES, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
-        for path in paths:
-            checked = files.check_output(path, every)
-            last += self._written(checked)
-        return last
-
-    def _written(self, path: Path) -> list[Step]:
-        suffix, drawing = path.suffix.lower(), self._drawing
-        if suffix in PICTURES:
+    def steps(self, path: str | Path) -> list[list[Step]]:
+        """Return the steps that write a file, or one file for each part of the result."""
+        path = files.check_output(path, FORMATS)
+        suffix, drawing = path.suffix.lower(), self.drawing
+        if suffix in (*IMAGES, *MOVIES):
             plotter, steps = self._picture()
-            return [*steps, Step("", "render.save", plotter, path)]
+            way = "render.save" if suffix in IMAGES else "movie.orbit"
+            return [[*steps, Step("", way, plotter, path)]]
         if suffix in PAGES:
-            plotter, steps = self._picture()
-            return [*steps, Step("", ".vizlight.export_html", plotter, path)]
-        if suffix in MOVIES:
-            plotter, steps = self._picture()
-            return [*steps, Step("", "movie.orbit", plotter, path)]
-        if suffix in GLTF:
-            return [Step("", "vizlight.save_gltf", drawing.lit, None, path)]
-        return [Step("", "files.write_mesh", drawing.lit, path)]
+            return [self._page(path)]
+        if not drawing.parts or suffix in TOGETHER:
+            return [[self._written(drawing.lit, path)]]
+        return [
+            [
+                self._written(
+                    Step("", "[]", drawing.lit, part), path.with_stem(f"{path.stem}-{part}")
+                )
+            ]
+            for part in drawing.parts
+        ]
+
+    def _written(self, mesh: Step, path: Path) -> Step:
+        if path.suffix.lower() in GLTF:
+            # No scene: the one in the record of the mesh is taken.
+            return Step("", "vizlight.save_gltf", mesh, None, path, **self.drawing.colors)
+        return Step("", "files.write_mesh", mesh, path)
+
+    def _page(self, path: Path) -> list[Step]:
+        """Return the steps that write a page, for which no library needs to draw."""
+        wishes, drawing = self.wishes, self.drawing
+        key: Keywords = {} if wishes.picture.get("key", True) else {"key": False}
+        if wishes.source:
+            key["source"] = list(wishes.source)
+        live = [layer for layer in drawing.layers if layer.live]
+        if not live:
+            shown: Keywords = {"camera": drawing.camera, "background": wishes.background, **key}
+            return [Step("", "vizlight.live_html", drawing.lit, None, path, **shown)]
+        background = wishes.background
+        plotter = Step("plotter", "render.canvas", wishes.size, background=background, draws=False)
+        return [
+            *(layer.added(plotter) for layer in live),
+            Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)),
+            Step("", ".vizlight.export_html", plotter, path, **key),
+        ]
 
     def _picture(self, *, off_screen: bool = True) -> tuple[Step, list[Step]]:
         """Return the step that makes a plotter, and those that fill it."""
-        wishes, drawing = self._wishes, self._drawing
+        wishes, drawing = self.wishes, self.drawing
         chosen = {"backend": wishes.picture.get("backend"), "off_screen": off_screen}
         keywords = {name: value for name, value in chosen.items() if value not in (None, True)}
-        background = wishes.background
+        background = wishes.picture.get("background") or drawing.background or wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, **keywords)
         steps = [layer.added(plotter) for layer in drawing.layers]
+        near = any(light.position is not None for light in self.scene.lights)
         if wishes.picture.get("key", True):
-            steps += [_key_step(plotter, key) for key in drawing.keys]
+            # The key of a lamp that stands somewhere differs from place to place.
+            keys = [key for key in drawing.keys if not near or key.get("question") == "value"]
+            steps += [_key_step(plotter, key) for key in keys]
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps
 
@@ -219,7 +244,7 @@ class Look:
     @property
     def summary(self) -> str:
         """What is shown, in one line."""
-        return f"{self._drawing.words} ({self.question}: {self.shown})"
+        return f"{self.drawing.words} ({self.question}: {self.shown})"
 
     def _repr_html_(self) -> str:
         import base64
@@ -311,24 +336,24 @@ def look(
 def decide(data: object, wishes: Wishes) -> Look:
     """Return the look of data, by options that are sorted out."""
     step, contents, notes = prepared(data, wishes)
+    if wishes.question == "flow":
+        look_options.check_flow(data, step.run(), wishes.light.get("vectors"))
     rule, case = _chosen(step, contents, wishes)
     drawing = rule.recipe(case)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
-    eye = case.eye(drawing.layers[0].mesh)
-    reason = rule.why + (f"; seen {eye.words}" if eye.words and wishes.view is None else "")
+    seen = drawing.camera.note
+    reason = rule.why + (f"; seen {seen}" if seen else "")
     shown = drawing.words.split(" ", 1)[0] if rule.shown == "isosurface" else rule.shown
-    return Look(
-        case.question, shown, array, reason, _others(contents, case), wishes, drawing,
-        str(data) if isinstance(data, str | Path) else None,
-    )  # fmt: skip
+    others = _others(contents, case)
+    return Look(case.question, shown, array, reason, others, wishes, drawing)
 
 
 def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
     """Return the step that reads data and takes a part of them, what they hold, and notes."""
     part, notes, raster = wishes.part, [], False
     if isinstance(data, str | Path):
-        keywords = {name: part[name] for name in ("time", "overlay") if part.get(name)}
+        keywords = {name: part[name] for name in ("time", "overlay") if name in part}
         step = Step("data", "vizlight.read", data, **keywords)
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
@@ -346,10 +371,16 @@ def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
     if not mesh.n_points:
         raise ValueError(message("data", "a mesh with points", "none"))
     step = look_options.cut(step, wishes)
-    factor = 1.0 if part.get("slice") else georeference.stretch(step.run())
+    notes += [step.note] if step.note else []
+    if part.get("slice") is not None:
+        # Planes that cut a map are in the coordinates of its file, so they come before metres.
+        step = wishes.section(step)
+    factor = georeference.stretch(step.run())
     if factor != 1:
         step = Step("stretched", "files.stretched", step, factor)
         notes.append(f"the volume is in metres over its map, its z taken {factor:g} times")
+    if part.get("contour") is not None and wishes.question != "flow":
+        step = wishes.isosurface(step)
     return step, Contents(step.run(), raster), notes
 
 
@@ -357,8 +388,10 @@ def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]
     """Return the rule that fits, and the case that its recipe draws."""
     array = _asked_array(contents, wishes)
     question = wishes.question
-    if wishes.part.get("contour") is not None and question == "auto" and array is None:
-        question = "shape"
+    # Tangents of a volume are those of its hull.
+    of_hull = contents.dimension == 3 and wishes.light.get("tangents") is not None
+    if question in _FILTERS or not wishes.surface or of_hull:
+        return _explicit(data, contents, wishes, array, question)
     fitting = [rule for rule in RULES if rule.fits(contents)]
     for rule in fitting:
         if question not in ("auto", rule.question, _ALIASES.get(rule.question)):
@@ -380,43 +413,78 @@ def _explicit(
     data: Step, contents: Contents, wishes: Wishes, array: Named | None, question: str
 ) -> tuple[Rule, Case]:
     """Return a rule for a question that the table has not for these data."""
-    known = [named.name for named in contents.arrays]
-    recipe, roles = _EXPLICIT.get(question, (None, ()))
+    if question == "auto":
+        best = array or contents.first("vectors") or contents.first("values", "heights", "kinds")
+        question = "shape" if best is None else "value"
+        question = "direction" if best is not None and best.role == "vectors" else question
+    if question == "relief" and not _is_height_field(contents, array):
+        question = "shadow"
+    recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))
     if recipe is None:
-        expected = f"a question that these data answer, {one_of(sorted(_EXPLICIT))}"
+        known = [name for name in _QUESTIONS if name != "shadow"]
+        expected = f"a question that these data answer, {one_of(known)}"
         raise ValueError(message("question", expected, repr(question)))
-    chosen = array or (contents.first(*roles) if roles else None)
-    if roles and (chosen is None or chosen.role not in roles):
-        needs = " or ".join(roles)
-        got = f"none among {', '.join(map(repr, known))}" if known else "no array"
-        raise ValueError(message("array", f"{needs} for {question!r}", got))
+    chosen = array if array is not None and array.role in roles else contents.first(*roles)
+    if question == "relief" and chosen is None:
+        # Level ground has heights too, all equal.
+        chosen = contents.named(height_grids.heights_name(contents.mesh) or "")
+    if needed and (chosen is None or (array is not None and array.role not in roles)):
+        arrays = ", ".join(repr(named.name) for named in contents.arrays)
+        got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
+        remedy = "take question='shape'" if question in ("direction", "slope") else ""
+        raise ValueError(message("array", f"{' or '.join(roles)} for {question!r}", got, remedy))
     kind = next(rule.shown for rule in RULES if rule.fits(contents))
     rule = Rule(kind, lambda _: True, question, roles, recipe, f"{question} was asked for")
     return rule, Case(data, contents, wishes, question, chosen)
 
 
-#: Recipes of questions, and the roles of the array that they need.
-_EXPLICIT: Foreign = {
-    "direction": (recipes.vectors, ("vectors",)),
-    "slope": (recipes.vectors, ("vectors",)),
-    "heading": (recipes.vectors, ("vectors",)),
-    "shape": (recipes.surface, ()),
-    "value": (recipes.values, ("values", "heights", "kinds", "colors")),
-    "relief": (recipes.relief, ("heights", "values")),
-    "flow": (recipes.flow, ("vectors",)),
+#: Recipes of questions, the roles of the array that they show, and whether they need one.
+_QUESTIONS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
+    "direction": (recipes.vectors, ("vectors",), True),
+    "slope": (recipes.vectors, ("vectors",), True),
+    "heading": (recipes.vectors, ("vectors",), True),
+    "shape": (recipes.surface, (), False),
+    "value": (recipes.values, ("values", "heights", "kinds", "colors"), True),
+    "flow": (recipes.flow, ("vectors",), True),
+    "relief": (recipes.relief, ("heights", "values"), True),
+    "shadow": (recipes.shadow, (), False),
+    "sky": (recipes.sky, ("heights", "values"), False),
+    "fur": (recipes.fur, (), False),
+    "contours": (recipes.contours, (), False),
+    "projection": (recipes.projection, (), False),
 }
+#: Questions that a filter answers, whatever the data are.
+_FILTERS = ("flow", "relief", "sky", "fur", "contours", "projection")
+
+
+def _is_height_field(contents: Contents, array: Named | None) -> bool:
+    """Return whether data are a grid of one layer with heights."""
+    sizes: tuple[int, ...] = getattr(contents.mesh, "dimensions", ())
+    is_layer = sum(size > 1 for size in sizes) == 2
+    return is_layer and bool(array or height_grids.heights_name(contents.mesh))
 
 
 def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     """Return the array that was asked for, by any of the options that name one."""
-    name = wishes.array or wishes.light.get("tangents") or wishes.picture.get("scalars")
-    if not isinstance(name, str):
+    options = {"array": wishes.array}
+    options |= {name: wishes.light.get(name) for name in ("tangents", "vectors", "elevation")}
+    options["scalars"] = wishes.picture.get("scalars")
+    named_by = [
+        (option, value)
+        for option, value in options.items()
+        if isinstance(value, str) and value != recipes.DIRECTION
+    ]
+    if not named_by:
         return None
+    option, name = named_by[0]
     named = contents.named(name)
     if named is None:
         there = [*contents.mesh.point_data, *contents.mesh.cell_data]
         expected = f"the name of an array, {one_of(there)}"
-        raise ValueError(message("array", expected, repr(name)))
+        raise ValueError(message(option, expected, repr(name)))
+    if option in ("tangents", "vectors") and named.role != "vectors":
+        got = f"{name!r} with {named.role}"
+        raise ValueError(message(option, "vectors, or names U,V of their components", got))
     return named
 
 

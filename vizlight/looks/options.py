@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import inspect
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vizlight import _check
+import numpy as np
+
+from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw import render
+from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import PRESETS, STYLES, Wishes, scene_step
+from vizlight.mesh import series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
@@ -89,11 +96,9 @@ def scene_maker(scene: object) -> SceneMaker | None:
         return None
     if isinstance(scene, str):
         _check.choice("scene", scene, PRESETS)
-        return lambda _, camera: Step(
-            "scene", f"vizlight.presets.{scene}", Step("", "vizlight.View.from_camera", camera)
-        )
+        return lambda _question, view, _camera, _n: Step("scene", f"vizlight.presets.{scene}", view)
     _check.instance("scene", scene, Scene)
-    return lambda _question, _camera: scene_step(scene)  # type: ignore[arg-type]
+    return lambda *_: scene_step(scene)  # type: ignore[arg-type]
 
 
 def cut(mesh: Step, wishes: Wishes) -> Step:
@@ -109,6 +114,31 @@ def cut(mesh: Step, wishes: Wishes) -> Step:
         mesh = Step("clipped", ".clip", mesh, normal=normal, origin=origin)
         mesh.asked = ("clip", f"{normal}, {origin}")
     return mesh
+
+
+def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:
+    """Check that a step of a file has vectors that are not zero, if another step has them.
+
+    Raises
+    ------
+    ValueError
+        If only others have, which the message lists.
+    """
+    times = series.of(mesh)
+    name = vectors_by_default(mesh) if name is None else name
+    if not isinstance(file, str | Path) or len(times) < 2 or _moves(mesh, name):
+        return
+    having = [time for time in times if _moves(files.read(file, time=time), name)]
+    if having:
+        expected = f"a step in which {name!r} is not zero everywhere"
+        remedy = f"pass --time with one of {series.listed(having)}"
+        raise ValueError(message("time", expected, f"{mesh.field_data[series.TIME][0]:g}", remedy))
+
+
+def _moves(mesh: pv.DataSet, name: str | None) -> bool:
+    """Return whether vectors of a mesh are not zero everywhere."""
+    every = (mesh.point_data, mesh.cell_data)
+    return name is not None and any(name in data and np.any(data[name]) for data in every)
 
 
 def _kept(mesh: Step, name: str, low: float, high: float) -> Step:

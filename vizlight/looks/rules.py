@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight.looks.contents import Contents, Named, Role
-    from vizlight.looks.recipes import Case, Drawing
+    from vizlight.looks.recipes import Recipe
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Rule:
     fits: Callable[[Contents], bool]
     question: str
     roles: tuple[Role, ...]
-    recipe: Callable[[Case], Drawing]
+    recipe: Recipe
     why: str
 
     def array(self, contents: Contents) -> Named | None:

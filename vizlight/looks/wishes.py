@@ -10,11 +10,14 @@ import numpy as np
 
 from vizlight import _check
 from vizlight._words import message
+from vizlight.draw.keywords import LIGHT
+from vizlight.draw.legends import data_share
+from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, records
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from typing import TypeAlias
 
     import pyvista as pv
@@ -24,8 +27,9 @@ if TYPE_CHECKING:
     from vizlight.looks.framing import Eye
     from vizlight.scene import Scene
 
-    #: Function of a question and of the step of a camera that returns the step of a scene.
-    SceneMaker: TypeAlias = Callable[[str, Step], Step]
+    #: Function that returns the step of a scene, of a question, the steps of a view and a camera,
+    #: and the dimension of space.
+    SceneMaker: TypeAlias = Callable[[str, Step, Step, int], Step]
 
 #: Opening angle of a camera, in degrees.
 ANGLE = 30.0
@@ -39,16 +43,18 @@ VIEWS: dict[str, Vector] = {
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 40.0)
+#: Bounding box that shows where a camera of n-space looks.
+BOX = (-1, 1, -1, 1, -1, 1)
 #: Questions whose light is a preset.
 PRESETS = ("direction", "slope", "heading", "shape", "value")
 
 
-def plain_scene(question: str, camera: Step) -> Step:
+def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     """Return the step of the scene of a question, where a user gives none.
 
-    ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps.
+    ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
+    ``"shadow"`` a lamp over the left shoulder.
     """
-    view = Step("", "vizlight.View.from_camera", camera)
     if question in PRESETS:
         return Step("scene", f"vizlight.presets.{question}", view)
     if question == "none":
@@ -57,6 +63,10 @@ def plain_scene(question: str, camera: Step) -> Step:
     if question == "relief":
         toward = _of_angles(*SUN)
         lights = [Step("", "vizlight.Light", direction=toward)]
+        return Step("scene", "vizlight.Scene", lights=lights, view=view)
+    if question == "shadow":
+        # A shadow is cast by one lamp, where the default of a scene has two.
+        lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]
         return Step("scene", "vizlight.Scene", lights=lights, view=view)
     return Step("scene", "vizlight.Scene", view=view)
 
@@ -95,6 +105,8 @@ class Wishes:
         Whether the outer surface is taken; otherwise all points are lit.
     refine : float, optional
         Largest error between points.
+    source : sequence of str
+        File, and options of the command that shows it alike, which a page copies.
     """
 
     question: str = "auto"
@@ -109,6 +121,7 @@ class Wishes:
     make_scene: SceneMaker | None = None
     surface: bool = True
     refine: float | None = None
+    source: Sequence[str] = ()
 
     @property
     def background(self) -> str:
@@ -118,9 +131,32 @@ class Wishes:
 
     def scene(self, question: str, camera: Step) -> Step:
         """Return the step that makes the scene of a question, or the one that was given."""
-        return (self.make_scene or plain_scene)(question, camera)
+        view = Step("", "vizlight.View.from_camera", camera)
+        return (self.make_scene or plain_scene)(question, view, camera, 3)
 
-    def camera(self, mesh: Step, eye: Eye) -> Step:
+    def scene_in(self, n: int) -> Step:
+        """Return the step that makes a scene of n-space, seen from infinity.
+
+        Raises
+        ------
+        ValueError
+            If the view has neither 3 nor n components.
+        """
+        toward: Vector = (1.0, 1.0, 1.0)
+        fixed: Foreign = self.view
+        if hasattr(fixed, "GetPosition"):
+            ends = zip(fixed.GetPosition(), fixed.GetFocalPoint(), strict=True)
+            toward = tuple(a - b for a, b in ends)
+        elif self.view is not None:
+            toward = direction(self.view)
+        if len(toward) not in (3, n):
+            expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
+            raise ValueError(message("view", expected, repr(toward)))
+        camera = Step("", "render.camera_on", BOX, toward[:3], **_given(up=self.eye.get("up")))
+        view = Step("", "vizlight.View", direction=(*toward, *(0.0,) * (n - len(toward))))
+        return (self.make_scene or plain_scene)("none given", view, camera, n)
+
+    def camera(self, mesh: object, eye: Eye) -> Step:
         """Return the step that sets the camera on a mesh."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.fixed_camera()
@@ -139,8 +175,11 @@ class Wishes:
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
-        aspect = self.size[0] / self.size[1]
-        return Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
+        share = data_share(self.size, KEY_SIZE) if self.picture.get("key", True) else (1.0, 1.0)
+        aspect = round(self.size[0] * share[0] / (self.size[1] * share[1]), 4)
+        step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
+        step.note = eye.words if self.view is None else ""
+        return step
 
     def fixed_camera(self) -> Step | None:
         """Return the step that sets a camera which was given, None where none was."""
@@ -169,6 +208,10 @@ class Wishes:
         """Return the options of light of a surface, whose creases are seen as creases."""
         return {"feature_angle": "auto"} | dict(self.light)
 
+    def drawn(self, light: Mapping[str, object]) -> Keywords:
+        """Return those options of light that a plotter takes."""
+        return {name: value for name, value in light.items() if name in LIGHT}
+
     def lit(self, mesh: Step, scene: Step, light: Mapping[str, object]) -> Step:
         """Return the step that lights the points of a mesh, or refines it until they suffice."""
         if self.refine is not None:
@@ -194,10 +237,18 @@ class Wishes:
             return mesh
         return Step("joined", "files.with_vectors", mesh, array.name)
 
+    def isosurface(self, mesh: Step) -> Step:
+        """Return the step that takes the isosurface that is asked for."""
+        names = ("contour", "level")
+        keywords = {name: self.part[name] for name in names if self.part.get(name) is not None}
+        return Step("surface", "files.surface_of", mesh, **keywords)
+
     def section(self, mesh: Step) -> Step:
         """Return the step that takes the section by a plane."""
         normal, origin = self.part["slice"]
-        return Step("section", ".slice", mesh, normal=normal, origin=origin)
+        step = Step("section", ".slice", mesh, normal=normal, origin=origin)
+        step.asked = ("slice", f"{normal}, {origin}")
+        return step
 
     def heightened(self, mesh: pv.DataSet, heights: str) -> tuple[float, str]:
         """Return the factor with which heights can be seen, and the words that say so."""
@@ -225,6 +276,10 @@ def direction(view: object) -> Vector:
             raise ValueError(message("view", expected, repr(view)))
         return VIEWS[view]
     return _check.vector("view", view, direction=True)
+
+
+def _given(**values: object) -> Keywords:
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _usual(eye: Eye) -> bool:

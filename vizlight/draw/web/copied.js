@@ -92,7 +92,7 @@ function commandOf(app) {
   const half = Math.tan((ANGLE * Math.PI) / 360);
   const words = [
     // A name that begins with a minus would be taken for an option.
-    'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command.filter((w) => w !== '--sky' || state.sky),
+    'vizlight', 'light', recipe.file.startsWith('-') ? `./${recipe.file}` : recipe.file, ...recipe.command.filter((w) => w !== '--occlusion=sky' || state.sky),
     '--scene', `${stem}.scene.json`, '--view', `${stem}.view.json`,
     ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),
     ...(cut ? [`--clip=${cut.sign < 0 ? '' : '-'}${AXES[cut.axis]}:${short(-cut.sign * (cut.place + app.page.origin[cut.axis]), 9)}`] : []),
