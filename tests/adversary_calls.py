@@ -260,7 +260,7 @@ BESIDE = (
 #: Public classes that only vizlight makes, which are records, or what others derive from.
 RETURNED = {
     "geometry.contours.banding.Bands", "geometry.contours.banding.Laminae",
-    "observers.legibility.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
+    "observers.figures.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
     "draw.backends.Probe", "pieces.run.Lit", "draw.testing.Difference",
     "draw.snapshots.same_picture", "draw.component.Component", "draw.paraview.Shader",
     "shading.arrays.Shading", "shading.inputs.ArraySource", "shading.plan.Plan",

@@ -21,8 +21,10 @@ def test_errors_of_the_table(made):
 
 def test_the_direction_is_read_in_its_own_light_alone(made):
     white, colours = (row[-1] for row in made.rows)
-    assert white.within_10 < 0.6 < 0.95 < colours.within_10
-    assert colours.legend_median < 4 < 30 < white.legend_median
+    assert white.unreadable
+    assert white.median == 45
+    assert colours.within_10 > 0.6
+    assert colours.median < 8
 
 
 def test_hue_follows_the_direction_and_lightness_does_not(made):

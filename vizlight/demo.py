@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight.draw.backends import Backend
-    from vizlight.observers.legibility import Direction
+    from vizlight.observers.figures import Direction
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.
@@ -129,7 +129,7 @@ def save_picture(
         plotter.vizlight.add_mesh(demo.globe, scene=demo.scene, tangents="wind", exponent=2)
         plotter.add_mesh(demo.lines, color="black", opacity=0.5, line_width=2)
         plotter.vizlight.add_key(demo.scene, exponent=2)
-        wrong = demo.rows[-1][-1].legend_median
+        wrong = demo.rows[-1][-1].median
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")

@@ -16,13 +16,13 @@ from studies._readable import LINES, VIEWS, known
 from vizlight import Light, Material, Scene, View, legibility
 from vizlight.scene.presets import PRESETS, brightest_normal
 
-NOISE = 2 / 255
+#: Noise of the eye in CIELAB, as the meter has it.
+NOISE = 2.3
 #: Number of places on lines for each on a surface: information is counted in classes.
 ON_LINES = 8
 #: What the error of each question is.
 ERRORS = {
     "direction": "share off by over 10 degrees",
-    "key": "degrees, by the key",
     "slope": "bits of 4 that lack",
     "heading": "degrees in space",
     "shape": "degrees of the normal",
@@ -57,15 +57,17 @@ def errors(data, scene, view, samples, noise):
     """Return the error of each question that data can be asked."""
     ask = partial(legibility, data.mesh, scene, view=view, samples=samples, noise=noise)
     if data.tangents is None:
-        slope = ask().slope
-        return {"slope": slope and 4 - slope.bits, "heading": slope and slope.median}
+        found = ask()
+        return {
+            "slope": found.slope and 4 - found.slope.bits,
+            "heading": found.heading and found.heading.median,
+        }
     along = ask(tangents=data.tangents).direction
-    bare = ask(scalars=data.scalars)
+    bare, shape = ask(scalars=data.scalars), ask().shape
     viridis = ask(scalars=data.scalars, cmap="viridis").value
     return {
         "direction": along and 1 - along.within_10,
-        "key": along and along.legend_median,
-        "shape": bare.shape and bare.shape.median,
+        "shape": shape and shape.median,
         "value": bare.value and bare.value.p95,
         "value, viridis": viridis and viridis.p95,
     }
@@ -82,7 +84,7 @@ def lights(names, views, samples, noise=NOISE):
                 for question, error in errors(data, make(), view, count, noise).items():
                     assert error is not None
                     found.setdefault((light, question), []).append(error)
-    said = "" if noise == NOISE else f", noise {255 * noise:g}/255"
+    said = "" if noise == NOISE else f", noise {noise:g}"
     rows = []
     for (light, question), after in found.items():
         before = found["default", question]
@@ -103,7 +105,7 @@ def steps(quick):
 
 
 STUDY = Study(
-    approximates="what ideal readers read back from pictures of lit data",
+    approximates="what readers read back from pictures of lit data",
     reference="the data",
     parameter="question",
     error="error under the light",

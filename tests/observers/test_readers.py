@@ -1,27 +1,178 @@
-"""The meter gives the answers that are known."""
+"""Readers give the answers that are known beforehand."""
 
 import numpy as np
 import pytest
-from closed_cases import CASES
+from vectors import unit
 
+from vizlight import Light, Material, Scene, View, presets
 from vizlight.observers import readers
+from vizlight.observers.eye import lab
+from vizlight.observers.readers import Colors
+from vizlight.observers.samples import Sample
+from vizlight.shading.options import ShadingOptions
+
+MATTE = Material(ambient=0.1, diffuse=0.8, specular=0)
+EYE = View(direction=(0, 0, 1))
+NOISE = 2.3
+RANDOM = np.random.default_rng(0)
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_known_answer(name):
-    CASES[name]()
+def places(scene, tangents=None, normals=None, kind="surface"):
+    """Return places at the origin that are seen along z."""
+    m = len(normals if tangents is None else tangents)
+    axes = [np.tile(axis, (m, 1)) for axis in np.eye(3)]
+    return Sample(
+        kind=kind, points=np.zeros((m, 3)), right=axes[0], up=axes[1], eye=axes[2],
+        tangents=None if tangents is None else tangents[:, np.newaxis], normals=normals,
+        values=None, valid=np.ones(m, dtype=bool), scene=scene.replace(view=EYE),
+        options=ShadingOptions(conditioned=False, precision="float64", exponent=2.0),
+    )  # fmt: skip
 
 
-def test_black_and_white_have_the_ends_of_lightness():
-    np.testing.assert_allclose(readers.lab(np.zeros(3)), 0, atol=1e-12)
-    np.testing.assert_allclose(readers.lab(np.ones(3)), [100, 0, 0], atol=0.01)
+def colors(sample, noise=NOISE, change=lambda c: c):
+    """Return what a reader sees of the light of places themselves."""
+    seen = change(lab(readers.shown(sample.light(sample.tangents, sample.normals))))
+    return Colors(seen + RANDOM.normal(0, noise, seen.shape), np.full(seen.shape, max(noise, 0.3)))
 
 
-def test_candidates_of_tangents_are_turned_evenly():
-    normals, tangents = readers._disc(5, 8, 0.3)
-    tangents = tangents.reshape(8, 5, 3)
-    np.testing.assert_allclose(
-        np.einsum("ij,ij->i", normals, tangents.reshape(-1, 3)), 0, atol=1e-12
-    )
-    turned = np.einsum("tij,tij->ti", tangents[:-1], tangents[1:])
-    np.testing.assert_allclose(turned, np.cos(np.pi / 8))
+def plane():
+    """Return tangents in all directions of a plane that faces the eye."""
+    turn = np.random.default_rng(1).uniform(0, np.pi, 1000)
+    return np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+
+
+def direction(scene, noise=NOISE, change=lambda c: c):
+    sample = places(scene, plane(), np.tile([0, 0, 1.0], (1000, 1)))
+    reading = readers.read_direction(sample, np.zeros(3), colors(sample, noise, change), 7.3)
+    return float(np.median(reading.error)), readers.information([reading])
+
+
+def test_hues_of_a_plane_are_read_by_the_disc():
+    error, bits = direction(presets.direction(), 0)
+    assert error < 1
+    assert bits > 5
+    error, bits = direction(presets.direction())
+    assert 1 < error < 6
+    assert 1.5 < bits < 5
+
+
+@pytest.mark.parametrize(
+    ("scene", "change"),
+    [
+        (Scene(lights=Light.headlight(), material=MATTE), lambda c: c),
+        (Scene(lights=Light(direction=(1, 0, 1)), material=MATTE), lambda c: c),
+        (presets.direction(), lambda c: c * [1, 0, 0]),
+        (presets.direction(), lambda c: c[::-1]),
+        (presets.direction(), lambda c: c * 0.001),
+    ],
+    ids=["headlight", "one white lamp", "no hue", "another mesh", "no contrast"],
+)
+def test_what_tells_no_direction_is_chance(scene, change):
+    error, bits = direction(scene, change=change)
+    assert abs(error - 45) < 4
+    assert bits < 0.05
+
+
+def test_less_contrast_is_read_worse():
+    found = [direction(presets.direction(), change=lambda c, s=s: c * s) for s in (1, 0.3, 0.1, 0)]
+    bits = [each for _, each in found]
+    assert bits == sorted(bits, reverse=True)
+
+
+@pytest.mark.parametrize("noise", [0.0, NOISE])
+def test_a_ball_is_read_by_the_ball(noise):
+    ways = unit(np.random.default_rng(5).normal(size=(400, 3)))
+    ways[:, 2] = np.abs(ways[:, 2])
+    sample = places(presets.shape(), normals=ways)
+    reading = readers.read_normal(sample, np.zeros(3), colors(sample, noise), 0.4)
+    # The 900 candidates are up to some 4 degrees apart.
+    assert np.median(reading.error) < (4 if noise == 0 else 15)
+    assert readers.information([reading]) > 2
+
+
+def test_the_light_of_one_gray_tells_no_normal():
+    ways = unit(np.random.default_rng(6).normal(size=(400, 3)))
+    dark = Scene(lights=[], material=Material(ambient=0.5, diffuse=0, specular=0))
+    sample = places(dark, normals=ways)
+    reading = readers.read_normal(sample, np.zeros(3), colors(sample), 0.4)
+    assert readers.information([reading]) < 0.01
+
+
+@pytest.mark.parametrize("turned", [1, -1])
+def test_lines_in_space_are_read_by_their_key_whichever_way_they_run(turned):
+    ways = turned * unit(np.random.default_rng(2).normal(size=(1000, 3)))
+    sample = places(presets.heading(), ways, kind="line")
+    reading = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0))
+    assert np.median(reading.error) < 3
+    assert readers.information([reading]) > 3
+
+
+def test_a_headlight_leaves_the_near_end_of_a_line_open():
+    ways = unit(np.random.default_rng(2).normal(size=(1000, 3)))
+    sample = places(presets.slope(), ways, kind="line")
+    reading = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0))
+    toward = np.degrees(np.arcsin(np.abs(ways[:, 2])))
+    mirrored = np.minimum(2 * toward, 180 - 2 * toward)
+    near = np.minimum(reading.error, np.abs(reading.error - mirrored))
+    assert np.median(near) < 2
+    assert 0.3 < np.mean(reading.error < 10) < 0.8
+
+
+def bar(*ends, count=256):
+    import pyvista as pv
+
+    share = np.linspace(0, 1, count)[:, np.newaxis]
+    table = pv.LookupTable()
+    rgb = np.rint((1 - share) * ends[0] + share * np.array(ends[1])).astype(np.uint8)
+    table.values = np.column_stack([rgb, np.full(count, 255, np.uint8)])
+    return table
+
+
+@pytest.mark.parametrize("lit", [False, True])
+@pytest.mark.parametrize("dim", [1.0, 0.5])
+def test_a_reader_who_allows_for_light_reads_dimmed_hues(lit, dim):
+    table = bar([230, 60, 60], [60, 60, 230])
+    at = np.random.default_rng(3).uniform(size=500)
+    rgb = np.asarray(table.values)[(256 * at).astype(int), :3] / 255 * dim
+    seen = Colors(lab(rgb), np.full((500, 3), NOISE))
+    reading = readers.read_value(seen, at, table, lit=lit)
+    assert (np.quantile(reading.error, 0.95) < 0.04) == (lit or dim == 1)
+    gray = readers.light_of(seen, table).lab
+    np.testing.assert_allclose(gray[:, 0], lab(np.full(3, dim))[0], atol=3)
+
+
+def test_light_on_a_gray_bar_leaves_the_value_open():
+    table = bar([0, 0, 0], [255, 255, 255])
+    at = np.random.default_rng(3).uniform(size=500)
+    dim = np.random.default_rng(4).uniform(0.3, 1, 500)
+    seen = Colors(lab(np.repeat((at * dim)[:, np.newaxis], 3, 1)), np.full((500, 3), NOISE))
+    found = [readers.read_value(seen, at, table, lit=lit) for lit in (False, True)]
+    assert all(np.median(one.error) > 0.08 for one in found)
+    assert readers.information([found[1]]) < 2
+
+
+def test_wrong_belief_tells_nothing_and_a_coin_one_bit_less():
+    right = np.arange(64) % 8
+    sure = np.where(np.eye(8)[right] > 0, 0.0, -50.0)
+    reading = readers.Reading(np.zeros(64), readers.of_truth(sure, right), 8)
+    assert abs(readers.information([reading]) - 3) < 0.05
+    wrong = readers.Reading(np.zeros(64), readers.of_truth(sure, (right + 1) % 8), 8)
+    assert readers.information([wrong]) == 0
+    coin = np.where(np.eye(8)[right] + np.eye(8)[right ^ 1] > 0, 0.0, -50.0)
+    half = readers.Reading(np.zeros(64), readers.of_truth(coin, right), 8)
+    assert abs(readers.information([half]) - 2) < 0.05
+
+
+def test_ranks_order_and_noise_does_not():
+    random = np.random.default_rng(0)
+    x, other = random.uniform(size=(2, 4096))
+    assert readers.rank_correlation(x, np.exp(x)) == pytest.approx(1)
+    assert readers.rank_correlation(x, np.zeros(4096)) == 0
+    assert readers.mutual_information(x, -x) > 3.9
+    assert readers.mutual_information(x, other) < 0.03
+    assert np.mean(readers.ranked_error(x, x) < 0.02) > 0.9
+    assert abs(np.median(readers.ranked_error(x, other)) - 0.25) < 0.02
+    few = [
+        readers.mutual_information(x[i : i + 256], other[i : i + 256]) for i in range(0, 4096, 256)
+    ]
+    assert np.mean(few) < 0.05

@@ -199,7 +199,7 @@ def light(
     explain
         Print what is computed and what is skipped.
     legibility
-        Print what an ideal reader reads back from the picture.
+        Print what a reader reads back from the picture.
     refine
         Largest error between points, such as 1/255: cells are split where it is more.
     """

@@ -104,7 +104,7 @@ def demo(
     for heading in ("light", "points", "terms", "time, ms", "error", "within 10°", "by the key"):
         table.add_column(heading, justify="left" if heading in ("light", "terms") else "right")
     for lamp, terms, milliseconds, error, read in made.rows:
-        by_key = "" if read.legend_median is None else f"{read.legend_median:.1f}°"
+        by_key = "unreadable" if read.unreadable else f"{read.median:.1f}°"
         table.add_row(
             lamp, f"{made.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
             f"{read.within_10:.0%}", by_key,
@@ -112,7 +112,7 @@ def demo(
     shown = console()
     shown.print(table)
     shown.print("Error: the largest of float32 luminance against plain NumPy in float64.")
-    shown.print("Within 10°: share of the picture where an ideal observer reads the direction.")
+    shown.print("Within 10°: share of the picture where the direction is read by the key.")
     shown.print("By the key: median error of a reader who matches hues; 45° is chance. The plan:")
     shown.print(made.plan, highlight=False)
     shown.print(f"mesh     {mesh}", highlight=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import weakref
 from typing import TYPE_CHECKING, get_args
 
@@ -465,6 +466,31 @@ class Component:
     def has_live_light(self) -> bool:
         """Whether the plotter shows a mesh whose light follows the camera."""
         return bool(self._lives)
+
+    def legibility(self, **options: Given) -> Foreign:
+        """Measure what a reader can read back from the picture of the plotter, all that it shows.
+
+        Parameters
+        ----------
+        **options
+            Options of :func:`vizlight.legibility` for the eye and the places: size_mm,
+            distance_mm, screen, noise, samples, seed.
+
+        Returns
+        -------
+        vizlight.Legibility
+            Figures of the meshes of :meth:`add_mesh`, and of the values of others.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an option does not fit, or nothing that can be read is visible.
+        RuntimeError
+            If the plotter is closed.
+        """
+        # The meter stands above plotters, and draws by them.
+        meter = importlib.import_module("vizlight.observers.whole")
+        return meter.legibility_of(self._open_plotter(), self._live_of, **options)
 
     def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"

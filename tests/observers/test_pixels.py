@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.draw.backends import choose_backend
 from vizlight.draw.cameras import camera_on
-from vizlight.observers import samples
+from vizlight.observers import pixels
+from vizlight.observers.pixels import Cells
 from vizlight.observers.samples import rays, weights
 
 pytestmark = pytest.mark.opengl
 
 
-def seen(meshes, camera):
-    parts = [(mesh.GetPoints(), mesh.regular_faces) for mesh in meshes]
-    return samples.visible(parts, camera, choose_backend())
+def seen(meshes, camera, size=(300, 200)):
+    parts = [Cells(mesh.GetPoints(), mesh.regular_faces, 1.0) for mesh in meshes]
+    return pixels.visible(parts, camera, size)
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -67,7 +67,7 @@ def test_more_cells_than_colors_take_several_pictures(monkeypatch):
     ball = pv.Icosphere(nsub=3)
     camera = camera_on(ball)
     whole = seen([ball], camera)
-    monkeypatch.setattr(samples, "BITS", 8)
+    monkeypatch.setattr(pixels, "BITS", 8)
     parts = seen([ball], camera)
     np.testing.assert_array_equal(whole.cell, parts.cell)
     assert len(np.unique(whole.cell)) > 300

@@ -1,0 +1,75 @@
+"""The eye keeps what is large, and loses what is fine, chroma before lightness."""
+
+import numpy as np
+import pytest
+
+from vizlight.observers import eye
+from vizlight.observers.eye import Eye
+
+#: 300 dots per inch at 400 mm.
+PRINT = Eye.at(1004, 85.0, 400.0, 2.3)
+RED, GREEN = np.array([0.75, 0.45, 0.45]), np.array([0.35, 0.62, 0.35])
+
+
+def test_black_and_white_have_the_ends_of_lightness():
+    np.testing.assert_allclose(eye.lab(np.zeros(3)), 0, atol=1e-12)
+    np.testing.assert_allclose(eye.lab(np.ones(3)), [100, 0, 0], atol=0.01)
+
+
+def test_opponent_channels_lead_back_to_colors():
+    rgb = np.random.default_rng(0).uniform(size=(20, 3))
+    np.testing.assert_allclose(eye.lab_of_opponent(eye.opponent(rgb)), eye.lab(rgb), atol=1e-9)
+
+
+def test_a_degree_has_the_pixels_of_its_tangent():
+    assert PRINT.pixels_per_degree == pytest.approx(1004 / 85 * 6.981, rel=1e-3)
+
+
+def contrast(first, second, width):
+    """Return the difference in CIELAB of stripes of some pixels, seen by the eye."""
+    stripe = (np.arange(480) // width % 2)[np.newaxis, :, np.newaxis]
+    picture = np.broadcast_to(np.where(stripe, first, second), (16, 480, 3))
+    seen = PRINT.look(picture, np.ones((16, 480), dtype=bool)).colors[8, 120:360]
+    return np.ptp(seen[:, 0]), float(np.hypot(*np.ptp(seen[:, 1:], axis=0)))
+
+
+@pytest.mark.parametrize("kind", ["lightness", "chroma"])
+def test_finer_stripes_have_less_contrast(kind):
+    pair = (np.ones(3), np.zeros(3)) if kind == "lightness" else (RED, GREEN)
+    found = [contrast(*pair, width)[kind == "chroma"] for width in (60, 12, 4, 2, 1)]
+    assert found == sorted(found, reverse=True)
+    assert found[-1] < 1 < 0.5 * found[0]
+
+
+def test_chroma_goes_before_lightness():
+    light, hue = (contrast(np.ones(3), np.zeros(3), w)[0] for w in (60, 4))
+    of_light = hue / light
+    wide, fine = (contrast(RED, GREEN, w)[1] for w in (60, 4))
+    assert fine / wide < 0.7 * of_light
+
+
+def test_the_filter_is_the_sum_of_gaussians():
+    spot = np.zeros((65, 65, 3))
+    spot[32, 32] = 1
+    found = Eye(40.0).filtered(spot)
+    y, x = (np.mgrid[:65, :65] - 32) / 40.0
+    for channel, gaussians in enumerate(eye.FILTERS[1:], 1):
+        expected = np.zeros((65, 65))
+        for weight, spread in gaussians:
+            expected += weight * np.exp(-(x**2 + y**2) / spread**2) / (np.pi * (40 * spread) ** 2)
+        expected /= sum(weight for weight, _ in gaussians)
+        assert found[32, 32, channel] == pytest.approx(expected[32, 32], rel=0.02)
+        assert found[32, 35, channel] == pytest.approx(expected[32, 35], rel=0.05)
+
+
+def test_a_line_that_is_mixed_with_the_background_is_unmixed():
+    from vizlight.observers.readers import colors_at
+
+    picture, drawn = np.ones((60, 60, 3)), np.zeros((60, 60), dtype=bool)
+    picture[:, 30:33], drawn[:, 30:33] = RED, True
+    seen = PRINT.look(picture, drawn)
+    at = np.array([30]), np.array([31])
+    found = colors_at(seen, *at, np.random.default_rng(0), 0.0)
+    np.testing.assert_allclose(found.lab[0], eye.lab(RED), atol=1)
+    assert np.linalg.norm(seen.colors[30, 31] - eye.lab(RED)) > 10
+    assert found.deviation[0, 1] > 1.2 * found.deviation[0, 0] > 0.3

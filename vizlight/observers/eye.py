@@ -1,0 +1,152 @@
+"""The eye of the meter: which contrasts of a picture are left at a size and a distance.
+
+S-CIELAB (Zhang and Wandell 1997): linear light in an opponent space, each of whose channels passes
+the filter of its contrast sensitivity, and CIELAB after that.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import fft
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Bools
+
+#: CIE XYZ of linear sRGB (IEC 61966-2-1), and of white D65.
+XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+WHITE = XYZ.sum(axis=1)
+#: Opponent channels of XYZ: light and dark, red and green, blue and yellow (Poirson and Wandell
+#: 1993, as Zhang and Wandell 1997 use them).
+OPPONENT = np.array([[0.279, 0.72, -0.107], [-0.449, 0.29, -0.077], [0.086, -0.59, 0.501]])
+#: Weights and spreads in degrees of the Gaussians whose sum filters each channel (Zhang and Wandell
+#: 1997, table 1).
+FILTERS = (
+    ((0.921, 0.0283), (0.105, 0.133), (-0.108, 4.336)),
+    ((0.531, 0.0392), (0.330, 0.494)),
+    ((0.488, 0.0536), (0.371, 0.386)),
+)
+#: Least difference in CIELAB that an eye tells apart (Mahy, Van Eycken and Oosterlinck 1994): the
+#: standard deviation of the noise of a reader.
+NOISE = 2.3
+#: Standard deviation of rounding to bytes, in CIELAB.
+ROUNDING = 0.3
+MM_PER_INCH = 25.4
+
+
+def linear(rgb: Array) -> Array:
+    """Return sRGB values, from 0 to 1, in linear light (IEC 61966-2-1)."""
+    return np.asarray(
+        np.where(rgb <= 0.04045, rgb / 12.92, ((np.maximum(rgb, 0.0) + 0.055) / 1.055) ** 2.4)
+    )
+
+
+def lab_of_xyz(xyz: Array) -> Array:
+    """Return CIELAB of XYZ, shape (..., 3), under white D65 (CIE 15)."""
+    ratio = xyz / WHITE
+    # Near black CIELAB has a straight line in place of the cube root.
+    f = np.where(ratio > 0.008856, np.cbrt(ratio), 7.787 * ratio + 16 / 116)
+    x, y, z = f[..., 0], f[..., 1], f[..., 2]
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def lab(rgb: Array) -> Array:
+    """Return CIELAB of sRGB values, shape (..., 3) from 0 to 1, under white D65."""
+    return lab_of_xyz(linear(rgb) @ XYZ.T)
+
+
+def opponent(rgb: Array) -> Array:
+    """Return the opponent channels of sRGB values, shape (..., 3) from 0 to 1."""
+    return np.asarray(linear(rgb) @ (OPPONENT @ XYZ).T)
+
+
+def lab_of_opponent(channels: Array) -> Array:
+    """Return CIELAB of opponent channels, shape (..., 3)."""
+    # A filter may leave a little less than no light beside a bright place.
+    return lab_of_xyz(np.maximum(channels @ np.linalg.inv(OPPONENT).T, 0.0))
+
+
+@dataclass(frozen=True)
+class Eye:
+    """An eye that looks at a picture from some distance.
+
+    Parameters
+    ----------
+    pixels_per_degree : float
+        Number of pixels of the picture in a degree of the visual field.
+    noise : float, default: 2.3
+        Standard deviation of the noise of the reader in CIELAB.
+    """
+
+    pixels_per_degree: float
+    noise: float = NOISE
+
+    @classmethod
+    def at(cls, pixels: int, size_mm: float, distance_mm: float, noise: float) -> Eye:
+        """Return the eye at a distance from a picture of some width in pixels and in mm."""
+        degree = 2 * distance_mm * math.tan(math.radians(0.5))
+        return cls(pixels / size_mm * degree, noise)
+
+    def filtered(self, channels: Array) -> Array:
+        """Return opponent channels of a picture, shape (H, W, 3), as the eye resolves them.
+
+        Each channel is convolved with ``sum(w k exp(-(x^2 + y^2) / s^2)) / sum(w)``, k such that
+        each Gaussian sums to 1 (Zhang and Wandell 1997, eq. 2). The picture is mirrored at its
+        borders.
+        """
+        out = np.empty(channels.shape)
+        for i in range(3):
+            spectrum = fft.dctn(channels[..., i], type=2, norm="ortho")
+            out[..., i] = fft.idctn(spectrum * self._transfer(spectrum.shape, i), norm="ortho")
+        return out
+
+    def _transfer(self, shape: tuple[int, ...], channel: int) -> Array:
+        """Return the share of each frequency of a cosine transform that a channel passes."""
+        # The k-th cosine of n pixels has k / (2 n) cycles per pixel.
+        rows, columns = (self.pixels_per_degree * np.arange(n) / (2 * n) for n in shape)
+        total = np.zeros(shape)
+        for weight, spread in FILTERS[channel]:
+            along = [np.exp(-((np.pi * spread * f) ** 2)) for f in (rows, columns)]
+            total += weight * np.outer(*along)
+        return np.asarray(total / sum(weight for weight, _ in FILTERS[channel]))
+
+    def look(self, picture: Array, drawn: Bools) -> SeenPicture:
+        """Return what the eye sees of a picture.
+
+        Parameters
+        ----------
+        picture : ndarray, shape (H, W, 3)
+            sRGB values from 0 to 1.
+        drawn : ndarray of bool, shape (H, W)
+            Pixels that show anything but the background.
+        """
+        channels = opponent(picture)
+        cover = np.repeat(drawn[..., np.newaxis].astype(np.float64), 3, axis=-1)
+        ground = np.zeros(3) if drawn.all() else np.median(channels[~drawn], axis=0)
+        return SeenPicture(
+            colors=lab_of_opponent(self.filtered(channels)),
+            cover=self.filtered(cover),
+            ground=ground,
+        )
+
+
+@dataclass(frozen=True)
+class SeenPicture:
+    """What an eye sees of a picture.
+
+    Attributes
+    ----------
+    colors : ndarray, shape (H, W, 3)
+        CIELAB of the filtered picture.
+    cover : ndarray, shape (H, W, 3)
+        Share of what is drawn in each channel of each pixel; the rest is background.
+    ground : ndarray, shape (3,)
+        Opponent channels of the background.
+    """
+
+    colors: Array
+    cover: Array
+    ground: Array

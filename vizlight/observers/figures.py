@@ -1,0 +1,304 @@
+"""The figures of legibility, and how they are printed."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from vizlight._types import Vector
+
+#: Least information in bits of a question that can be read.
+FLOOR = 0.3
+HEAD = ("question", "figure", "read", "chance")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figure:
+    """What is read of one question.
+
+    Attributes
+    ----------
+    bits : float
+        Information that the picture gives, after the eye, of candidates that were equally likely
+        before.
+    readable : float
+        Share of the drawn places at which the answer is right within a tolerance, less what
+        guessing gives (Abbott 1925): 0 is chance, 1 is all of the picture.
+    samples : int
+        Number of places.
+    reason : str
+        Why the question is unreadable, empty where it is not. The errors are then those of chance.
+    """
+
+    bits: float
+    readable: float
+    samples: int
+    reason: str = ""
+
+    #: Rows of the table: attribute, words, form, and what guessing gives.
+    ROWS: ClassVar[tuple[tuple[str, str, str, str], ...]] = ()
+
+    @property
+    def unreadable(self) -> bool:
+        """Whether the picture tells less than 0.3 bits of the question."""
+        return bool(self.reason)
+
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Return words, figure and chance of each row of the table."""
+        if self.unreadable:
+            return [("unreadable", f"{self.bits:.2f} bits", "0")]
+        more = (
+            ("bits", "information", "{:.2f} bits", "0"),
+            ("readable", "readable share of the picture", "{:.0%}", "0%"),
+        )
+        return [
+            (words, form.format(value), chance)
+            for name, words, form, chance in (*self.ROWS, *more)
+            if (value := getattr(self, name)) is not None
+        ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Direction(Figure):
+    """Which way tangents run in the picture, as a reader finds their hues on the key.
+
+    Attributes
+    ----------
+    within_10 : float
+        Share of the places where the answer is wrong by 10 degrees at most; 1/9 by chance.
+    median : float
+        Median error in degrees; 45 by chance. ``legend_median`` is another name of it.
+    """
+
+    within_10: float
+    median: float
+
+    ROWS = (
+        ("within_10", "within 10 degrees", "{:.1%}", "11.1%"),
+        ("median", "median error by the key", "{:.1f} degrees", "45"),
+    )
+
+    @property
+    def legend_median(self) -> float:
+        """Median error in degrees of a reader who matches hues with the key."""
+        return self.median
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slope(Figure):
+    """How steeply lines run toward the eye, told by lightness.
+
+    Attributes
+    ----------
+    spearman : float
+        Rank correlation of lightness with steepness, the cosine of the angle between a line and
+        the line of sight; -1 or 1 where lightness orders all lines, 0 by chance. ``bits`` are
+        those of lightness in 32 classes of steepness in 16, 4 at most.
+    """
+
+    spearman: float
+
+    ROWS = (("spearman", "rank correlation", "{:+.2f}", "0"),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heading(Direction):
+    """Direction of lines in space, which end is near included.
+
+    The reader knows the course of a line in the picture, and finds its colour on a key of all
+    directions. ``within_10`` and ``median`` are those of angles in space.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shape(Figure):
+    """How surfaces stand, as a reader finds their colours on a ball in the same light.
+
+    Attributes
+    ----------
+    median : float
+        Median error in degrees of the normal; 45 by chance.
+    """
+
+    median: float
+
+    ROWS = (("median", "median error of the normal", "{:.1f} degrees", "45"),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Value(Figure):
+    """Values as they are read off the colour bar, as shares of the range of the bar.
+
+    Attributes
+    ----------
+    median, p95, largest : float
+        Median, 95 % quantile and largest error; 0.25, 0.475 and 0.5 of a reader who always says
+        the middle of the bar.
+    """
+
+    median: float
+    p95: float
+    largest: float
+
+    ROWS = (
+        ("median", "median error, nearest colour of the bar", "{:.1%} of the range", "25%"),
+        ("p95", "95 % of the errors", "{:.1%} of the range", "48%"),
+        ("largest", "largest error", "{:.1%} of the range", "50%"),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Speed(Figure):
+    """Length of vectors, told by lightness or chroma.
+
+    Attributes
+    ----------
+    spearman : float
+        Rank correlation of the length with lightness or chroma, whichever tells more; 0 by chance.
+        ``bits`` are those of 32 classes of the colour about 16 of the length, 4 at most.
+    """
+
+    spearman: float
+
+    ROWS = (("spearman", "rank correlation", "{:+.2f}", "0"),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scale:
+    """Finest structure of the data that is still read.
+
+    Structure is the length in the picture within which the data turn by 90 degrees, or go through
+    half of the range of the bar.
+
+    Attributes
+    ----------
+    question : str
+        Question whose data are meant.
+    pixels : float or None
+        Least structure in pixels at which half of the answers are right beyond chance; None where
+        none is.
+    length : float or None
+        The same in the unit of the mesh.
+    median : float
+        Median structure of the data in pixels.
+    """
+
+    question: str
+    pixels: float | None
+    length: float | None
+    median: float
+
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Return words, figure and chance of each row of the table."""
+        finest = "none" if self.pixels is None else f"{self.pixels:.3g} pixels"
+        if self.length is not None:
+            finest += f", {self.length:.3g} of the unit"
+        words = f"finest structure read of {self.question}"
+        return [(words, finest, ""), ("median structure", f"{self.median:.3g} pixels", "")]
+
+
+#: Figures that are printed, in their order.
+QUESTIONS = ("direction", "slope", "heading", "shape", "value", "speed", "scale")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Legibility:
+    """What a reader can read back from a picture; see :func:`vizlight.legibility`.
+
+    Attributes
+    ----------
+    direction : Direction or None
+        Which way tangents run; None without single tangents on a surface or at points.
+    slope : Slope or None
+        How steeply lines run toward the eye; None without lines.
+    heading : Heading or None
+        Direction of lines in space; None without lines.
+    shape : Shape or None
+        How surfaces stand; None without a surface or normals.
+    value : Value or None
+        Values as they are read off the bar; None without scalars.
+    speed : Speed or None
+        Length of vectors; None without vectors of several lengths.
+    scale : Scale or None
+        Finest structure that is read, of the first of direction, value and shape that there is.
+    pixels : int
+        Number of pixels that show the data.
+    size : (int, int)
+        Width and height of the picture in pixels.
+    size_mm, distance_mm : float
+        Width of the picture, and distance of the eye, in mm.
+    toward_eye : tuple of float
+        Direction from the middle of the picture toward the eye.
+    noise : float
+        Standard deviation of the noise of the eye in CIELAB.
+    seed : int
+        Seed of the drawing of places and of the noise.
+    notes : tuple of str
+        What has no figure, and what was left out.
+    """
+
+    direction: Direction | None = None
+    slope: Slope | None = None
+    heading: Heading | None = None
+    shape: Shape | None = None
+    value: Value | None = None
+    speed: Speed | None = None
+    scale: Scale | None = None
+    pixels: int
+    size: tuple[int, int]
+    size_mm: float
+    distance_mm: float
+    toward_eye: Vector
+    noise: float
+    seed: int
+    notes: tuple[str, ...] = ()
+
+    @property
+    def unreadable(self) -> dict[str, str]:
+        """Questions that the picture does not answer, each with the reason."""
+        return {
+            name: figure.reason
+            for name in QUESTIONS
+            if isinstance(figure := getattr(self, name), Figure) and figure.unreadable
+        }
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        rows = list[tuple[str, ...]]()
+        for question in QUESTIONS:
+            figure: Figure | Scale | None = getattr(self, question)
+            if figure is not None:
+                for number, row in enumerate(figure.rows()):
+                    rows.append(("" if number else question, *row))
+        return rows
+
+    def _lines(self) -> list[str]:
+        width, height = self.size
+        return [
+            *(f"{name} is unreadable: {reason}" for name, reason in self.unreadable.items()),
+            f"{self.pixels} pixels of {width} x {height}, {self.size_mm:.3g} mm wide, seen from "
+            f"{self.distance_mm:.3g} mm; noise of the eye {self.noise:g} in CIELAB, "
+            f"seed {self.seed}",
+            *(f"note: {note}" for note in self.notes),
+        ]
+
+    def __str__(self) -> str:
+        rows = [HEAD, *self._rows()]
+        wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        padded = [map(str.ljust, row, wide) for row in rows]
+        return "\n".join([*("  ".join(row).rstrip() for row in padded), *self._lines()])
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{name}</th>" for name in HEAD)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>"
+            for row in self._rows()
+        )
+        below = "<br>".join(html.escape(line) for line in self._lines())
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table><p>{below}</p>"
+
+    def to_dict(self) -> dict[str, object]:
+        """Return all figures as nested dicts of plain values, for JSON."""
+        return dataclasses.asdict(self)

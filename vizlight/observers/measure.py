@@ -1,0 +1,454 @@
+"""From a picture and the data behind it to figures: places, colours, readers, reasons."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vizlight import _check
+from vizlight.observers import readers
+from vizlight.observers.eye import Eye
+from vizlight.observers.figures import (
+    FLOOR,
+    Direction,
+    Heading,
+    Legibility,
+    Scale,
+    Shape,
+    Slope,
+    Speed,
+    Value,
+)
+from vizlight.observers.pixels import Pixels, visible
+from vizlight.observers.samples import footprint, sample
+from vizlight.shading import display
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkActor
+
+    from vizlight._types import Array, Bools, Indices, Keywords
+    from vizlight.observers.figures import Figure
+    from vizlight.observers.readers import Colors, Reading
+    from vizlight.observers.samples import Part, Sample
+
+#: Largest number of places at which normals are read, each among 900 or more.
+NORMALS = 1024
+#: Structure in arc minutes below which data turn too fast for the hues of a picture: half of the
+#: period at which the eye passes half of the contrast of red and green.
+FAST = 6.0
+#: Angle in degrees through which data turn in a structure.
+TURN = 90.0
+#: Least number of places of a class of structure, and least readable share of it.
+FEW, HALF = 32, 0.5
+#: Share of the error of chance above which an answer is chance.
+NEAR = 0.9
+#: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
+#: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
+TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
+GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "rank": 0.3}
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places of one mesh in the picture.
+
+    Attributes
+    ----------
+    part : Part
+        Mesh.
+    here, right, up : Sample
+        Data at the places, and a pixel beside and above or below them.
+    apart : ndarray of bool, shape (M,)
+        Whether both neighbours show the same mesh.
+    colors : Colors
+        Colours that a reader has.
+    unit : ndarray, shape (M,)
+        Size of a pixel in the unit of the mesh.
+    """
+
+    part: Part
+    here: Sample
+    right: Sample
+    up: Sample
+    apart: Bools
+    colors: Colors
+    unit: Array
+
+    def take(self, rows: Bools | Indices) -> Places:
+        """Return some of the places."""
+        return dataclasses.replace(
+            self, here=self.here.take(rows), right=self.right.take(rows), up=self.up.take(rows),
+            apart=self.apart[rows], colors=self.colors.take(rows), unit=self.unit[rows],
+        )  # fmt: skip
+
+    def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
+        """Return the length in pixels within which data turn by 90 degrees.
+
+        Parameters
+        ----------
+        turn : callable
+            Function from a sample to unit vectors.
+        times : int, default: 1
+            Angles between these vectors as multiples of those of the data.
+        """
+        own = turn(self.here)
+        steps = []
+        for other in (self.right, self.up):
+            cosine = np.einsum("ij,ij->i", own, turn(other))
+            steps.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+        change = np.hypot(*steps) / times
+        change[~self.apart] = np.nan
+        return np.asarray(TURN / np.maximum(change, 1e-6))
+
+
+def measure(
+    picture: Array,
+    parts: Sequence[Part],
+    camera: pv.Camera,
+    *,
+    size_mm: float,
+    distance_mm: float,
+    noise: float,
+    samples: int,
+    seed: int,
+    occluders: Sequence[vtkActor] = (),
+    notes: Sequence[str] = (),
+) -> Legibility:
+    """Return the figures of a picture.
+
+    Parameters
+    ----------
+    picture : ndarray, shape (H, W, 3)
+        sRGB values from 0 to 1.
+    parts : sequence of Part
+        Meshes that the picture shows.
+    camera : pyvista.Camera
+        Camera of the picture.
+    size_mm, distance_mm : float
+        Width of the picture, and distance of the eye.
+    noise : float
+        Noise of the eye in CIELAB.
+    samples : int
+        Largest number of places.
+    seed : int
+        Seed of the places and of the noise.
+    occluders : sequence of vtkActor
+        What hides the meshes.
+    notes : sequence of str
+        What is left out already.
+
+    Raises
+    ------
+    ValueError
+        If no pixel shows a mesh.
+    """
+    height, width = picture.shape[:2]
+    eye = Eye.at(width, size_mm, distance_mm, noise)
+    pixels = visible([part.drawn for part in parts], camera, (width, height), occluders)
+    if not len(pixels.row):
+        remedy = "pass view= with a direction, or a camera that looks at the mesh"
+        raise ValueError(_check.message("mesh", "a point that the eye sees", "none", remedy))
+    number = np.full((height, width), -1, dtype=np.intp)
+    number[pixels.row, pixels.column] = np.arange(len(pixels.row))
+    seen = eye.look(picture, number >= 0)
+    random = np.random.default_rng(seed)
+    chosen = np.sort(random.permutation(len(pixels.row))[:samples])
+    groups = []
+    for i, part in enumerate(parts):
+        ids = chosen[pixels.part[chosen] == i]
+        if len(ids):
+            own = pixels.take(ids)
+            colors = readers.colors_at(seen, own.row, own.column, random, noise)
+            beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
+            here = sample(part, own, camera)
+            right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
+            apart = (beside[0] != ids) & (beside[1] != ids)
+            unit = footprint(camera, here.points, height)
+            groups.append(Places(part, here, right, up, apart, colors, unit))
+    toward = -np.array(camera.GetDirectionOfProjection())
+    reader = _Reader(groups, seed, eye, list(notes))
+    return Legibility(
+        **reader.figures(),
+        scale=reader.scale,
+        pixels=len(pixels.row),
+        size=(width, height),
+        size_mm=size_mm,
+        distance_mm=distance_mm,
+        toward_eye=(float(toward[0]), float(toward[1]), float(toward[2])),
+        noise=noise,
+        seed=seed,
+        notes=tuple(reader.notes),
+    )
+
+
+def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]) -> Indices:
+    """Return the pixels one step on either side of pixels, of the same mesh; else themselves."""
+    found = ids.copy()
+    for sign in (-1, 1):
+        row = np.clip(pixels.row[ids] + sign * step[0], 0, number.shape[0] - 1)
+        column = np.clip(pixels.column[ids] + sign * step[1], 0, number.shape[1] - 1)
+        other = number[row, column]
+        fits = (other >= 0) & (pixels.part[np.maximum(other, 0)] == pixels.part[ids])
+        found = np.where(fits, other, found)
+    return np.asarray(found)
+
+
+class _Reader:
+    """The figures of places, question by question."""
+
+    def __init__(self, groups: list[Places], seed: int, eye: Eye, notes: list[str]) -> None:
+        self.groups, self.eye, self.notes = groups, eye, notes
+        self.random = np.random.default_rng(seed)
+        # The key lies amid what it explains, since the light of near lamps depends on the place.
+        self.middle = np.concatenate([one.here.points for one in groups]).mean(axis=0)
+        self.scale: Scale | None = None
+
+    def figures(self) -> Keywords:
+        """Return the figures by their questions."""
+        known: dict[str, Callable[[], Figure | None]] = {
+            "direction": self.direction, "value": self.value, "shape": self.shape,
+            "slope": self.slope, "heading": self.heading, "speed": self.speed,
+        }  # fmt: skip
+        return {name: function() for name, function in known.items()}
+
+    def _with(self, question: str, has_it: Callable[[Places], bool]) -> list[Places]:
+        """Return the places where a question of light has an answer, and note those without."""
+        some = [one for one in self.groups if one.part.lit and has_it(one)]
+        kept = [one.take(one.here.valid) for one in some]
+        total, left = (sum(len(one.here) for one in each) for each in (some, kept))
+        if left < total:
+            text = "places have no direction of tangents or normals, left out"
+            self.notes.append(f"{question}: {total - left} of {total} {text}")
+        return [one for one in kept if len(one.here)]
+
+    def _common(
+        self, question: str, groups: list[Places], readings: list[Reading], lengths: Array
+    ) -> Keywords:
+        """Return what all figures of matched colours have, and find the scale."""
+        error = np.concatenate([one.error for one in readings])
+        bits = readers.information(readings)
+        right = error <= TOLERANCE[question]
+        unit = np.concatenate([one.unit for one in groups])
+        if self.scale is None and np.isfinite(lengths).any():
+            self.scale = _scale(question, lengths, unit, right)
+        chance = TURN / 2 if question != "value" else 0.25
+        unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
+        return {
+            "bits": bits,
+            "readable": 0.0 if unread else _beyond_chance(right, question),
+            "samples": len(error),
+            "reason": self._reason(question, groups, lengths) if unread else "",
+        }
+
+    def _reason(self, question: str, groups: list[Places], lengths: Array) -> str:
+        """Return why a question is unreadable."""
+        finite = lengths[np.isfinite(lengths)]
+        minutes = 60 / self.eye.pixels_per_degree
+        if len(finite) and float(np.median(finite)) * minutes < FAST:
+            turns = max(1, round(float(np.median(finite))))
+            return f"the data turn within {turns} pixels; show less of them, or lines"
+        if question in ("direction", "heading", "shape") and any(
+            one.part.values is not None for one in groups
+        ):
+            return "the colours show values; draw the light without scalars"
+        deviation = np.concatenate([one.colors.deviation for one in groups])
+        colors = np.concatenate([one.colors.lab for one in groups])
+        if float(np.median(deviation)) > 3 * self.eye.noise:
+            return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
+        if float(np.sqrt((colors.std(axis=0) ** 2 - self.eye.noise**2).max(initial=0.0))) < (
+            self.eye.noise
+        ):
+            return "the colours differ by less than an eye tells apart"
+        return "the colours do not follow the data as the key says; choose a light or a map for it"
+
+    def direction(self) -> Direction | None:
+        """Return which way tangents run in the picture."""
+        groups = self._with("direction", lambda p: p.part.kind != "line" and p.here.has_one_tangent)
+        groups = _kept(groups, lambda p: readers.in_picture(p.here) > readers.SHORTEST)
+        if not groups:
+            return None
+        start = float(self.random.uniform(0.0, 180.0))
+        found = [readers.read_direction(p.here, self.middle, p.colors, start) for p in groups]
+        lengths = np.concatenate([p.structure(_doubled, 2) for p in groups])
+        common = self._common("direction", groups, found, lengths)
+        return Direction(**_angles(found, common), **common)
+
+    def slope(self) -> Slope | None:
+        """Return how steeply lines run."""
+        groups = self._with("slope", lambda p: p.part.kind == "line" and p.here.has_one_tangent)
+        if not groups:
+            return None
+        steep = np.concatenate([readers.steepness(p.here) for p in groups])
+        return Slope(**self._ranked(steep, [p.colors.lab[:, 0] for p in groups], groups))
+
+    def heading(self) -> Heading | None:
+        """Return the direction of lines in space."""
+        groups = self._with("heading", lambda p: p.part.kind == "line" and p.here.has_one_tangent)
+        groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
+        if not groups:
+            return None
+        found = [readers.read_heading(p.here, self.middle, p.colors) for p in groups]
+        none = np.full(sum(len(p.here) for p in groups), np.nan)
+        common = self._common("heading", groups, found, none)
+        return Heading(**_angles(found, common), **common)
+
+    def shape(self) -> Shape | None:
+        """Return how surfaces stand."""
+        groups = self._with("shape", lambda p: p.part.kind != "line" and p.here.normals is not None)
+        share = NORMALS / max(1, sum(len(p.here) for p in groups))
+        groups = _kept(groups, lambda p: self.random.uniform(size=len(p.here)) < share)
+        if not groups:
+            return None
+        phase = float(self.random.uniform(0.0, 2 * np.pi))
+        found = []
+        for p in groups:
+            here, colors = p.here, p.colors
+            if p.part.table is not None:
+                # Light is what colours of data have less than those of the bar.
+                here = dataclasses.replace(here, scene=display.for_colors(here.scene))
+                colors = readers.light_of(colors, p.part.table)
+            found.append(readers.read_normal(here, self.middle, colors, phase))
+        lengths = np.concatenate([p.structure(_normal) for p in groups])
+        common = self._common("shape", groups, found, lengths)
+        error = np.concatenate([one.error for one in found])
+        median = TURN / 2 if common["reason"] else float(np.median(error))
+        return Shape(median=median, **common)
+
+    def value(self) -> Value | None:
+        """Return values as they are read off the bar."""
+        groups: list[Places] = []
+        places: list[Array] = []
+        for p in self.groups:
+            if p.part.values is None or p.part.table is None:
+                continue
+            low, high = p.part.table.scalar_range
+            if not low < high:
+                self.notes.append(f"value: the scalars are constant, {low:g}, and have one colour")
+                return None
+            values = np.asarray(p.here.values)
+            # Places without light have the colour of what is not data.
+            known = np.isfinite(values) & p.here.valid
+            if left := int(np.count_nonzero(~known)):
+                text = f"value: {left} of {len(known)} places have no value, left out"
+                self.notes.append(text)
+            if known.any():
+                groups.append(p.take(known))
+                # Values beyond the ends have the colours of the ends.
+                places.append(np.clip((values[known] - low) / (high - low), 0.0, 1.0))
+        if not groups:
+            return None
+        ways = []
+        for lit in (False, True):
+            ways.append(
+                [
+                    readers.read_value(p.colors, at, _table(p), lit=lit)
+                    for p, at in zip(groups, places, strict=True)
+                ]
+            )
+        # Whether there is light on the colours is seen by the whole picture.
+        found = max(ways, key=readers.information)
+        lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
+        common = self._common("value", groups, found, lengths)
+        error = np.concatenate([one.error for one in found])
+        if common["reason"]:
+            return Value(median=0.25, p95=0.475, largest=0.5, **common)
+        p95, largest = float(np.quantile(error, 0.95)), float(error.max())
+        return Value(median=float(np.median(error)), p95=p95, largest=largest, **common)
+
+    def speed(self) -> Speed | None:
+        """Return how colours rank the lengths of vectors."""
+        groups = [p for p in self.groups if p.here.magnitude is not None]
+        groups = _kept(groups, lambda p: np.isfinite(np.asarray(p.here.magnitude)))
+        if not groups:
+            return None
+        length = np.concatenate([np.asarray(p.here.magnitude) for p in groups])
+        if np.ptp(length) <= 1e-3 * length.max():
+            return None
+        colors = [p.colors.lab for p in groups]
+        signals = [c[:, 0] for c in colors], [np.hypot(c[:, 1], c[:, 2]) for c in colors]
+        best = max(signals, key=lambda s: readers.mutual_information(length, np.concatenate(s)))
+        return Speed(**self._ranked(length, best, groups))
+
+    def _ranked(self, magnitude: Array, signals: list[Array], groups: list[Places]) -> Keywords:
+        """Return the figures of a magnitude that a signal ranks."""
+        signal = np.concatenate(signals)
+        bits = readers.mutual_information(magnitude, signal)
+        right = readers.ranked_error(magnitude, signal) <= TOLERANCE["rank"]
+        unread = bits < FLOOR
+        none = np.full(len(signal), np.nan)
+        return {
+            "spearman": 0.0 if unread else readers.rank_correlation(signal, magnitude),
+            "bits": bits,
+            "readable": 0.0 if unread else _beyond_chance(right, "rank"),
+            "samples": len(signal),
+            "reason": self._reason("rank", groups, none) if unread else "",
+        }
+
+
+def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]:
+    """Return the places that a rule keeps, of the meshes that have any."""
+    return [one for one in (p.take(rule(p)) for p in groups) if len(one.here)]
+
+
+def _angles(found: list[Reading], common: Keywords) -> Keywords:
+    """Return the share of errors of 10 degrees at most, and their median."""
+    if common["reason"]:
+        return {"within_10": 1 / 9, "median": TURN / 2}
+    error = np.concatenate([one.error for one in found])
+    return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
+
+
+def _beyond_chance(right: Bools, question: str) -> float:
+    """Return the share of right answers without those that are guessed (Abbott 1925)."""
+    guessed = GUESSED[question]
+    return max(0.0, (float(right.mean()) - guessed) / (1 - guessed))
+
+
+def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
+    """Return the finest structure that is read; each octave of structure is judged as a whole."""
+    there = np.isfinite(lengths)
+    lengths, unit, right = lengths[there], unit[there], right[there]
+    octave = np.floor(np.log2(np.clip(lengths, 0.5, 1 << 12)))
+    finest: float | None = None
+    for step in np.unique(octave)[::-1]:
+        rows = octave == step
+        if np.count_nonzero(rows) < FEW:
+            continue
+        if _beyond_chance(right[rows], question) < HALF:
+            break
+        finest = float(max(2.0**step, lengths[rows].min()))
+    length = None if finest is None else finest * float(np.median(unit))
+    return Scale(question=question, pixels=finest, length=length, median=float(np.median(lengths)))
+
+
+def _doubled(here: Sample) -> Array:
+    """Return directions in the picture as unit vectors that do not depend on their sign."""
+    angle = 2 * readers.course(here)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _normal(here: Sample) -> Array:
+    assert here.normals is not None
+    return here.normals
+
+
+def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:
+    """Return the function from values to vectors that turn by 180 degrees along a bar."""
+    low, high = table.scalar_range
+
+    def turn(here: Sample) -> Array:
+        at = np.clip((np.asarray(here.values) - low) / (high - low), 0.0, 1.0)
+        return np.stack([np.cos(np.pi * at), np.sin(np.pi * at)], axis=1)
+
+    return turn
+
+
+def _table(places: Places) -> pv.LookupTable:
+    assert places.part.table is not None
+    return places.part.table

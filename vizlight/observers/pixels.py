@@ -1,0 +1,173 @@
+"""The pixels of a picture and the cells that they show.
+
+The visible cells are those of one offscreen drawing in which each cell has its number as a colour.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what draws registers itself
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
+
+from vizlight.draw.backends import choose_backend, window_class
+from vizlight.vtk.cells import as_numpy, as_vtk
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pyvista as pv
+    from vtkmodules.vtkCommonCore import vtkPoints
+
+    from vizlight._types import Array, Bools, Indices
+
+#: Bits of the three channels.
+BITS = 24
+#: Offset by which surfaces stand behind the lines on them, in units of the depth buffer.
+BEHIND = 2.0
+
+
+class Cells(NamedTuple):
+    """Cells of one mesh as they are drawn.
+
+    Attributes
+    ----------
+    points : vtkPoints
+        Points of the mesh.
+    corners : ndarray of int, shape (C, s)
+        Points, segments or triangles.
+    width : float
+        Width of points and of lines in pixels.
+    """
+
+    points: vtkPoints
+    corners: Indices
+    width: float
+
+
+class Pixels(NamedTuple):
+    """Pixels of a picture that show a cell.
+
+    Attributes
+    ----------
+    row, column : ndarray of int, shape (M,)
+        Places of the pixels, from the upper left.
+    part : ndarray of int, shape (M,)
+        Number of the mesh that each pixel shows.
+    cell : ndarray of int, shape (M,)
+        Number of the cell of that mesh.
+    size : (int, int)
+        Width and height of the picture.
+    """
+
+    row: Indices
+    column: Indices
+    part: Indices
+    cell: Indices
+    size: tuple[int, int]
+
+    @property
+    def at(self) -> Array:
+        """Places of the middles of the pixels, to the right and up, in halves of the height."""
+        width, height = self.size
+        right = (2 * self.column + 1 - width) / height
+        up = (height - 2 * self.row - 1) / height
+        return np.stack([right, up], axis=1)
+
+    def take(self, rows: Indices | Bools) -> Pixels:
+        """Return some of the pixels."""
+        places = self.row[rows], self.column[rows]
+        return Pixels(*places, self.part[rows], self.cell[rows], self.size)
+
+
+def visible(
+    meshes: Sequence[Cells],
+    camera: pv.Camera,
+    size: tuple[int, int],
+    occluders: Sequence[vtkActor] = (),
+) -> Pixels:
+    """Return the pixels of a picture that show a cell, and which.
+
+    Parameters
+    ----------
+    meshes : sequence of Cells
+        Cells of each mesh.
+    camera : pyvista.Camera
+        Camera of the picture; its clipping range is set to show all.
+    size : (int, int)
+        Width and height in pixels.
+    occluders : sequence of vtkActor
+        What hides cells and has none.
+
+    Returns
+    -------
+    Pixels
+
+    Raises
+    ------
+    BackendError
+        If no OpenGL library can draw here.
+    """
+    starts = np.cumsum([0, *(len(mesh.corners) for mesh in meshes)])
+    width, height = size
+    with window_class(choose_backend()):
+        window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    # A pixel that is mixed of two colours would name a third cell.
+    window.SetMultiSamples(0)
+    window.SetSize(width, height)
+    renderer = vtkRenderer()
+    renderer.SetActiveCamera(camera)
+    window.AddRenderer(renderer)
+    number = np.zeros(width * height, dtype=np.int64)
+    # A picture has 24 bits of a cell's number; more cells take more pictures.
+    for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
+        renderer.RemoveAllViewProps()
+        for mesh, start in zip(meshes, starts.tolist(), strict=False):
+            renderer.AddActor(_actor(mesh, start, shift))
+        for occluder in occluders:
+            renderer.AddActor(occluder)
+        renderer.ResetCameraClippingRange()
+        window.Render()
+        pixels = vtkUnsignedCharArray()
+        window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
+        rgb = as_numpy(pixels).reshape(-1, 3).astype(np.int64)
+        number |= (rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]) << shift
+    window.Finalize()
+    shown = np.flatnonzero((number > 0) & (number <= starts[-1]))
+    cell = number[shown] - 1
+    which = np.searchsorted(starts, cell, side="right") - 1
+    row, column = np.divmod(shown, width)
+    # VTK's rows begin at the bottom.
+    return Pixels(height - 1 - row, column, which, cell - starts[which], size)
+
+
+def _actor(mesh: Cells, start: int, shift: int) -> vtkActor:
+    """Return a mesh whose cells have their numbers, from 1, as flat colours; 0 is background."""
+    count, corners = mesh.corners.shape
+    number = np.arange(start + 1, start + 1 + count) >> shift
+    colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)
+    cells = vtkCellArray()
+    cells.SetData(corners, as_vtk(mesh.corners.ravel()))
+    data = vtkPolyData()
+    data.SetPoints(mesh.points)
+    (data.SetVerts, data.SetLines, data.SetPolys)[corners - 1](cells)
+    data.GetCellData().SetScalars(as_vtk(colors, "number"))
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetScalarModeToUseCellData()
+    mapper.SetColorModeToDirectScalars()
+    # A line on a surface is seen whole.
+    mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(BEHIND, BEHIND)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    style = actor.GetProperty()
+    # The colours are numbers, which light must not change.
+    style.LightingOff()
+    style.SetLineWidth(mesh.width)
+    style.SetPointSize(mesh.width)
+    return actor

@@ -1,0 +1,227 @@
+"""What a plotter shows, for the meter: its picture, its meshes, and what hides them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
+
+from vizlight import _check
+from vizlight.draw.live import Live, has_pass, items
+from vizlight.draw.render import SUPERSAMPLED
+from vizlight.filters.tint import values_of
+from vizlight.observers.eye import MM_PER_INCH, NOISE
+from vizlight.observers.measure import measure
+from vizlight.observers.samples import part_on
+from vizlight.scene import Light, Scene, View
+from vizlight.shading.options import LightOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    from vizlight._types import Array, Foreign, Keywords
+    from vizlight.observers.figures import Legibility
+    from vizlight.observers.samples import Part
+
+#: Width in mm, pixels per inch and distance in mm of a picture in print.
+PRINT = 85.0, 300.0, 400.0
+#: Distance in mm of a screen.
+SCREEN_DISTANCE = 600.0
+#: Opacity below which an actor does not hide what is behind it.
+HIDES = 0.5
+
+
+class Shown(NamedTuple):
+    """What a renderer shows.
+
+    Attributes
+    ----------
+    parts : list of Part
+        Meshes that can be read.
+    occluders : list of vtkActor
+        What hides them.
+    notes : list of str
+        What is not read.
+    """
+
+    parts: list[Part]
+    occluders: list[vtkActor]
+    notes: list[str]
+
+
+def legibility_of(
+    plotter: pv.BasePlotter,
+    live_of: Callable[[vtkActor], Live | None],
+    /,
+    *,
+    size_mm: float | None = None,
+    distance_mm: float | None = None,
+    screen: float | None = None,
+    noise: float = NOISE,
+    samples: int = 4096,
+    seed: int = 0,
+) -> Legibility:
+    """Return what a reader can read back from the picture of a plotter, with all that it shows.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter; the renderer that is active is read.
+    live_of : callable
+        Function from an actor to its light of vizlight, or None.
+    size_mm, distance_mm, screen, noise, samples, seed
+        As for :func:`vizlight.legibility`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an option does not fit, or nothing that can be read is visible.
+    """
+    if not plotter.camera_set:
+        plotter.renderer.view_isometric(render=False)
+    whole = np.asarray(plotter.screenshot(return_img=True))[..., :3] / 255.0
+    renderer = plotter.renderer
+    (left, low), (wide, high) = renderer.GetOrigin(), renderer.GetSize()
+    top = len(whole) - low - high
+    picture = whole[top : top + high, left : left + wide]
+    shown = shown_by(renderer, live_of)
+    if not shown.parts:
+        remedy = "add a mesh by plotter.vizlight.add_mesh, or with scalars"
+        raise ValueError(_check.message("plotter", "a mesh that can be read", "none", remedy))
+    return measure(
+        picture, shown.parts, renderer.GetActiveCamera(), occluders=shown.occluders,
+        notes=shown.notes, **reading(wide, size_mm, distance_mm, screen, noise, samples, seed),
+    )  # fmt: skip
+
+
+def reading(
+    pixels: int, size_mm: object, distance_mm: object, screen: object, noise: object,
+    samples: object, seed: object,
+) -> Keywords:  # fmt: skip
+    """Return the checked options of a reading of a picture of some width in pixels."""
+    far = PRINT[2]
+    if screen is not None:
+        if size_mm is not None:
+            got = "both size_mm= and screen="
+            raise ValueError(_check.message("screen", "a picture in print or on a screen", got))
+        size_mm, far = MM_PER_INCH * pixels / _check.positive("screen", screen), SCREEN_DISTANCE
+    size_mm = PRINT[0] if size_mm is None else _check.positive("size_mm", size_mm)
+    far = far if distance_mm is None else _check.positive("distance_mm", distance_mm)
+    return {
+        "size_mm": size_mm,
+        "distance_mm": far,
+        "noise": _check.number("noise", noise, low=0.0, high=100.0),
+        "samples": _check.integer("samples", samples, low=1, high=1 << 24),
+        "seed": _check.integer("seed", seed, low=0),
+    }
+
+
+def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) -> Shown:
+    """Return what a renderer shows that can be read, and what hides it."""
+    shown = Shown([], [], [])
+    # Supersampling draws a picture that many times as wide and shrinks it.
+    pixel = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
+    for actor in items(renderer.GetActors()):
+        mapper = actor.GetMapper()
+        if not actor.GetVisibility() or mapper is None or mapper.GetInput() is None:
+            continue
+        live, style = live_of(actor), actor.GetProperty()
+        part = None
+        if np.array_equal(pv.array_from_vtkmatrix(actor.GetMatrix()), np.eye(4)):
+            width = max(1.0, style.GetLineWidth() / pixel)
+            if live is not None and live.n == 3:
+                part = _lit(live, renderer, actor, width)
+            elif live is None:
+                part = _colored(actor, renderer, width)
+        if part is not None:
+            shown.parts.append(part)
+        elif style.GetOpacity() >= HIDES:
+            shown.occluders.append(_occluder(actor, pixel))
+    return shown
+
+
+def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Part | None:
+    """Return a mesh with light of vizlight as a part."""
+    scene = live.scene_of(renderer, actor)
+    options = live.source.named or LightOptions.of(vars(live.source.options))
+    table = actor.GetMapper().GetLookupTable()
+    colors = _values(live.source.mesh, live.given, table)
+    if live.scalars is not None and not colors:
+        # Colours that were given mean nothing that a key tells.
+        return None
+    return part_on(live.source.mesh, scene, options, width=width, **colors)
+
+
+def _colored(actor: vtkActor, renderer: vtkRenderer, width: float) -> Part | None:
+    """Return a mesh of PyVista whose colours mean values as a part."""
+    mapper = actor.GetMapper()
+    mesh = pv.wrap(mapper.GetInput())
+    name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
+    if not isinstance(mesh, pv.DataSet) or not mesh.n_points or mapper.GetColorMode() == 2:
+        return None
+    colors = _values(mesh, name, mapper.GetLookupTable())
+    if not colors:
+        return None
+    scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
+    return part_on(mesh, scene, LightOptions(), width=width, lit=False, **colors)
+
+
+def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
+    """Return the values that an array gives colours, and their table; nothing for colours."""
+    if name is None or name not in (*mesh.point_data, *mesh.cell_data):
+        return {}
+    if not isinstance(table, pv.LookupTable):
+        return {}
+    values = values_of(mesh, name)
+    return {} if values.ndim != 1 else {"values": values, "table": table}
+
+
+def _occluder(actor: vtkActor, pixel: float) -> vtkActor:
+    """Return a black copy of an actor, which hides what is behind it and has no cells."""
+    mapper = vtkDataSetMapper()
+    mapper.SetInputData(actor.GetMapper().GetInput())
+    mapper.ScalarVisibilityOff()
+    copy = vtkActor()
+    copy.SetMapper(mapper)
+    copy.SetUserMatrix(actor.GetMatrix())
+    style = copy.GetProperty()
+    style.LightingOff()
+    style.SetColor(0.0, 0.0, 0.0)
+    style.SetLineWidth(max(1.0, actor.GetProperty().GetLineWidth() / pixel))
+    style.SetPointSize(max(1.0, actor.GetProperty().GetPointSize() / pixel))
+    style.SetRepresentation(actor.GetProperty().GetRepresentation())
+    return copy
+
+
+def read_picture(picture: object) -> Array:
+    """Return a picture from an array or a file as sRGB values, shape (H, W, 3) from 0 to 1.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no picture in colours.
+    """
+    if isinstance(picture, np.ndarray):
+        array: Foreign = picture
+    else:
+        path = _check.path("picture", picture)
+        if not path.exists():
+            raise ValueError(_check.message("picture", "an array or an existing file", str(path)))
+        image = pv.read(path)
+        if not isinstance(image, pv.ImageData) or image.active_scalars is None:
+            raise ValueError(_check.message("picture", "a picture such as a PNG file", str(path)))
+        width, height, _ = image.dimensions
+        # VTK's rows begin at the bottom.
+        array = np.asarray(image.active_scalars).reshape(height, width, -1)[::-1]
+    if array.ndim != 3 or array.shape[2] not in (3, 4) or min(array.shape[:2]) < 8:
+        expected = "an array of shape (height, width, 3), of 8 pixels or more along each side"
+        raise ValueError(_check.message("picture", expected, f"shape {array.shape}"))
+    scale = 255.0 if array.dtype == np.uint8 else 1.0
+    found = np.asarray(array[..., :3], dtype=np.float64) / scale
+    if not np.isfinite(found).all() or found.min() < 0 or found.max() > 1:
+        raise ValueError(_check.message("picture", "bytes, or numbers from 0 to 1", "others"))
+    return found
