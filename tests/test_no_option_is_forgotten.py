@@ -167,7 +167,12 @@ def page(scene, options, folder):
 def shell(scene, options, folder):
     """The command line: all arrays of the file that it writes, records among them."""
     paths = [str(folder / name) for name in ("a.vtp", "scene.json", "lit.vtp")]
-    mesh_of(options).save(paths[0])
+    mesh = mesh_of(options)
+    for name in set(mesh.point_data) - {value for value in options.values() if value is not True}:
+        # The command shows vectors that are there, and here options alone make the difference.
+        if mesh.point_data[name].ndim == 2:
+            del mesh.point_data[name]
+    mesh.save(paths[0])
     Path(paths[1]).write_text(json.dumps(scene.to_dict()))
     words = [
         f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))

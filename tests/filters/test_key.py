@@ -116,7 +116,9 @@ def test_the_key_of_a_scene_without_lamps_has_one_colour():
 def test_the_bar_of_a_lookup_table_has_its_ends_and_a_title():
     table = pv.LookupTable("viridis", scalar_range=(-1, 250))
     bar = presets.key(presets.value(VIEW), cmap=table, title="m/s")
-    assert list(bar.field_data["words"]) == ["-1", "m/s", "250"]
+    assert list(bar.field_data["words"]) == ["-1", "250"]
+    assert bar.field_data["title"][0] == "m/s"
+    np.testing.assert_allclose(bar.field_data["range"], (-1, 250))
     np.testing.assert_allclose(found(bar, 1, BAR)[0], (253, 231, 37), atol=1)
 
 

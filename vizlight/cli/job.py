@@ -81,7 +81,8 @@ class Job:
                     ending = self.stem if self.part.times is None else f"{self.stem}-{i:04d}"
                     outputs = _outputs(look, f"{path.stem}-{ending}", out, paths)
                     if out.script:
-                        scripts.append((look, [step for steps in outputs for step in steps]))
+                        last = [step for steps in outputs for step in steps]
+                        scripts.append((look, [*(look.read_steps() if self.read else []), *last]))
                     else:
                         codes.append(self._run(look, outputs))
             except (TypeError, ValueError, OSError) as error:

@@ -88,10 +88,13 @@ class Contents:
         Mesh.
     raster : bool
         Whether it comes from a file of a raster, whose only band is heights.
+    without : tuple of str
+        Names of arrays that are used for the light, such as normals, and are not shown.
     """
 
     mesh: pv.DataSet
     raster: bool = False
+    without: tuple[str, ...] = ()
 
     @cached_property
     def dimension(self) -> int:
@@ -114,7 +117,8 @@ class Contents:
     @cached_property
     def arrays(self) -> tuple[Named, ...]:
         """Arrays that are data, the best for a picture first; see :func:`sorted_arrays`."""
-        return sorted_arrays(self.mesh, raster=self.raster)
+        every = sorted_arrays(self.mesh, raster=self.raster)
+        return tuple(array for array in every if array.name not in self.without)
 
     def first(self, *roles: Role) -> Named | None:
         """Return the best array of some roles, None where there is none."""

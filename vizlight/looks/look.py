@@ -237,6 +237,12 @@ class Look:
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps
 
+    def read_steps(self) -> list[Step]:
+        """Return the steps that print what a reader reads back from the picture."""
+        plotter, steps = self._picture()
+        read = Step("", ".vizlight.legibility", plotter)
+        return [*steps, Step("", "print", read), Step("", ".close", plotter)]
+
     def figures(self) -> object:
         """Return what a reader reads back from the picture: :func:`vizlight.legibility`."""
         plotter = self.plotter()
@@ -389,7 +395,9 @@ def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
         notes.append(f"the volume is in metres over its map, its z taken {factor:g} times")
     if part.get("contour") is not None and wishes.question != "flow":
         step = wishes.isosurface(step)
-    return step, Contents(step.run(), raster), notes
+    of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
+    without = tuple(name for name in of_light if isinstance(name, str))
+    return step, Contents(step.run(), raster, without), notes
 
 
 def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]:
