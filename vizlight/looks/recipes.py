@@ -403,6 +403,16 @@ def vectors(case: Case) -> Drawing:
         return _speed(case, mesh, camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     lit = case.lit(mesh, scene, **light)
+    other = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
+    if other is not None and other.name != array.name:
+        # Colours of data take the place of the hues of the light.
+        scene = case.wishes.scene("value", camera)
+        lit = case.lit(mesh, scene, **light)
+        drawn = {"scalars": other.name, "show_scalar_bar": False, **case.wishes.colors}
+        layer = Layer(mesh, {"scene": scene, **drawn, **case.wishes.drawn(light)})
+        words = f"{other.name} in colours, lit along {array.name}"
+        keys = [case.bar(other, case.wishes.colors)]
+        return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
     lines = _lines_on(mesh, scene, array)
     if lines is not None:
