@@ -20,6 +20,7 @@ from vizlight.accessor import Accessor
 from vizlight.draw.render import PlotterKeywords
 from vizlight.geometry import manifolds
 from vizlight.geometry.solids.primitives import Solid
+from vizlight.looks.look import Look
 from vizlight.pieces.sources import Slabs
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.arrays import Shading
@@ -195,6 +196,12 @@ OWN = {
     "Component.export_html": {"path": lambda: shown() and Path("page.html")},
     "add_recorded": {"mesh": lit},
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
+    "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
+    "maps.kinds": {"values": [1.0, 2.0, 7.0]},
+    "looks.look.look": {"data": ball},
+    "Look.save": {"path": lambda: Path("look.vtp")},
+    "Look.steps": {"path": lambda: Path("look.png")},
+    "Component.show_key": {"mesh": lambda: presets.key(presets.shape())},
     "movie.turn": {
         "mesh": torus, "path": lambda: Path("movie.png"), "scene": SCENE4, "frames": 2,
         "picture": SMALL,
@@ -262,7 +269,7 @@ RETURNED = {
     "geometry.contours.banding.Bands", "geometry.contours.banding.Laminae",
     "observers.figures.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
     "draw.backends.Probe", "pieces.run.Lit", "draw.testing.Difference",
-    "draw.snapshots.same_picture", "draw.component.Component", "draw.paraview.Shader",
+    "draw.snapshots.same_picture", "looks.look.Look", "draw.component.Component", "draw.paraview.Shader",
     "shading.arrays.Shading", "shading.inputs.ArraySource", "shading.plan.Plan",
     "shading.inputs.ShadingInputs", "geometry.solids.primitives.Solid",
     "geometry.solids.primitives.Primitive", "accessor.Accessor",
@@ -274,6 +281,8 @@ PROTOCOLS = {
     Shading: {"arrays", "of", "part"},
     Options: {"of"},
     Slabs: {"empty", "nodes"},
+    # What the command line runs, and words of calls that take files of any number.
+    Look: {"read_steps", "script", "figures", "show"},
 }
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
@@ -356,6 +365,11 @@ SELF = {
         (0, 0, 0), 1.0, direction=UP, levels=4, form="laminae"
     ),
     "Component.add_key": lambda: plotter().vizlight,
+    "Component.show_key": lambda: plotter().vizlight,
+    **{
+        f"Look.{name}": lambda: vizlight.look(ball(), size=(60, 40))
+        for name in ("figures", "plotter", "read_steps", "save", "script", "show", "steps")
+    },
     "Component.add_mesh": lambda: plotter().vizlight,
     "Component.explain": lambda: LAST[0].vizlight,
     "Component.export_html": lambda: LAST[0].vizlight,

@@ -578,8 +578,8 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
         If an array does not exist, or there are not two or three.
     """
     _dataset(mesh)
-    if not isinstance(names, str):
-        names = ",".join(names)
+    if isinstance(names, list | tuple):
+        names = ",".join(map(str, names))
     _check.text("names", names, expected="names of arrays, separated by commas")
     if names in mesh.point_data:
         return mesh

