@@ -580,7 +580,7 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     _dataset(mesh)
     if isinstance(names, list | tuple):
         names = ",".join(map(str, names))
-    _check.text("names", names, expected="names of arrays, separated by commas")
+    names = _check.text("names", names, expected="names of arrays, separated by commas")
     if names in mesh.point_data:
         return mesh
     every = names.split(",")

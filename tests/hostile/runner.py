@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PATIENCE, MEMORY = 60.0, 4 << 30
 #: What the packages that read files need, loaded once.
 MODULES = (
-    "vizlight.cli.commands", "vizlight.cli.script", "vizlight.accessor", "pyvista.plotting",
+    "vizlight.cli.commands", "vizlight.looks.look", "vizlight.accessor", "pyvista.plotting",
     "meshio",
     "nibabel", "xarray", "netCDF4", "trx.trx_file_memmap", "scipy.spatial",
 )  # fmt: skip

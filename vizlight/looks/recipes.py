@@ -626,7 +626,8 @@ def _kept(mesh: Step, array: Named, case: Case) -> Step:
 def _kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     """Return the keywords that give each kind a colour of its own."""
     kinds = kinds_of(mesh.run(), array.name)
-    if "cmap" in keywords:
+    # Numbers of parts that are no whole numbers have no colours of their own.
+    if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
         return keywords
     table = Step("", "vizlight.maps.kinds", list(kinds))
     return keywords | {"cmap": table}
