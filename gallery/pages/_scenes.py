@@ -166,6 +166,11 @@ def scrape(block, block_vars, gallery_conf):
         pv.close_all()
         chart = matplotlib_scraper(block, block_vars, gallery_conf)
         return re.sub(r"(?<=:alt: )plot [\w ]+$", about, chart, flags=re.MULTILINE)
+    figures = pv.plotting.plotter._ALL_PLOTTERS
+    for name, plotter in [*figures.items()]:
+        # What a measurement drew and closed is no picture of the script.
+        if plotter.render_window is None and plotter.last_image is None:
+            del figures[name]
     names = generate_images(block_vars["image_path_iterator"], dynamic=True)
     return "\n".join(_tabs(Path(name), Path(gallery_conf["src_dir"]), about) for name in names)
 
