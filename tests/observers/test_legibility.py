@@ -300,3 +300,14 @@ test_bad_input = refusals(
         "scalars: expected the array",
     ),
 )
+
+
+@pytest.mark.opengl
+def test_a_relief_with_cast_shadows_is_read():
+    """Its record has an attached shadow, which needs no tangents."""
+    ground = pv.ImageData(dimensions=(30, 24, 1))
+    x, y, _ = ground.points.T
+    ground["height"] = 2 * np.sin(x / 3) * np.cos(y / 4)
+    scene = vizlight.Scene(lights=vizlight.Light(direction=(-1, 1, 1)))
+    lit, eye = vizlight.relief_shadow(ground, scene, lit=True), View(direction=(1, -1, 1))
+    assert "shape" in str(vizlight.legibility(lit.warp_by_scalar("height"), scene, view=eye))

@@ -267,9 +267,10 @@ def part_on(
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
     # Shares of light that reach a place are the picture's to show, and not of the key.
     known = dataclasses.replace(options, occlusion=None, bundle=False)
-    if kind == "surface" and options.tangents is not None:
-        # Normals are then read beside the tangents: they are the shape that a reader sees.
-        known = dataclasses.replace(known, conditioned=True)
+    if kind == "surface":
+        # Normals are then read beside the tangents: they are the shape that a reader sees. A surface
+        # without tangents has its attached shadow in any case.
+        known = dataclasses.replace(known, conditioned=options.tangents is not None)
     inputs = part_of(mesh, path, scene, known).inputs.of_faces()
     inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
