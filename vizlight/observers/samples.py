@@ -268,8 +268,8 @@ def part_on(
     # Shares of light that reach a place are the picture's to show, and not of the key.
     known = dataclasses.replace(options, occlusion=None, bundle=False)
     if kind == "surface":
-        # Normals are then read beside the tangents: they are the shape that a reader sees. A surface
-        # without tangents has its attached shadow in any case.
+        # Normals are then read beside the tangents: they are the shape that a reader sees. Surfaces
+        # without tangents have their attached shadow in any case.
         known = dataclasses.replace(known, conditioned=options.tangents is not None)
     inputs = part_of(mesh, path, scene, known).inputs.of_faces()
     inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
