@@ -140,7 +140,10 @@ def measure(kind, points, grid, count):
     start = time.process_time()
     voxel = max(float(np.ptp(flat, axis=0).max()) / grid, geometry.LEAST_VOXEL * DIAMETER)
     lines = geometry.medium(flat, ids, offsets, voxel=voxel)
-    targets = lines.targets(made.places, made.tangents[made.own], np.full(points, LENGTH))
+    along, middle = made.tangents[made.own], made.middles[made.own]
+    at = np.einsum("ij,ij->i", made.places - middle, along)[:, np.newaxis]
+    halves = np.stack([(LENGTH / 2 - at) * along, -(LENGTH / 2 + at) * along], axis=1)
+    targets = lines.targets(made.places, along, halves)
     lights = [(TOWARD, False), (LAMP, True)]
     if count:
         sides = lines.sky(targets, DIAMETER, count)
