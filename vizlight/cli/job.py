@@ -15,7 +15,7 @@ from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, one_line, say
 from vizlight.cli.scenes import times
-from vizlight.looks.steps import Step, in_order, source
+from vizlight.looks.steps import Step, in_order, source, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -126,7 +126,7 @@ class Job:
         for steps in outputs:
             kind = SAID.get(steps[-1].path, "mesh")
             # A page is written without a library that draws too.
-            codes.append(draw(functools.partial(_all_run, steps), kind))
+            codes.append(draw(functools.partial(written, steps), kind))
         # Last, so that an error is all that is said of what could not be done.
         say(f"shown    {look.summary}")
         for note in dict.fromkeys(look.notes):
@@ -180,11 +180,6 @@ def _check_output(out: Output, *, several: bool) -> None:
         raise ValueError(message("paraview", "one file to light", "several"))
     if out.paraview:
         files.check_output(out.paraview, (".py",))
-
-
-def _all_run(steps: Sequence[Step]) -> Path:
-    result: Path | list[Path] = [step.run() for step in steps][-1]
-    return result[0] if isinstance(result, list) else result
 
 
 def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list[list[Step]]:

@@ -18,7 +18,7 @@ from vizlight.looks import recipes
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import Case
 from vizlight.looks.rules import RULES, Rule
-from vizlight.looks.steps import Step, source
+from vizlight.looks.steps import Step, source, written
 from vizlight.mesh import blocks, georeference, height_grids, series
 
 if TYPE_CHECKING:
@@ -161,8 +161,8 @@ class Look:
         BackendError
             If a picture is asked for and no OpenGL library can draw here.
         """
-        results = [[step.run() for step in steps][-1] for steps in self.steps(path)]
-        return results[0][0] if isinstance(results[0], list) else Path(results[0])
+        paths = [written(steps) for steps in self.steps(path)]
+        return paths[0]
 
     def script(self, *paths: str | Path) -> str:
         """Return Python that does the same without ``look``.
@@ -173,7 +173,7 @@ class Look:
             Files that the script writes, as :meth:`save` does. Default: ``look.png``.
         """
         every = [self.steps(path) for path in paths or ["look.png"]]
-        return source([steps for written in every for steps in written])
+        return source([steps for file in every for steps in file])
 
     def steps(self, path: str | Path) -> list[list[Step]]:
         """Return the steps that write a file, or one file for each part of the result."""

@@ -14,12 +14,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight._words import message, one_of
+from vizlight.draw.keywords import array_of
 from vizlight.files import FORMATS
 from vizlight.filters.fur import LENGTH
 from vizlight.filters.tint import RGB
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
-from vizlight.looks.framing import Eye, eye_of
+from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.steps import Step
 from vizlight.mesh import blocks, meaning
 from vizlight.mesh.nspace import POSITION
@@ -165,8 +166,8 @@ class Case:
         return Step("surface", "files.surface_of", self.data)
 
     def eye(self, mesh: Step) -> Eye:
-        """Return from where a mesh is seen."""
-        return eye_of(mesh.run(), self.contents)
+        """Return from where a mesh is seen, if no view is given in its place."""
+        return ISOMETRIC if self.wishes.view is not None else eye_of(mesh.run(), self.contents)
 
     def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
         """Return the step that sets the camera on a mesh, by the options or by what suits it."""
@@ -608,7 +609,8 @@ def titled(mesh: pv.DataSet, name: str) -> str:
 
 def _range(mesh: pv.DataSet, name: str) -> tuple[float, float]:
     """Return the ends of the finite values of an array."""
-    values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
+    values = array_of(mesh, name)
+    assert values is not None
     finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     return float(finite.min()), float(finite.max())
 

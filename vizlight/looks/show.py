@@ -10,6 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import keywords
+from vizlight.draw.render import IMAGES
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 from vizlight.looks.look import look
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["plot"]
 
-#: Endings of the names of pictures that VTK writes.
-PICTURES = (".png", ".jpeg", ".jpg", ".bmp", ".tif", ".tiff")
 #: Effects of a plotter, and keywords of ``pyvista.plot`` for them.
 EFFECTS = {
     "eye_dome_lighting": ("eye_dome_lighting", "edl"),
@@ -101,7 +100,7 @@ def plot(
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     if isinstance(screenshot, str | Path):
-        screenshot = check_output(screenshot, PICTURES)
+        screenshot = check_output(screenshot, IMAGES)
     if jupyter_backend is not None:
         _check.text("jupyter_backend", jupyter_backend)
     for name in ("off_screen", "notebook"):

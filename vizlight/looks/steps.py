@@ -100,6 +100,12 @@ def _run(value: object) -> object:
     return str(value) if isinstance(value, Path) else value
 
 
+def written(steps: Sequence[Step]) -> Path:
+    """Run the steps that write a file, and return its path, the first of a sequence's."""
+    result: str | Path | list[Path] = [step.run() for step in steps][-1]
+    return result[0] if isinstance(result, list) else Path(result)
+
+
 def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> str:
     """Return the script that runs the steps of each job in order.
 

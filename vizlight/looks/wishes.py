@@ -10,6 +10,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight._words import message
+from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     #: and the dimension of space.
     SceneMaker: TypeAlias = Callable[[str, Step, Step, int], Step]
 
-#: Opening angle of a camera, in degrees.
-ANGLE = 30.0
 #: Backgrounds of the two styles, and the inks on them.
 STYLES = {"paper": "white", "dark": "#14161a"}
 #: Directions toward the eye that have a name.
@@ -200,7 +199,7 @@ class Wishes:
             scale = float(camera.GetParallelScale())
             made.attributes |= {"parallel_projection": True, "parallel_scale": scale / zoom}
         elif self.eye.get("parallel"):
-            half = math.dist(position, focus) * math.tan(math.radians(ANGLE / 2))
+            half = math.dist(position, focus) * math.tan(math.radians(VIEW_ANGLE / 2))
             made.attributes |= {"parallel_projection": True, "parallel_scale": half / zoom}
         return made
 
