@@ -168,6 +168,7 @@ FILTERS = {
     "illuminate": SATIN,
     "isoluminance": {"scene": SUN},
     "legibility": {"tangents": "V", "scalars": "s"},
+    "Component.legibility": {},
     "plot": {"off_screen": True, "window_size": (60, 40)},
     "project": {"mesh": torus, "scene": SCENE4},
     "provenance": {"mesh": lit},
@@ -369,9 +370,10 @@ SELF = {
     "Component.show_key": lambda: plotter().vizlight,
     **{
         f"Look.{name}": lambda: vizlight.look(ball(), size=(60, 40))
-        for name in ("figures", "plotter", "read_steps", "save", "script", "show", "steps")
+        for name in ("plotter", "save", "steps")
     },
     "Component.add_mesh": lambda: plotter().vizlight,
+    "Component.legibility": lambda: shown() and LAST[0].vizlight,
     "Component.explain": lambda: LAST[0].vizlight,
     "Component.export_html": lambda: LAST[0].vizlight,
     "Component.set_scene": lambda: LAST[0].vizlight,

@@ -342,6 +342,17 @@ def vector(name: str, value: object, *, direction: bool = False, n: int | None =
     return result
 
 
+def limits(name: str, value: object) -> tuple[float, float]:
+    """Return the ends of a range of colours: two numbers, or one for the range about zero."""
+    if isinstance(value, int | float | np.number):
+        half = abs(number(name, value))
+        return -half, half
+    ends = vector(name, value)
+    if len(ends) != 2 or ends[0] > ends[1]:
+        raise ValueError(message(name, "a lower and a higher number", value))
+    return ends[0], ends[1]
+
+
 def unit(name: str, value: object) -> Array:
     """Return a direction of 3 components, of any length but 0, with length 1."""
     found = np.array(vector(name, value, direction=True, n=3))

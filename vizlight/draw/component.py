@@ -630,9 +630,11 @@ def _address(thing: vtkObject) -> str:
 
 def _map_of(drawing: Keywords) -> Keywords:
     """Return the colours of values, and of what is no data, that keywords ask for."""
+    ends = drawing.get("clim")
     return {
         "cmap": default_map(drawing.get("cmap")),
         "nan_color": default_nan_color(drawing.get("nan_color")),
+        "clim": None if ends is None else _check.limits("clim", ends),
     }
 
 

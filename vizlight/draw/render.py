@@ -326,8 +326,8 @@ def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: objec
     """Check options that are passed on to PyVista, whose messages do not name them."""
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
-    ends = _check.vector("clim", clim)
-    if len(ends) != 2 or not ends[0] < ends[1]:
+    low, high = _check.limits("clim", clim)
+    if low == high:
         raise ValueError(_check.message("clim", "a lower and a higher number", clim))
     try:
         pv.LookupTable(cmap)

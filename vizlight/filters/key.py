@@ -122,8 +122,9 @@ def key(
         if names:
             made.field_data[NAMES] = names
         if clim is not None:
-            made.field_data[RANGE] = _check.vector("clim", clim)
-            words = numerals(_check.vector("clim", clim))
+            ends = _check.limits("clim", clim)
+            made.field_data[RANGE] = ends
+            words = numerals(ends)
     made.field_data[WORDS] = words
     if title:
         made.field_data[TITLE] = [_check.text("title", title)]

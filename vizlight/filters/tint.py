@@ -283,11 +283,7 @@ def color_table(
     # The mapper below does not see all values, and the range covers all blocks.
     if clim is None and not isinstance(cmap, pv.LookupTable):
         clim = _range(values)
-    if isinstance(clim, int | float):
-        clim = (-abs(clim), abs(clim))
-    ends = None if clim is None else _check.vector("clim", clim)
-    if ends is not None and (len(ends) != 2 or ends[0] > ends[1]):
-        raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+    ends = None if clim is None else _check.limits("clim", clim)
     if not isinstance(categories, bool):
         categories = _check.integer("categories", categories, low=0, high=MOST_COLORS)
     colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}

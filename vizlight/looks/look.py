@@ -431,7 +431,10 @@ def _explicit(
     if question == "auto":
         best = array or contents.first("vectors") or contents.first("values", "heights", "kinds")
         question = "shape" if best is None else "value"
-        question = "direction" if best is not None and best.role == "vectors" else question
+        # Normals beside tangents are for light that is conditioned by a surface.
+        shape = "normals" in wishes.light and not wishes.light.get("conditioned")
+        if best is not None and best.role == "vectors":
+            question = "shape" if shape else "direction"
     if question == "relief" and not _is_height_field(contents, array):
         question = "shadow"
     recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))

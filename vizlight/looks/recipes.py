@@ -458,6 +458,8 @@ def flow(case: Case) -> Drawing:
     camera = case.camera(on if keywords.get("confined") else mesh)
     scene = case.scene(camera)
     lit = case.wishes.step("lit", "streamlines", mesh, scene, **keywords)
+    # Fewer lines than a number that nobody asked for are no concern of the reader.
+    lit.quiet = "seeds" not in case.wishes.light
     lines = Layer(lit, {"scene": scene, "line_width": case.width})
     if "surface" in keywords:
         # The surface that conditions the light of the lines is not drawn with them.

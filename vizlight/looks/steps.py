@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import json
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,6 +48,8 @@ class Step:
         self.asked = ("", "")
         #: What a reader should know of what was decided by itself.
         self.note = ""
+        #: Whether its warnings are of choices that nobody asked for.
+        self.quiet = False
 
     def run(self) -> Foreign:
         """Return the result; the call is made once."""
@@ -54,7 +57,10 @@ class Step:
 
     @functools.cached_property
     def _result(self) -> Foreign:
-        made = self._called()
+        with warnings.catch_warnings():
+            if self.quiet:
+                warnings.simplefilter("ignore")
+            made = self._called()
         if self.asked[0] and not made.n_points:
             raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
         for key, value in self.attributes.items():

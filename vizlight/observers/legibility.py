@@ -202,7 +202,7 @@ def legibility(
     try:
         if scalars is not None:
             asked |= {"scalars": scalars, "cmap": cmap, "show_scalar_bar": False}
-            asked |= {} if clim is None else {"clim": clim}
+            asked |= {} if clim is None else {"clim": _check.limits("clim", clim)}
         pixel = SUPERSAMPLED if _of_lines(mesh) else 1.0
         asked["line_width"] = pixel * asked.get("line_width", 1.0)
         component: Foreign = plotter.vizlight
