@@ -14,9 +14,9 @@ from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES
 from vizlight.looks import options as look_options
-from vizlight.looks import recipes
 from vizlight.looks.contents import Contents
-from vizlight.looks.recipes import Case
+from vizlight.looks.recipes import fields, reliefs, strokes, surfaces
+from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
 from vizlight.mesh import blocks, georeference, height_grids, series
@@ -24,7 +24,7 @@ from vizlight.mesh import blocks, georeference, height_grids, series
 if TYPE_CHECKING:
     from vizlight._types import Given, Keywords
     from vizlight.looks.contents import Named, Role
-    from vizlight.looks.recipes import Drawing, Recipe
+    from vizlight.looks.recipes.drawing import Drawing, Recipe
     from vizlight.looks.wishes import Wishes
     from vizlight.scene import Scene
 
@@ -458,18 +458,18 @@ def _explicit(
 
 #: Recipes of questions, the roles of the array that they show, and whether they need one.
 _QUESTIONS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
-    "direction": (recipes.vectors, ("vectors",), True),
-    "slope": (recipes.vectors, ("vectors",), True),
-    "heading": (recipes.vectors, ("vectors",), True),
-    "shape": (recipes.surface, (), False),
-    "value": (recipes.values, ("values", "heights", "kinds", "colors"), True),
-    "flow": (recipes.flow, ("vectors",), True),
-    "relief": (recipes.relief, ("heights", "values"), True),
-    "shadow": (recipes.shadow, (), False),
-    "sky": (recipes.sky, ("heights", "values"), False),
-    "fur": (recipes.fur, (), False),
-    "contours": (recipes.contours, (), False),
-    "projection": (recipes.projection, (), False),
+    "direction": (fields.vectors, ("vectors",), True),
+    "slope": (fields.vectors, ("vectors",), True),
+    "heading": (fields.vectors, ("vectors",), True),
+    "shape": (surfaces.surface, (), False),
+    "value": (surfaces.values, ("values", "heights", "kinds", "colors"), True),
+    "flow": (fields.flow, ("vectors",), True),
+    "relief": (reliefs.relief, ("heights", "values"), True),
+    "shadow": (reliefs.shadow, (), False),
+    "sky": (reliefs.sky, ("heights", "values"), False),
+    "fur": (surfaces.fur, (), False),
+    "contours": (surfaces.contours, (), False),
+    "projection": (surfaces.projection, (), False),
 }
 #: Questions that a filter answers, whatever the data are.
 _FILTERS = ("flow", "relief", "sky", "fur", "contours", "projection")
@@ -490,7 +490,7 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     named_by = [
         (option, value)
         for option, value in options.items()
-        if isinstance(value, str) and value != recipes.DIRECTION
+        if isinstance(value, str) and value != strokes.DIRECTION
     ]
     if not named_by:
         return None

@@ -9,13 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vizlight.looks import recipes
+from vizlight.looks.recipes import fields, reliefs, strokes, surfaces, volumes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight.looks.contents import Contents, Named, Role
-    from vizlight.looks.recipes import Recipe
+    from vizlight.looks.recipes.drawing import Recipe
 
 
 @dataclass(frozen=True)
@@ -80,24 +80,24 @@ def _is_volume(contents: Contents) -> bool:
 
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
-    Rule("lines", _is_lines, "heading", (), recipes.lines, "lines"),
-    Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), recipes.points,
+    Rule("lines", _is_lines, "heading", (), strokes.lines, "lines"),
+    Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), strokes.points,
          "points with values"),
-    Rule("points", _is_points, "shape", (), recipes.points, "points without values"),
-    Rule("sheet", _is_flat, "direction", ("vectors",), recipes.vectors, "a map with vectors"),
-    Rule("sheet", _is_map, "relief", ("heights",), recipes.relief, "a map of heights"),
-    Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), recipes.values,
+    Rule("points", _is_points, "shape", (), strokes.points, "points without values"),
+    Rule("sheet", _is_flat, "direction", ("vectors",), fields.vectors, "a map with vectors"),
+    Rule("sheet", _is_map, "relief", ("heights",), reliefs.relief, "a map of heights"),
+    Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a map of values"),
-    Rule("sheet", _is_flat, "shape", (), recipes.surface, "a plane without data"),
-    Rule("surface", _is_surface, "direction", ("vectors",), recipes.vectors,
+    Rule("sheet", _is_flat, "shape", (), surfaces.surface, "a plane without data"),
+    Rule("surface", _is_surface, "direction", ("vectors",), fields.vectors,
          "a surface with vectors"),
-    Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), recipes.values,
+    Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a surface with values"),
-    Rule("surface", _is_surface, "shape", (), recipes.surface, "a surface without data"),
-    Rule("streamlines", _is_volume, "heading", ("vectors",), recipes.flow, "a volume with vectors"),
-    Rule("isosurface", _is_volume, "shape", ("values", "heights"), recipes.isosurface,
+    Rule("surface", _is_surface, "shape", (), surfaces.surface, "a surface without data"),
+    Rule("streamlines", _is_volume, "heading", ("vectors",), fields.flow, "a volume with vectors"),
+    Rule("isosurface", _is_volume, "shape", ("values", "heights"), volumes.isosurface,
          "a volume of values"),
-    Rule("hull", _is_volume, "value", ("kinds", "values", "heights", "colors"), recipes.values,
+    Rule("hull", _is_volume, "value", ("kinds", "values", "heights", "colors"), surfaces.values,
          "a volume of a few kinds"),
-    Rule("hull", _is_volume, "shape", (), recipes.surface, "a solid without data"),
+    Rule("hull", _is_volume, "shape", (), surfaces.surface, "a solid without data"),
 )  # fmt: skip

@@ -1,0 +1,225 @@
+"""What a recipe is given and what it returns: one mesh with what is asked of it, and a drawing."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import pyvista as pv
+
+from vizlight._words import message, one_of
+from vizlight.draw.keywords import array_of
+from vizlight.files import FORMATS
+from vizlight.looks.contents import kinds_of
+from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
+from vizlight.looks.steps import Step
+from vizlight.mesh import meaning
+from vizlight.shading.results import part_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from vizlight._types import Keywords
+    from vizlight.looks.contents import Contents, Named
+    from vizlight.looks.wishes import Wishes
+
+#: Colour map where nothing is lit, and the colour of what is missing there.
+LIGHTNESS, MISSING = "viridis", "#d9d9d9"
+#: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
+#: the picture is 85 mm wide.
+THIN = 1.5 / (85 / 25.4 * 300)
+
+#: Function that draws a case.
+Recipe: TypeAlias = "Callable[[Case], Drawing]"
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One mesh of the picture.
+
+    Parameters
+    ----------
+    mesh : Step
+        Step that makes the mesh.
+    keywords : dict
+        Keywords of ``add_mesh``.
+    live : bool
+        Whether the plotter's component for light adds it, or PyVista itself.
+    """
+
+    mesh: Step
+    keywords: Keywords = dataclasses.field(default_factory=dict)
+    live: bool = True
+
+    def added(self, plotter: Step) -> Step:
+        """Return the step that adds the layer to a plotter."""
+        way = ".vizlight.add_mesh" if self.live else ".add_mesh"
+        return Step("", way, plotter, self.mesh, **self.keywords)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What a recipe makes of a case.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Meshes of the picture, the main one first.
+    camera : Step
+        Step that makes the camera.
+    scene : Step
+        Step that makes the scene.
+    lit : Step
+        Step that makes the main mesh with its light as point arrays.
+    words : str
+        What is shown, as the end of "shown ...".
+    keys : sequence of dict
+        Keywords of ``plotter.vizlight.add_key``, for each key.
+    notes : sequence of str
+        What a reader should know.
+    kind : Step, optional
+        Step whose mesh is of the type of the lit mesh. Default: the surface of a mesh.
+    parts : sequence of str
+        Names of the blocks of the lit mesh that are written to files of their own.
+    name : str
+        Name of the array of light.
+    colors : dict
+        Array and colour map of the main mesh, as :func:`vizlight.save_gltf` takes them.
+    background : str, optional
+        Colour behind the data, where neither a white nor a dark one suits them.
+    """
+
+    layers: Sequence[Layer]
+    camera: Step
+    scene: Step
+    lit: Step
+    words: str
+    keys: Sequence[Keywords] = ()
+    notes: Sequence[str] = ()
+    kind: Step | None = None
+    parts: Sequence[str] = ()
+    name: str = "luminance"
+    colors: Keywords = dataclasses.field(default_factory=dict)
+    background: str | None = None
+
+    def suffix(self) -> str:
+        """Return the end of the name of a file that holds the lit mesh."""
+        if self.kind is None:
+            return ".vtp"
+        return FORMATS[type(self.kind.run()).__name__][0]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One mesh, what is asked of it, and the question that a rule or a user chose.
+
+    Parameters
+    ----------
+    data : Step
+        Step that reads the mesh.
+    contents : Contents
+        What it holds.
+    wishes : Wishes
+        Options that were given.
+    question : str
+        Question of the light.
+    array : Named, optional
+        Array that is shown.
+    """
+
+    data: Step
+    contents: Contents
+    wishes: Wishes
+    question: str
+    array: Named | None = None
+
+    @cached_property
+    def surface(self) -> Step:
+        """Step that takes the outer surface of the mesh."""
+        if isinstance(self.data.run(), pv.PolyData) or not self.wishes.surface:
+            return self.data
+        return Step("surface", "files.surface_of", self.data)
+
+    def eye(self, mesh: Step) -> Eye:
+        """Return from where a mesh is seen, if no view is given in its place."""
+        return ISOMETRIC if self.wishes.view is not None else eye_of(mesh.run(), self.contents)
+
+    def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
+        """Return the step that sets the camera on a mesh, by the options or by what suits it."""
+        return self.wishes.camera(mesh, self.eye(mesh) if eye is None else eye)
+
+    def scene(self, camera: Step) -> Step:
+        """Return the step that makes the scene of the question."""
+        return self.wishes.scene(self.question, camera)
+
+    def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
+        """Return the step that lights the points of a mesh."""
+        return self.wishes.lit(mesh, scene, light)
+
+    def bar(self, array: Named, colors: Keywords) -> Keywords:
+        """Return the keywords of the key of an array that is shown in colours."""
+        mesh = self.data.run()
+        bar: Keywords = {"question": "value", "title": titled(mesh, array.name)}
+        if "cmap" in colors:
+            bar["cmap"] = colors["cmap"]
+        if array.role != "kinds":
+            bar["clim"] = colors.get("clim") or range_of(mesh, array.name)
+        return bar
+
+    @property
+    def needed_array(self) -> Named:
+        """Array that is shown, of a recipe that cannot do without.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        """
+        if self.array is None:
+            known = [array.name for array in self.contents.arrays]
+            expected = f"the name of an array, {one_of(known)}"
+            raise ValueError(message("array", expected, None))
+        return self.array
+
+    @property
+    def width(self) -> float:
+        """Least width of lines, in pixels."""
+        given = self.wishes.picture.get("line_width")
+        return float(given) if given else round(max(1.5, THIN * max(self.wishes.size)), 1)
+
+
+def titled(mesh: pv.DataSet, name: str) -> str:
+    """Return the name of an array with its unit, where the mesh says it."""
+    attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
+    unit = attributes.get("units", "")
+    title = name if "," in name else attributes.get("long_name") or name
+    return f"{title} [{unit}]" if unit not in ("", "1") else title
+
+
+def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
+    """Return the ends of the finite values of an array."""
+    values = array_of(mesh, name)
+    assert values is not None
+    finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    return float(finite.min()), float(finite.max())
+
+
+def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
+    """Return the keywords that give each kind a colour of its own."""
+    kinds = kinds_of(mesh.run(), array.name)
+    # Numbers of parts that are no whole numbers have no colours of their own.
+    if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
+        return keywords
+    table = Step("", "vizlight.maps.kinds", list(kinds))
+    return keywords | {"cmap": table}
+
+
+def unlit(lit: Step, scene: Step, name: str, **drawing: object) -> Layer:
+    """Return the layer of a light that was computed at the points, drawn as it is."""
+    drawn: Keywords = {"lighting": False, "show_scalar_bar": False, **drawing}
+    if scene.run().colored:
+        return Layer(lit, {"scalars": part_name(name, "rgb"), "rgb": True, **drawn}, live=False)
+    return Layer(lit, {"scalars": name, "cmap": "gray", "clim": (0.0, 1.0), **drawn}, live=False)

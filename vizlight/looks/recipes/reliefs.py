@@ -1,0 +1,121 @@
+"""Recipes of shadows: heights under a sun, the shadows of a solid, the share of the sky."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.looks.framing import Eye
+from vizlight.looks.recipes.drawing import Drawing, Layer
+from vizlight.looks.steps import Step
+from vizlight.vtk.polylines import has_lines_only
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Keywords
+    from vizlight.looks.contents import Named
+    from vizlight.looks.recipes.drawing import Case
+    from vizlight.scene import Light
+
+#: Eye above a map.
+ABOVE = Eye((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
+#: Points above which a relief has no sky, which would take longer than all the rest.
+MOST_SKY = 250_000
+
+
+def relief(case: Case) -> Drawing:
+    """Draw heights in colours, times the light of a sun in the north-west and of the sky."""
+    array, data = case.needed_array, case.data
+    camera = case.camera(data, ABOVE)
+    scene = case.wishes.scene("relief", camera)
+    raised, note = _raised(case, array)
+    keywords: Keywords = {"lit": True, **raised}
+    if isinstance(data.run(), pv.StructuredGrid) and "raster" not in keywords:
+        # Rows and columns that are not at right angles are sampled on an even grid.
+        keywords["raster"] = 0.0
+    if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
+        keywords["occlusion"] = "sky"
+    lit = case.wishes.step("lit", "relief_shadow", data, scene, **keywords)
+    notes = [note] if note else []
+    if not keywords["lit"]:
+        return _share(case, lit, camera, scene, f"shadow on {array.name}", "t", notes)
+    colors = {"cmap": "gist_earth"} | case.wishes.colors
+    shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
+    keys = [case.bar(array, colors)]
+    layer = Layer(shown, {"show_scalar_bar": False})
+    return Drawing(
+        [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=data, name="t",
+        colors=_colors_of(array, colors),
+    )  # fmt: skip
+
+
+def shadow(case: Case) -> Drawing:
+    """Draw the shadows that a closed surface casts on itself."""
+    mesh = case.surface
+    camera = case.camera(mesh)
+    scene = case.wishes.scene("shadow", camera)
+    keywords: Keywords = {"lit": True} | dict(case.wishes.light)
+    if "raster" not in keywords:
+        keywords = {"feature_angle": "auto"} | keywords
+    lit = case.wishes.step("lit", "relief_shadow", mesh, scene, **keywords)
+    if keywords["lit"]:
+        return Drawing([Layer(lit)], camera, scene, lit, "surface with its shadows", name="t")
+    return _share(case, lit, camera, scene, "shadow", "t")
+
+
+def sky(case: Case) -> Drawing:
+    """Draw the share of a uniform sky that each point sees."""
+    is_map = case.array is not None and case.contents.flat_axis == 2
+    mesh = case.data if is_map or has_lines_only(case.data.run()) else case.surface
+    camera = case.camera(mesh, ABOVE if is_map else None)
+    scene = case.wishes.scene("none", camera)
+    lit = case.wishes.step("skylit", "sky", mesh, **case.wishes.light)
+    name = str(case.wishes.light.get("name", "sky"))
+    drawing = _share(case, lit, camera, scene, "share of the sky", name)
+    return replace(drawing, kind=mesh)
+
+
+def _share(
+    case: Case, lit: Step, camera: Step, scene: Step, words: str, name: str,
+    notes: Sequence[str] = (),
+) -> Drawing:  # fmt: skip
+    """Return the drawing of a share of light at the points, from black to white."""
+    white, notes = 1.0, list(notes)
+    if name == "t" and case.contents.flat_axis == 2:
+        white = min(1.0, round(3 * _level_light(scene.run().lights), 3))
+        if white < 1:
+            notes.append(f"white in the picture is t = {white:.2f}, 3 times the t of level ground")
+    drawn = {
+        "scalars": name, "cmap": "gray", "clim": (0.0, white), "lighting": False,
+        "show_scalar_bar": False,
+    }  # fmt: skip
+    layer = Layer(lit, drawn, live=False)
+    # A share that is 1 at most points is white, as paper is.
+    return Drawing(
+        [layer], camera, scene, lit, words, (), notes, case.data, name=name, background="gray"
+    )
+
+
+def _level_light(lights: Sequence[Light]) -> float:
+    """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
+    fixed = [light for light in lights if not light.follows_view]
+    ways = [np.asarray(light.direction) for light in fixed if light.direction is not None]
+    sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
+    return max((sine for sine in sines if sine > 0), default=1.0)
+
+
+def _raised(case: Case, array: Named) -> tuple[Keywords, str]:
+    """Return the options of a shadow on heights, and what to say of their factor."""
+    keywords: Keywords = {"elevation": array.name} | dict(case.wishes.light)
+    factor, note = case.wishes.heightened(case.data.run(), array.name)
+    return (keywords | {"exaggeration": factor} if factor != 1 else keywords), note
+
+
+def _colors_of(array: Named, colors: Keywords) -> Keywords:
+    """Return the array and the colour map of a mesh, as a glTF file takes them."""
+    names = ("cmap", "clim")
+    return {"scalars": array.name} | {name: colors[name] for name in names if name in colors}

@@ -1,0 +1,75 @@
+"""Recipes of lines and points: by their heading or in the colours of values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vizlight.filters.tint import RGB
+from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds
+from vizlight.looks.steps import Step
+
+if TYPE_CHECKING:
+    from vizlight._types import Keywords
+    from vizlight.looks.recipes.drawing import Case
+
+#: Name that stands for the direction of lines among the arrays that colour a picture.
+DIRECTION = "direction"
+
+
+def lines(case: Case) -> Drawing:
+    """Draw lines, lit by their heading or in the colours of values."""
+    mesh = case.data
+    camera = case.camera(mesh)
+    scene = case.scene(camera)
+    light = dict(case.wishes.light)
+    drawn: Keywords = {"scene": scene, "line_width": case.width, **case.wishes.drawn(light)}
+    keys: list[Keywords] = [{"scene": scene}]
+    words = "lines by their heading"
+    if case.wishes.picture.get("scalars") == DIRECTION:
+        lit = case.lit(mesh, scene, **light)
+        shown = _by_direction(lit)
+        by_direction = {"scalars": RGB, "rgb": True, "lighting": False, "line_width": case.width}
+        layers = [Layer(shown, by_direction, live=False)]
+        return Drawing(layers, camera, scene, lit, "lines by their direction", kind=mesh)
+    if case.question == "value":
+        array = case.needed_array
+        colors = case.wishes.colors
+        if array.role == "kinds":
+            colors = colors_of_kinds(mesh, array, colors)
+        drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
+        keys = [case.bar(array, colors)]
+        words = f"lines in the colours of {array.name}"
+    lit = case.lit(mesh, scene, **light)
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+
+
+def points(case: Case) -> Drawing:
+    """Draw points as small balls, in the colours of values where there are some."""
+    mesh = case.data
+    camera = case.camera(mesh)
+    scene = case.scene(camera)
+    drawn: Keywords = {"render_points_as_spheres": True, "point_size": 6.0}
+    keys: list[Keywords] = []
+    words = "points"
+    array = case.array
+    if array is not None and array.role != "vectors":
+        drawn |= {"scalars": array.name, "show_scalar_bar": False}
+        words = f"points in the colours of {array.name}"
+        if array.role == "colors":
+            drawn["rgb"] = True
+        else:
+            colors = {"cmap": LIGHTNESS} | case.wishes.colors
+            if array.role == "kinds":
+                colors = colors_of_kinds(mesh, array, case.wishes.colors)
+            drawn |= colors
+            # No light follows these points, so the key is that of the scene and its colours.
+            keys = [case.bar(array, colors) | {"scene": scene}]
+    lit = case.lit(mesh, scene)
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+
+
+def _by_direction(lit: Step) -> Step:
+    """Return the step that colours lines by the size of the components of their direction."""
+    rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
+    # The type, bytes, sets colours apart from vectors.
+    return Step("shown", "vizlight.tint", lit, Step("", "numpy.uint8", rgb))

@@ -1,0 +1,130 @@
+"""Recipes of surfaces: their shape, values on them, fur, bands of light, and n-space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vizlight.filters.fur import LENGTH
+from vizlight.looks import levels
+from vizlight.looks.recipes.drawing import (
+    LIGHTNESS,
+    MISSING,
+    Drawing,
+    Layer,
+    colors_of_kinds,
+    unlit,
+)
+from vizlight.looks.steps import Step
+from vizlight.mesh import blocks
+from vizlight.mesh.nspace import POSITION
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight._types import Keywords
+    from vizlight.looks.contents import Named
+    from vizlight.looks.recipes.drawing import Case
+
+
+def values(case: Case) -> Drawing:
+    """Draw a sheet or a surface in the colours of values, with their bar."""
+    array = case.needed_array
+    mesh = case.surface
+    camera = case.camera(mesh)
+    scene = case.scene(camera)
+    keywords = case.wishes.colors
+    if case.question == "none":
+        # Nothing is lit: the map may run in lightness, which shows more than hues alone.
+        keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
+    if array.role == "kinds":
+        mesh = _kept(mesh, array, case)
+        keywords = colors_of_kinds(mesh, array, case.wishes.colors)
+    elif array.role == "colors":
+        keywords = {"rgb": True}
+    light = case.wishes.light_of_surface()
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
+    shown |= case.wishes.drawn(light)
+    lit = case.lit(mesh, scene, **light)
+    keys = [] if array.role == "colors" else [case.bar(array, keywords)]
+    return Drawing([Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys)
+
+
+def surface(case: Case) -> Drawing:
+    """Draw a surface in the light of a question about its shape."""
+    mesh = case.surface
+    camera = case.camera(mesh)
+    scene = case.scene(camera)
+    light = case.wishes.light_of_surface()
+    lit = case.lit(mesh, scene, **light)
+    name = case.wishes.part.get("contour")
+    words = f"isosurface of {name}" if name else "surface"
+    drawn = {"scene": scene, "color": "white", **case.wishes.drawn(light)}
+    key: Keywords = {"scene": scene}
+    if name and case.wishes.part.get("level") is not None:
+        key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key], kind=mesh)
+
+
+def fur(case: Case) -> Drawing:
+    """Draw a surface covered with fibres."""
+    mesh = case.surface
+    keywords: Keywords = {"feature_angle": "auto"} | dict(case.wishes.light)
+    camera = case.camera(_tips(mesh, keywords.get("length")), case.eye(mesh))
+    scene = case.wishes.scene("fur", camera)
+    lit = case.wishes.step("furry", "fur", mesh, scene, **keywords)
+    return Drawing(
+        [Layer(lit)], camera, scene, lit, "surface with fur", parts=("fibres", "skin"),
+        name=str(keywords.get("name", "luminance")),
+    )  # fmt: skip
+
+
+def contours(case: Case) -> Drawing:
+    """Draw the bands of equal luminance of a surface."""
+    mesh = case.surface
+    camera = case.camera(mesh)
+    scene = case.wishes.scene("contours", camera)
+    keywords: Keywords = {"feature_angle": "auto"} | dict(case.wishes.light)
+    lit = case.wishes.step("lit", "isoluminance", mesh, scene, **keywords)
+    name = str(keywords.get("name", "luminance"))
+    bands = unlit(Step("", "[]", lit, "bands"), scene, name)
+    words = "bands of equal luminance"
+    return Drawing(
+        [bands], camera, scene, lit, words, parts=("bands", "contours"), name=name
+    )  # fmt: skip
+
+
+def projection(case: Case) -> Drawing:
+    """Draw a mesh of n-space, projected to 3-space and lit there or before."""
+    mesh, light = case.data, dict(case.wishes.light)
+    rows = mesh.run().point_data.get(light.get("positions", POSITION))
+    # Light after the projection is in the space of the picture.
+    n = 3 if light.get("light") == "after" or rows is None or rows.ndim == 1 else rows.shape[1]
+    scene = case.wishes.scene_in(n)
+    lit = case.wishes.step("projected", "project", mesh, **light, scene=scene)
+    camera = case.camera(lit)
+    name = str(light.get("name", "luminance"))
+    layer = unlit(lit, scene, name)
+    return Drawing([layer], camera, scene, lit, "projection", kind=lit, name=name)
+
+
+def _tips(mesh: Step, length: object) -> Step:
+    """Return the step that moves the points of a surface to where straight fur ends."""
+    skin: pv.PolyData = blocks.surface(mesh.run(), "mesh")
+    tip = LENGTH * skin.length
+    if isinstance(length, str):
+        known = length in skin.point_data and skin.n_points
+        tip = float(skin.point_data[length].max()) if known else 0.0
+    elif isinstance(length, int | float):
+        tip = float(length)
+    normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
+    return Step("tips", ".warp_by_vector", normals, "Normals", factor=tip)
+
+
+def _kept(mesh: Step, array: Named, case: Case) -> Step:
+    """Return the step that leaves out the ground of a volume of kinds, which is 0."""
+    if case.contents.dimension < 3 or case.contents.flat_axis is not None or array.low != 0:
+        return mesh
+    kept = Step("kept", ".threshold", case.data, 0.5, scalars=array.name)
+    if not kept.run().n_cells:
+        return mesh
+    return Step("surface", "files.surface_of", kept)

@@ -1,0 +1,81 @@
+"""Recipes of the values in a volume: the isosurface that stands out, or three slices."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pyvista as pv
+
+from vizlight.looks import levels
+from vizlight.looks.contents import Contents
+from vizlight.looks.recipes import surfaces
+from vizlight.looks.recipes.drawing import LIGHTNESS, MISSING, Drawing, Layer
+from vizlight.looks.steps import Step
+
+if TYPE_CHECKING:
+    from vizlight.looks.contents import Named
+    from vizlight.looks.recipes.drawing import Case
+
+#: Fewest voxels along each side of a scan.
+VOXELS = 30
+
+
+def isosurface(case: Case) -> Drawing:
+    """Draw the isosurface through the steepest places, or three slices where none is good."""
+    array = case.needed_array
+    notes = []
+    if _is_scan(case, array):
+        # The edge of a mask would be a staircase of voxels.
+        smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
+        case = replace(case, data=smooth)
+        notes = ["the values are smoothed by one voxel"]
+    level, contrast = levels.best_level(case.data.run(), array.name)
+    if contrast < levels.GOOD:
+        return slices(case, contrast)
+    part = dict(case.wishes.part) | {"contour": array.name, "level": level}
+    mesh = replace(case.wishes, part=part).isosurface(case.data)
+    contents = Contents(mesh.run())
+    words = f"isosurface {array.name} = {levels.number(level)}"
+    second = contents.first("values", "kinds")
+    if second is None or case.wishes.question == "shape":
+        wishes = replace(case.wishes, part=part)
+        shape = replace(case, data=mesh, contents=contents, question="shape", wishes=wishes)
+        drawing = surfaces.surface(shape)
+    else:
+        shown = replace(case, data=mesh, contents=contents, question="value", array=second)
+        drawing = surfaces.values(shown)
+        words += f" in the colours of {second.name}"
+    if notes:
+        return replace(drawing, words=words, notes=[*drawing.notes, *notes])
+    box = Layer(Step("", ".outline", case.data), {"color": "gray", "line_width": 1}, live=False)
+    return replace(drawing, layers=[*drawing.layers, box], words=words)
+
+
+def slices(case: Case, contrast: float) -> Drawing:
+    """Draw three slices through the middle of a volume, in the colours of its values."""
+    array = case.needed_array
+    mesh = Step("slices", ".slice_orthogonal", case.data)
+    mesh = Step("joined", ".combine", mesh)
+    mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
+    camera = case.camera(mesh)
+    scene = case.wishes.scene("none", camera)
+    colors = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    lit = case.lit(mesh, scene)
+    words = (
+        f"three slices of {array.name}; no isosurface stands out "
+        f"(the steepest is {contrast:.1f} times the mean)"
+    )
+    return Drawing([Layer(mesh, shown)], camera, scene, lit, words, [case.bar(array, colors)])
+
+
+def _is_scan(case: Case, array: Named) -> bool:
+    """Return whether a volume is a scan: one array of an image, of many voxels each way."""
+    mesh = case.data.run()
+    return (
+        isinstance(mesh, pv.ImageData)
+        and not array.of_cells
+        and len(case.contents.arrays) == 1
+        and min(mesh.dimensions) > VOXELS
+    )
