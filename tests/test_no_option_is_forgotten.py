@@ -160,7 +160,7 @@ def filtered(scene, options, folder):
 
 def page(scene, options, folder):
     """The page: all its data and texts."""
-    path = vizlight.live_html(mesh_of(options), scene, folder / "a.html", **options)
+    path = vizlight.live_html(mesh_of(options), folder / "a.html", scene=scene, **options)
     return path.read_text("utf-8")
 
 

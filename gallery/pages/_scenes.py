@@ -138,7 +138,7 @@ def _export(plotter, renderer, path, title):
         # The view shows light as it is kept with the mesh, such as that for an eye in 4-space.
         (actor,) = (one for one in renderer.actors.values() if isinstance(one, pv.Actor))
         look = {"camera": renderer.camera, "background": renderer.background_color}
-        vizlight.live_html(actor.mapper.dataset, None, path, title=title, panel=False, **look)
+        vizlight.live_html(actor.mapper.dataset, path, title=title, panel=False, **look)
     finally:
         views.set_active_renderer(*views.index_to_loc(active))
         for made in set(figures) - set(known):

@@ -134,7 +134,7 @@ def test_another_scene_is_that_of_a_new_mesh(plotter, light):
     plotter.vizlight.add_mesh(ball(), scene=bright, light=light)
     np.testing.assert_array_equal(after, picture(plotter))
     assert np.abs(after.astype(int) - before).max() > 50
-    with pytest.raises(TypeError, match="scene: expected"):
+    with pytest.raises(ValueError, match="scene: expected"):
         plotter.vizlight.set_scene(actor, "bright")
     bare = plotter.add_mesh(pv.Sphere())
     with pytest.raises(ValueError, match="actor: expected one of plotter.vizlight.add_mesh"):

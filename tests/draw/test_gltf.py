@@ -54,7 +54,7 @@ def test_colours_are_ambient_and_diffuse_light(tmp_path):
     ball = pv.Sphere().translate((5e6, 0, 0))
     ball.points = np.asarray(ball.points, dtype=np.float64)
     scene = Scene(lights=FAR, material=shiny(color="tan", specular=0.9))
-    path = vizlight.save_gltf(ball, scene, tmp_path / "lit.glb")
+    path = vizlight.save_gltf(ball, tmp_path / "lit.glb", scene=scene)
     text, arrays = content(path)
     assert "ambient and diffuse light only" in text["asset"]["extras"]["light"]
     (primitive,) = text["meshes"][0]["primitives"]
@@ -74,7 +74,9 @@ def test_colours_of_data_are_those_of_tint(tmp_path):
     material = Material(ambient=0.4, diffuse=1.2, specular=0)
     lamp = Light(direction=(0.3, 0.2, 1))
     scene = Scene(lights=lamp, material=material, view=View(direction=(0, 0, 1)))
-    path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="value", cmap="turbo")
+    path = vizlight.save_gltf(
+        mesh, tmp_path / "lit.glb", scene=scene, scalars="value", cmap="turbo"
+    )
     lit = vizlight.tint(vizlight.illuminate(mesh, scene), "value", cmap="turbo")
     assert len(np.unique(lit["rgb"], axis=0)) > 40
     np.testing.assert_allclose(255 * shown(*content(path)), lit["rgb"], atol=1.01)
@@ -87,7 +89,7 @@ def test_a_cell_has_one_colour_and_light_stays_smooth(as_grid, tmp_path):
     ball["kind"] = np.arange(ball.n_cells) % 5
     mesh = ball.cast_to_unstructured_grid() if as_grid else ball
     scene = Scene(lights=FAR, material=Material(ambient=0.4, diffuse=0.5, specular=0))
-    path = vizlight.save_gltf(mesh, scene, tmp_path / "lit.glb", scalars="kind", cmap="tab10")
+    path = vizlight.save_gltf(mesh, tmp_path / "lit.glb", scene=scene, scalars="kind", cmap="tab10")
     text, arrays = content(path)
     primitive = text["meshes"][0]["primitives"][0]
     corners = arrays[primitive["indices"]].reshape(-1, 3)
@@ -112,8 +114,8 @@ def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path)
     scene = Scene(lights=FAR, material=SHINY)
     seen = scene.replace(view=View(direction=(1, 0, 0)))
     lit = vizlight.tint(vizlight.illuminate(lines, seen), "x")
-    by_record = content(vizlight.save_gltf(lit, None, tmp_path / "a.glb"))
-    by_hand = content(vizlight.save_gltf(lines, scene, tmp_path / "b.glb", scalars="x"))
+    by_record = content(vizlight.save_gltf(lit, tmp_path / "a.glb"))
+    by_hand = content(vizlight.save_gltf(lines, tmp_path / "b.glb", scene=scene, scalars="x"))
     for ours, others in zip(by_record[1], by_hand[1], strict=True):
         np.testing.assert_array_equal(ours, others)
     assert by_record[0]["meshes"][0]["primitives"][0]["mode"] == 1
@@ -122,7 +124,7 @@ def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path)
 
 def test_what_depends_on_the_eye_is_fixed_and_said_to_be(tmp_path):
     with pytest.warns(UserWarning, match=r"lit.glb: .*; the headlight and the light that follows"):
-        path = vizlight.save_gltf(pv.Sphere(), Scene(), tmp_path / "lit.glb")
+        path = vizlight.save_gltf(pv.Sphere(), tmp_path / "lit.glb", scene=Scene())
     assert "the headlight" in content(path)[0]["asset"]["extras"]["light"]
 
 
@@ -134,7 +136,7 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
     light = Light(direction=(0, 0, np.sign(height)))
     scene = Scene(lights=light, view=View(direction=(1, 0.3, height)), material=SHINY)
     with pytest.warns(UserWarning, match="the lit side of open surfaces"):
-        path = vizlight.save_gltf(hills, scene, tmp_path / "lit.glb")
+        path = vizlight.save_gltf(hills, tmp_path / "lit.glb", scene=scene)
     normals = surface_normals(hills)
     expected = 0.1 + 0.5 * np.abs(normals[:, 2])
     np.testing.assert_allclose(shown(*content(path))[:, 0], expected, atol=1 / 255)
@@ -155,7 +157,7 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, t
     given = {"mesh": pv.Sphere(), "scene": Scene(lights=FAR), "path": "lit.glb"} | options
     mesh, scene, name = (given.pop(key) for key in ("mesh", "scene", "path"))
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.save_gltf(mesh, scene, tmp_path / name, **given)
+        vizlight.save_gltf(mesh, tmp_path / name, scene=scene, **given)
     assert not list(tmp_path.iterdir())
 
 
@@ -166,7 +168,7 @@ def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, t
 def test_the_validator_of_gltf_has_no_objection(tmp_path):
     both = pv.MultiBlock({"ball": pv.Sphere(), "lines": vizlight.load_example("fibre_bundle.vtp")})
     both["grid"] = pv.ImageData(dimensions=(4, 4, 4))
-    path = vizlight.save_gltf(both, Scene(lights=FAR, material=SHINY), tmp_path / "lit.glb")
+    path = vizlight.save_gltf(both, tmp_path / "lit.glb", scene=Scene(lights=FAR, material=SHINY))
     script = """
     const { validateBytes } = require(process.argv[1] + '/gltf-validator');
     validateBytes(new Uint8Array(require('fs').readFileSync(process.argv[2])))
@@ -184,7 +186,7 @@ def test_the_validator_of_gltf_has_no_objection(tmp_path):
 def test_what_is_not_data_is_grey(tmp_path, scalars):
     mesh = half_known()
     scene = Scene(lights=FAR, material=SHINY)
-    vizlight.save_gltf(mesh, scene, tmp_path / "a.glb", tangents="V", scalars=scalars)
+    vizlight.save_gltf(mesh, tmp_path / "a.glb", scene=scene, tangents="V", scalars=scalars)
     seen = np.rint(255 * shown(*content(tmp_path / "a.glb")))
     lost = ~np.any(mesh["V"], axis=1)
     np.testing.assert_array_equal(seen[lost], 128)

@@ -80,7 +80,7 @@ def shown(opened, tmp_path):
 
     def call(mesh, scene, *, wide=False, **options):
         options = {"background": "black"} | options
-        path = vizlight.live_html(mesh, scene, tmp_path / "a.html", **options)
+        path = vizlight.live_html(mesh, tmp_path / "a.html", scene=scene, **options)
         page, _ = opened(path, bare=False, **WIDE) if wide else opened(path)
         return page
 
@@ -162,7 +162,7 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, opened,
     centre = AWAY if case == "far from the origin" else (0.0, 0.0, 0.0)
     camera = first_camera(centre)
     path = vizlight.live_html(
-        mesh, scene, tmp_path / "live.html", camera=camera, background="black", panel=False,
+        mesh, tmp_path / "live.html", scene=scene, camera=camera, background="black", panel=False,
         line_width=2, **options, **colored,
     )  # fmt: skip
     live, seen = opened(path)
@@ -233,7 +233,9 @@ def test_the_page_reads_the_numbers_that_were_packed(shown):
 def plain_page(tmp_path, **options):
     ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
     scene = Scene(lights=Light(direction=(1, 0.2, 0.3)), material=SHINY)
-    return vizlight.live_html(ball, scene, tmp_path / "ball.html", background="black", **options)
+    return vizlight.live_html(
+        ball, tmp_path / "ball.html", scene=scene, background="black", **options
+    )
 
 
 def slide(page, label, value):
@@ -286,7 +288,9 @@ def test_the_light_of_the_sky_is_switched_off_and_on(opened, tmp_path):
     pages = {}
     for name, options in (("sky", {"occlusion": "sky"}), ("open", {})):
         command = ["a.vtp", "--occlusion=sky"] if options else ["a.vtp"]
-        path = vizlight.live_html(ball, scene, tmp_path / f"{name}.html", source=command, **options)
+        path = vizlight.live_html(
+            ball, tmp_path / f"{name}.html", scene=scene, source=command, **options
+        )
         pages[name], _ = opened(path, bare=False, **WIDE)
     page, switch = pages["sky"], pages["sky"].get_by_label("Light of the sky in hollows")
     assert pages["open"].get_by_label("Light of the sky in hollows").count() == 0
@@ -310,7 +314,7 @@ def test_axe_finds_nothing(scheme, opened, tmp_path):
     for width, title, frames in ((1200, "", False), (400, "A ring", True)):
         meshes = {0.5: mesh, 1.5: torus(centre=(1, 0, 0))} if frames else mesh
         options = {} if frames else {"scalars": "height", "occlusion": "sky"}
-        path = vizlight.live_html(meshes, scene, tmp_path / "a.html", title=title, **options)
+        path = vizlight.live_html(meshes, tmp_path / "a.html", scene=scene, title=title, **options)
         look = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
         page, _ = opened(path, bare=False, bypass_csp=True, **look)
         page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
@@ -495,7 +499,7 @@ def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
 def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(opened, tmp_path):
     scene = Scene(lights=FAR)
     for options, corners in (({}, [22, 255, 255]), ({"background": "white"}, [255, 255, 255])):
-        path = vizlight.live_html(pv.Sphere(), scene, tmp_path / "a.html", **options)
+        path = vizlight.live_html(pv.Sphere(), tmp_path / "a.html", scene=scene, **options)
         page, _ = opened(path)
         seen = []
         for media in (
@@ -541,27 +545,27 @@ def test_two_files_serve_a_strict_policy(browser, tmp_path):
 def test_scans_are_points_in_the_page(tmp_path):
     scan = pv.PolyData(np.random.default_rng(0).normal(size=(500, 3)))
     for step in (scan, vizlight.illuminate(scan), pv.MultiBlock([scan, pv.Sphere()])):
-        _, _, content = scene_in(vizlight.live_html(step, None, tmp_path / "scan.html"))
+        _, _, content = scene_in(vizlight.live_html(step, tmp_path / "scan.html"))
         assert all(mesh["live"] for mesh in content["meshes"])
         assert "verts" in content["meshes"][0]
         # White points show before black.
         dark = not isinstance(step, pv.MultiBlock)
         assert content["background"] == ("#000000" if dark else "#ffffff")
     with pytest.raises(ValueError, match="mesh: expected a surface, whose normals are lit"):
-        vizlight.live_html(pv.PolyData(np.eye(3)), None, tmp_path / "few.html")
+        vizlight.live_html(pv.PolyData(np.eye(3)), tmp_path / "few.html")
 
 
 def test_light_that_cannot_follow_is_fixed_and_said_to_be(tmp_path):
     mesh, scene = torus(), Scene(lights=FAR, material=SHINY)
     with pytest.warns(UserWarning, match="does not follow the eye, because .*cylinder.*ambient"):
         path = vizlight.live_html(
-            mesh, scene, tmp_path / "a.html", tangents="around", model="cylinder"
+            mesh, tmp_path / "a.html", scene=scene, tangents="around", model="cylinder"
         )
     _, _, content = scene_in(path)
     assert "does not follow the eye" in content["notices"][0]
     assert not content["meshes"][0]["live"]
     with pytest.warns(UserWarning, match="does not follow the eye; ambient and diffuse"):
-        path = vizlight.live_html(pv.Sphere(), scene, path, light="points")
+        path = vizlight.live_html(pv.Sphere(), path, scene=scene, light="points")
     _, _, content = scene_in(path)
     packed = content["meshes"][0]["colors"]["data"]
     colors = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.uint8).reshape(-1, 4)
@@ -602,7 +606,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
 def test_what_does_not_fit_is_refused_and_nothing_is_written(options, message, tmp_path):
     path = tmp_path / options.pop("path", "lit.html")
     with pytest.raises((FileError, TypeError, ValueError), match=message):
-        vizlight.live_html(torus(), Scene(lights=FAR, material=SHINY), path, **options)
+        vizlight.live_html(torus(), path, scene=Scene(lights=FAR, material=SHINY), **options)
     assert not list(tmp_path.iterdir())
 
 
@@ -615,7 +619,7 @@ def test_the_viewer_is_small_and_asks_for_nothing():
 
 @pytest.mark.parametrize(("mesh", "colour"), [(pv.Line(), "#000000"), (pv.Plane(), "#ffffff")])
 def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
-    path = vizlight.live_html(mesh, Scene(lights=FAR, material=SHINY), tmp_path / "a.html")
+    path = vizlight.live_html(mesh, tmp_path / "a.html", scene=Scene(lights=FAR, material=SHINY))
     assert scene_in(path)[2]["background"] == colour
 
 
@@ -624,8 +628,9 @@ def test_what_is_not_data_is_grey_and_has_a_name(opened, tmp_path):
     camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)
     camera.parallel_scale = 0.5
     path = vizlight.live_html(
-        half_known(), Scene(lights=Light(direction=(1, 0, 1)), material=SHINY), tmp_path / "a.html",
-        camera=camera, tangents="V", scalars="height", panel=False,
+        half_known(), tmp_path / "a.html",
+        scene=Scene(lights=Light(direction=(1, 0, 1)), material=SHINY), camera=camera,
+        tangents="V", scalars="height", panel=False,
     )  # fmt: skip
     page, _ = opened(path)
     picture = shot(page)
@@ -651,7 +656,7 @@ def test_a_page_has_the_key_of_its_light(tmp_path):
     ball["z"] = ball.points[:, 2]
 
     def key_of(scene, **options):
-        path = vizlight.live_html(ball, scene, tmp_path / "a.html", **options)
+        path = vizlight.live_html(ball, tmp_path / "a.html", scene=scene, **options)
         return scene_in(path)[2]["key"]
 
     scene = presets.direction()

@@ -67,8 +67,8 @@ def hostile(text, path):
     blocks = pv.MultiBlock({text: mesh, f"2 {text}": mesh.translate((1, 0, 0))})
     words = ["--tangents", f"field {text}", "--threshold", f"{text}:0:1"]
     return vizlight.live_html(
-        {0.0: blocks, 1.0: blocks}, Scene(lights=Light(direction=(1, 0, 1))), path, title=text,
-        tangents=f"field {text}", scalars=text, frames=text, source=[text, *words],
+        {0.0: blocks, 1.0: blocks}, path, scene=Scene(lights=Light(direction=(1, 0, 1))),
+        title=text, tangents=f"field {text}", scalars=text, frames=text, source=[text, *words],
     ), words  # fmt: skip
 
 
@@ -141,7 +141,11 @@ def test_what_is_copied_draws_the_picture(act, opened, tmp_path, monkeypatch):
         material=Material(ambient=0.2, diffuse=0.6, specular=0.2),
     )
     path = vizlight.live_html(
-        pv.read("ring.vtp"), scene, tmp_path / "a.html", background="black", source=["ring.vtp"]
+        pv.read("ring.vtp"),
+        tmp_path / "a.html",
+        scene=scene,
+        background="black",
+        source=["ring.vtp"],
     )
     page, _ = opened(path, **PANEL)
     page.evaluate(f"() => {{ const app = vizlight; {ACTS[act]}; app.moving = false; app.draw(); }}")

@@ -434,7 +434,7 @@ def test_empty_mesh():
         ({"hyperplane": ((0, 0, 0, 0), 0)}, ValueError, "hyperplane: expected a direction"),
         ({"hyperplane": ((0, 0, 0, 1), np.nan)}, ValueError, "hyperplane: expected a finite"),
         ({"light": "during"}, ValueError, "light: expected 'before' or 'after'"),
-        ({"scene": "sun"}, TypeError, "scene: expected a vizlight.Scene"),
+        ({"scene": "sun"}, ValueError, "scene: expected a vizlight.Scene, or 'direction'"),
         ({"positions": "cells"}, ValueError, "the cell array 'cells'; call mesh.cell_data_to_po"),
         ({"vectors": 3}, TypeError, "vectors: expected the name of a point array, or a list"),
         ({"scene": SCENE4, "rotate": 1}, TypeError, "rotate: expected an option of project"),

@@ -78,7 +78,7 @@ def _surfaces(folder):
     rows += [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (folder / "ball.obj").write_text("\n".join(rows) + "\n")
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=Material(specular=0))
-    vizlight.save_gltf(ball_, scene, folder / "ball.glb")
+    vizlight.save_gltf(ball_, folder / "ball.glb", scene=scene)
 
 
 def _of_meshio(folder):

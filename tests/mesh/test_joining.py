@@ -179,7 +179,7 @@ def test_a_block_without_the_array_is_drawn_without_data(made, tmp_path):
         assert np.ptp(grey, axis=1).max() == 0
     elif made == "gltf":
         lamp = Scene(lights=vizlight.Light(direction=(0, 0, 1)))
-        vizlight.save_gltf(pv.MultiBlock(balls), lamp, tmp_path / "b.glb", scalars="T")
+        vizlight.save_gltf(pv.MultiBlock(balls), tmp_path / "b.glb", scene=lamp, scalars="T")
         assert (tmp_path / "b.glb").stat().st_size
     else:
         vizlight.legibility(lit, SCENE, scalars="T", view=SCENE.view)

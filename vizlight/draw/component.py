@@ -24,6 +24,7 @@ from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
+from vizlight.scene.presets import optional_scene, required_scene
 from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
 from vizlight.vtk.arrays import are_colors
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
     from vizlight._types import ColorLike, Foreign, Given, Keywords
-    from vizlight.filters.key import Question
     from vizlight.filters.relight import Source
+    from vizlight.scene.presets import AnyScene, Question
 
 __all__ = ["Component", "add_recorded"]
 
@@ -73,7 +74,7 @@ class Component:
         mesh: pv.DataSet | pv.MultiBlock,
         /,
         *,
-        scene: Scene | None = None,
+        scene: AnyScene | None = None,
         light: LightAt = "auto",
         scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
@@ -87,7 +88,7 @@ class Component:
         mesh : pyvista.DataSet or pyvista.MultiBlock
             Mesh that is lit and drawn; not changed. One with the light of a filter is lit again
             from its record, unless options of light are given.
-        scene : Scene, optional
+        scene : Scene or str, optional
             Lights, material and depth cue. Default: the scene of the mesh's record, otherwise the
             lights of the plotter and the material of the actor (``ambient=``, ``diffuse=``,
             ``specular=``, ``specular_power=``, ``color=``). The camera takes the place of its
@@ -166,7 +167,7 @@ class Component:
         """
         plotter = self._open_plotter()
         blocks.check(mesh)
-        _check.instance("scene", scene, Scene, optional=True)
+        scene = optional_scene(scene)
         _check.choice("light", light, get_args(LightAt))
         own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
         width_of_lines = _check_lines(line_diameter, halo)
@@ -228,7 +229,7 @@ class Component:
 
     def add_key(
         self,
-        scene: Scene | None = None,
+        scene: AnyScene | None = None,
         /,
         *,
         question: Question | None = None,
@@ -243,7 +244,7 @@ class Component:
 
         Parameters
         ----------
-        scene : Scene, optional
+        scene : Scene or str, optional
             Scene whose light the key explains. Default: the scene of the first mesh of
             :meth:`add_mesh`, with the exponent of its light, and its colour map where it is
             coloured by values.
@@ -275,6 +276,7 @@ class Component:
         for the camera when it is added.
         """
         plotter = self._open_plotter()
+        scene = optional_scene(scene)
         if scene is None:
             scene, own = self._first_light(plotter, question)
             options = own | options
@@ -444,14 +446,14 @@ class Component:
         plotter = self._open_plotter()
         return live.explain(live.scene_of(plotter.renderer, actor))
 
-    def set_scene(self, actor: vtkActor, scene: Scene, /) -> None:
+    def set_scene(self, actor: vtkActor, scene: AnyScene, /) -> None:
         """Light an actor by another scene, from the next frame on; nothing else is computed again.
 
         Parameters
         ----------
         actor : pyvista.Actor
             Actor that :meth:`add_mesh` returned.
-        scene : Scene
+        scene : Scene or str
             Lights, material and depth cue, as for :meth:`add_mesh`.
 
         Raises
@@ -459,8 +461,7 @@ class Component:
         TypeError, ValueError
             If it is no scene, or the actor has no live light.
         """
-        _check.instance("scene", scene, Scene)
-        self._lit_by_us(actor).set_scene(scene, actor)
+        self._lit_by_us(actor).set_scene(required_scene(scene), actor)
 
     @property
     def has_live_light(self) -> bool:

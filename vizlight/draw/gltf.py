@@ -17,7 +17,7 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_in_scene, tint
 from vizlight.filters.tint import color_table, map_colors, values_of, values_of_blocks
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
-from vizlight.scene import Scene, View
+from vizlight.scene import View
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.cells import has_faces
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Given, Indices, Keywords, Raw
     from vizlight.filters.relight import Source
     from vizlight.filters.tint import ColorMap
+    from vizlight.scene.presets import AnyScene
 
 __all__ = ["save_gltf"]
 
@@ -43,9 +44,9 @@ _UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 def save_gltf(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
-    scene: Scene | None,
     path: str | Path,
     *,
+    scene: AnyScene | None = None,
     scalars: str | None = None,
     cmap: ColorMap = None,
     clim: Sequence[float] | float | None = None,
@@ -61,11 +62,11 @@ def save_gltf(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh, which is not changed; of a volume its surface is written. Each block is a node.
-    scene : Scene or None
-        Lights and material. None for the record of a lit mesh. The view counts only for what needs
-        one, such as a headlight, which is then fixed, with a warning.
     path : path
         Path of the file, which ends in .glb. An existing file is replaced.
+    scene : Scene or str, optional
+        Lights and material. Default: the record of a lit mesh. The view counts only for what needs
+        one, such as a headlight, which is then fixed, with a warning.
     scalars : str, optional
         Name of the array that gives the colours; each cell has one colour where the values are
         the cells'. Default: the material's, or the array of :func:`vizlight.tint` for a mesh that

@@ -33,6 +33,7 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
+from vizlight.scene.presets import optional_scene
 from vizlight.shading.display import NO_DATA_NAME, numerals
 from vizlight.shading.plan import decide
 from vizlight.shading.results import DEFAULT_NAME
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
     from vizlight.draw.live import LightAt, Live
     from vizlight.filters.relight import Source
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.plan import Plan
 
 
@@ -524,9 +526,9 @@ SCRIPTS, SCRIPT = ("gl.js", "app.js", "copied.js", "panel.js"), "viewer.js"
 def live_html(
     mesh: pv.DataSet | pv.MultiBlock | Mapping[float, pv.DataSet | pv.MultiBlock],
     /,
-    scene: Scene | None,
     path: str | Path,
     *,
+    scene: AnyScene | None = None,
     title: str = "",
     light: LightAt = "auto",
     scalars: str | None = None,
@@ -552,11 +554,11 @@ def live_html(
         Mesh, which is not changed. Each block has a name in the page and can be switched off. A
         mapping has a mesh for each number, such as the levels of an isosurface or the steps of a
         time: a slider shows one of them.
-    scene : Scene or None
-        Lights, material and depth cue; the reader's eye takes the place of its view. None for the
-        record of a lit mesh, otherwise PyVista's lights.
     path : path
         Path of the file, which ends in .html or .htm. An existing file is replaced.
+    scene : Scene or str, optional
+        Lights, material and depth cue; the reader's eye takes the place of its view. Default: the
+        record of a lit mesh, otherwise PyVista's lights.
     title : str, default: ""
         Title of the page.
     light : {"auto", "points", "fragments"}
@@ -665,8 +667,9 @@ def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> Keywords:
     return {"facing": "auto"} if clouds and (alone or all(map(is_scan, clouds))) else {}
 
 
-def _look(plotter: Foreign, mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None) -> None:
+def _look(plotter: Foreign, mesh: pv.DataSet | pv.MultiBlock, scene: AnyScene | None) -> None:
     """See all that is drawn from where the view of a scene, or of the mesh's record, is."""
+    scene = optional_scene(scene)
     if scene is None and relight.is_lit(mesh):
         scene = Scene.from_dict(records.provenance(mesh, DEFAULT_NAME)["scene"])
     view = None if scene is None or scene.n not in (None, 3) else scene.view

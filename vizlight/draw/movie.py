@@ -22,6 +22,7 @@ from vizlight.files import check_output, replace_file
 from vizlight.filters.project import project
 from vizlight.filters.tint import RGB
 from vizlight.mesh.blocks import all_blocks
+from vizlight.scene.presets import optional_scene
 from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Given, Raw
     from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
 
     Picture = NDArray[np.uint8]
 
@@ -126,7 +128,7 @@ def turn(
     path: str | Path,
     /,
     *,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     plane: str | tuple[int, int] = "xw",
     frames: int = 72,
     angle: float = TURN,
@@ -196,6 +198,7 @@ def turn(
     whole = _check.number("angle", angle)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     drawing = _drawing(picture)
+    scene = optional_scene(scene)
     if scene is not None:
         drawing.setdefault("scalars", RGB if scene.colored else options.get("name", DEFAULT_NAME))
     else:

@@ -12,6 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.live import lifted, on_screen
 from vizlight.filters import lighting, relight
+from vizlight.filters.key import preset_of
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
 from vizlight.mesh import blocks, normals, records
@@ -19,10 +20,11 @@ from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.scene import Light, Scene, View
+from vizlight.scene.presets import OF_TANGENTS, optional_scene
 from vizlight.shading.display import on_colors
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
-from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.cells import GHOSTS, has_faces
 from vizlight.vtk.corners import MANY_SHARP, SHARP
 from vizlight.vtk.normals import Sided, computed_normals, piece_numbers
 from vizlight.vtk.parts import uses_normals
@@ -30,6 +32,7 @@ from vizlight.vtk.parts import uses_normals
 if TYPE_CHECKING:
     from vizlight._types import Indices, Keywords
     from vizlight.filters.relight import Source
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import FeatureAngle
 
@@ -54,6 +57,7 @@ def sources_of(
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
+    _refuse_without_tangents(mesh, scene, asked)
     # The points are split by now, and must not be once more.
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {
@@ -72,8 +76,25 @@ def sources_of(
     return relight.from_options(mesh, provisional, asked), scene
 
 
+def _has_sides(block: pv.DataSet) -> bool:
+    return has_faces(block) if isinstance(block, pv.PolyData) else block.n_cells > 0
+
+
+def _refuse_without_tangents(
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, asked: LightOptions
+) -> None:
+    """Raise ValueError if a surface has no tangents, and its light tells their direction."""
+    if scene is None or asked.tangents is not None or asked.positions is not None:
+        return
+    question = preset_of(scene)
+    if question in OF_TANGENTS and any(map(_has_sides, blocks.all_blocks(mesh))):
+        expected = f"vectors, whose {question} this scene shows"
+        remedy = "pass tangents=NAME, or scene='shape' for the shape of the surface"
+        raise ValueError(_check.message("tangents", expected, None, remedy))
+
+
 def sources_in_scene(
-    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, options: Keywords
+    mesh: pv.DataSet | pv.MultiBlock, scene: AnyScene | None, options: Keywords
 ) -> tuple[list[Source], Scene]:
     """Return what is lit, and its scene, for a file, which has no lights of a plotter.
 
@@ -83,8 +104,7 @@ def sources_in_scene(
         If an argument does not fit, or there is neither a scene nor the record of one.
     """
     blocks.check(mesh)
-    _check.instance("scene", scene, Scene, optional=True)
-    sources, used = sources_of(mesh, scene, options)
+    sources, used = sources_of(mesh, optional_scene(scene), options)
     if used is None:
         remedy = "pass a Scene, or a mesh that a filter has lit"
         raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))

@@ -18,7 +18,7 @@ from vizlight.mesh.sky import in_medium
 from vizlight.model import kernels
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import Bundle, Options, ShadingOptions, check_sides, checked_bundle
 from vizlight.vtk.arrays import vectors_of
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Array, Indices, Slice, VectorLike
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
@@ -115,7 +116,7 @@ class FurOptions(Options):
 def fur(
     surface: pv.PolyData,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     absorption: float | None = None,
     density: float | None = None,
@@ -143,7 +144,7 @@ def fur(
     surface : pyvista.PolyData
         Surface that is covered; not changed. Its active point normals, or those computed, point
         outward.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Scene, by default ``Scene()`` with the material ``filters.fur.MATERIAL``, as bright as fur
         that dims itself needs.
     absorption : float, optional
@@ -214,7 +215,7 @@ def fur(
     4.2, 5, (7), (8).
     """
     options = FurOptions.of(locals())
-    scene = Scene(material=MATERIAL) if scene is None else as_scene(scene)
+    scene = as_scene(Scene(material=MATERIAL) if scene is None else scene)
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     # Splitting at sharp edges makes more points, and only arrays that the mesh carries go with

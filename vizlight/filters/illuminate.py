@@ -11,7 +11,7 @@ from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, refining
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.parts import uses_normals
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from vizlight.mesh.blocks import MeshT
     from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
     from vizlight.vtk.normals import Sided, Told
     from vizlight.vtk.parts import Part
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 def illuminate(
     mesh: MeshT,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     tangents: str | ArrayLike | None = None,
     positions: str | None = None,
@@ -63,7 +64,7 @@ def illuminate(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh that is lit; not changed, unless ``inplace``.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Lights, material and view, in the unit of the mesh. Default: ``Scene()``, which has no
         view: the highlight is left out, and its light follows :meth:`vizlight.View.isometric`.
     tangents : str or array_like, optional
@@ -181,7 +182,7 @@ def illuminate(
 
 def light_mesh(
     mesh: MeshT,
-    scene: Scene | None,
+    scene: AnyScene | None,
     options: LightOptions,
     *,
     inplace: bool = False,

@@ -19,7 +19,7 @@ from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
 from vizlight.mesh import blocks, normals, records, subdivision
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading import engine
 from vizlight.shading.display import exposed
 from vizlight.shading.options import LightOptions, Options, check_sides
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.solids.triangle_mesh import Mesh
     from vizlight.model.reflection import SpecularModel
     from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ShadingInputs
     from vizlight.shading.options import Exponent, FeatureAngle
@@ -79,7 +80,7 @@ class ContourOptions(Options):
 def isoluminance(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     levels: Levels = 16,
     tolerance: float = 0.003,
@@ -101,7 +102,7 @@ def isoluminance(
         is lit; blocks are joined. A solid is a :class:`vizlight.Sphere`,
         :class:`~vizlight.Frustum` or :class:`~vizlight.Block`, or a combination of them by ``|``,
         ``&`` and ``-``.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Scene with one light or several, by default ``Scene()``. A highlight needs a view.
     levels : int, float or sequence of float, default: 16
         Number of equal steps (int), allowed luminance error (float), or luminance of the contours
@@ -171,7 +172,7 @@ def isoluminance(
 
 def _make(
     mesh: pv.DataSet | pv.MultiBlock | Solid,
-    scene: Scene | None,
+    scene: AnyScene | None,
     options: ContourOptions,
     progress: Callable[[float], None],
 ) -> tuple[pv.MultiBlock, Bands, _Light]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
 from vizlight import _check
 from vizlight.filters.tint import RGB, color_table
 from vizlight.scene import Scene, View
-from vizlight.scene.presets import PRESETS
+from vizlight.scene.presets import PRESETS, Question, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, displayable, numerals, on_colors
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array
     from vizlight.filters.tint import ColorMap
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import Exponent
 
 __all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
 
-Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
 #: Names of the field arrays with the range of a bar of values, and the names of kinds.
@@ -53,7 +53,7 @@ FINE = 4
 
 
 def key(
-    scene: Scene,
+    scene: AnyScene,
     /,
     *,
     question: Question | None = None,
@@ -67,8 +67,8 @@ def key(
 
     Parameters
     ----------
-    scene : Scene
-        Scene whose lights are all at infinity, as it lights the data.
+    scene : Scene or str
+        Scene whose lights are all at infinity, as it lights the data, or a question of a preset.
     question : {"direction", "slope", "heading", "shape", "value"}, optional
         What the key tells. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
@@ -108,6 +108,7 @@ def key(
     """
     import pyvista as pv
 
+    scene = required_scene(scene)
     asked = question_of(scene) if question is None else question
     x, y, faces = _bar() if asked in ("slope", "value") else _disc(HOLE * (asked == "direction"))
     made = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
@@ -267,7 +268,7 @@ def colors_of(
 
 
 def key_picture(
-    scene: Scene,
+    scene: AnyScene,
     width: int = 240,
     /,
     *,
@@ -302,6 +303,7 @@ def key_picture(
     >>> vizlight.presets.key_picture(vizlight.presets.shape(), 64).shape
     (64, 64, 4)
     """
+    scene = required_scene(scene)
     width = _check.integer("width", width, low=8, high=4096)
     question = question_of(scene) if question is None else question
     bar = question in ("slope", "value")

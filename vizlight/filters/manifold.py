@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import VectorLike
     from vizlight.filters.project import LightWhen
-    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 
@@ -30,7 +30,7 @@ def manifold(
     shape: Manifold,
     /,
     *,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     rotation: object = None,
     hyperplane: tuple[VectorLike, float] | None = None,
     distance: float | None = None,

@@ -17,7 +17,7 @@ from vizlight.mesh import cf_grids, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Foreign
-    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Bundle, Exponent, Facing, Model, Precision
 
 #: Kinds of lines in a flow that changes with time.
@@ -73,7 +73,7 @@ class PathlineOptions(LightOptions):
 def pathlines(
     series: Sequence[pv.DataSet] | Foreign,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     kind: Kind = "pathlines",
     times: ArrayLike | None = None,
@@ -103,7 +103,7 @@ def pathlines(
         Meshes with the same points at rising times, such as a list; a reader of PyVista with
         ``time_values``; or the path of its file, such as ``flow.pvd``. Only two steps of a reader
         are in memory at a time.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Scene, the same at each step, by default ``Scene()``.
     kind : {"pathlines", "streaklines"}
         Lines: the way of each particle that leaves its seed at the first time; or where the

@@ -14,8 +14,8 @@ from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
-from vizlight.scene import Scene
 from vizlight.scene.keywords import named
+from vizlight.scene.presets import optional_scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import VectorLike
+    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Facing, Model, Precision
     from vizlight.shading.results import Record
 
@@ -81,7 +83,7 @@ def project(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     rotation: object = None,
     hyperplane: tuple[VectorLike, float] | None = None,
     distance: float | None = None,
@@ -111,7 +113,7 @@ def project(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh that is turned; not changed. An image or a rectilinear grid becomes a structured grid.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Scene by which the mesh is lit.
     rotation : optional
         A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
@@ -186,7 +188,7 @@ def project(
     """
     asked = ProjectOptions.of(locals())
     blocks.check(mesh)
-    _check.instance("scene", scene, Scene, optional=True)
+    scene = optional_scene(scene)
     if scene is None:
         # Without a scene nothing is lit, and an option of the light would be ignored in silence.
         for option in asked.changed():

@@ -12,7 +12,7 @@ from vizlight.filters.illuminate import light_parts, parts_of
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, records, refining
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import plain
 from vizlight.vtk.parts import share_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight.mesh.blocks import MeshT
-    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Least error between points that light is refined to: rounding in float32 is about 1e-6.
@@ -48,7 +48,7 @@ class RefineOptions(LightOptions):
 def refine(
     mesh: MeshT,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     error: float = 0.00392156862745098,
     max_points: int | None = None,
@@ -80,7 +80,7 @@ def refine(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh of faces or lines; not changed.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Lights, material and view for which the mesh is refined, by default ``Scene()``.
     error : float, default: 1/255
         Difference, in luminance and in each channel of a colour, of the light that is interpolated

@@ -19,9 +19,9 @@ from vizlight.mesh.casters import CasterOptions, caster
 from vizlight.mesh.height_grids import Grid, elevation_name
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
-from vizlight.scene import Light, Scene
+from vizlight.scene import Light
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading import engine
 from vizlight.shading.results import (
     DEFAULT_NAME,
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import FieldCaster, SolidCaster
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import FeatureAngle
 
 #: Share of a surface in which shadows end from which a warning is given, and sides of triangles
@@ -79,7 +80,7 @@ class ReliefOptions(CasterOptions):
 def relief_shadow(
     mesh: MeshT,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     sun: Sequence[float] | None = None,
     angular_diameter: float = 0.0,
@@ -108,7 +109,7 @@ def relief_shadow(
         any surface with ``raster``; or a closed surface, such as the outer one of a volume, which
         is taken. Of a MultiBlock each block by itself. Not changed, unless ``inplace``. Lengths of
         a map in degrees are in metres from its centre.
-    scene : Scene
+    scene : Scene or str, optional
         Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh, by
         default ``Scene()``.
     sun : (azimuth, altitude), optional

@@ -19,7 +19,7 @@ from vizlight.vtk.arrays import is_of_cells, tangents_of, vectors_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 
@@ -38,7 +38,7 @@ class SatinOptions(StreamlineOptions):
 def satin(
     surface: pv.PolyData,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     seeds: int | ArrayLike | pv.DataSet = 300,
     line_field: bool = False,
@@ -67,7 +67,7 @@ def satin(
     surface : pyvista.PolyData
         Surface that is lit; not changed. ``tangents`` names its point array of 3 components,
         tangent to it, or its cell array; it must be given.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Lights, material and view, by default ``Scene()``. Banks' material is
         ``Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30))``, and his
         panels have ``exponent=1``.

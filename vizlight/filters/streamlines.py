@@ -19,8 +19,7 @@ from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import PRESETS
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import PRESETS, as_scene
 from vizlight.shading.options import LightOptions
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of, vectors_of
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
     from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Name of the point array of the directions that were integrated, and by which the lines are lit.
@@ -103,7 +103,7 @@ def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
 def streamlines(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     vectors: str | tuple[str, str] | None = None,
     line_field: bool = False,
@@ -133,7 +133,7 @@ def streamlines(
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh that carries the vectors; not changed. Of a MultiBlock, such as an OpenFOAM case, the
         cells of the highest dimension are taken, without patches.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Lights, material and view, by default ``Scene()``.
     vectors : str or tuple of str, optional
         Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
@@ -239,7 +239,7 @@ def streamlines(
 
 def light_lines(
     mesh: pv.DataSet | pv.MultiBlock,
-    scene: Scene | None,
+    scene: AnyScene | None,
     options: StreamlineOptions,
     *,
     progress_bar: bool,

@@ -199,7 +199,7 @@ class Look:
     def _written(self, mesh: Step, path: Path) -> Step:
         if path.suffix.lower() in GLTF:
             # No scene: the one in the record of the mesh is taken.
-            return Step("", "vizlight.save_gltf", mesh, None, path, **self.drawing.colors)
+            return Step("", "vizlight.save_gltf", mesh, path, **self.drawing.colors)
         return Step("", "files.write_mesh", mesh, path)
 
     def _page(self, path: Path) -> list[Step]:
@@ -211,7 +211,7 @@ class Look:
         live = [layer for layer in drawing.layers if layer.live]
         if not live:
             shown: Keywords = {"camera": drawing.camera, "background": wishes.background, **key}
-            return [Step("", "vizlight.live_html", drawing.lit, None, path, **shown)]
+            return [Step("", "vizlight.live_html", drawing.lit, path, **shown)]
         background = wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, draws=False)
         return [

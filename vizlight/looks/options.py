@@ -14,10 +14,11 @@ from vizlight._words import message, one_of
 from vizlight.draw import render
 from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks.steps import Step
-from vizlight.looks.wishes import PRESETS, STYLES, Wishes, scene_step
+from vizlight.looks.wishes import STYLES, Wishes, scene_step
 from vizlight.mesh import series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
+from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def scene_maker(scene: object) -> SceneMaker | None:
     if scene is None:
         return None
     if isinstance(scene, str):
-        _check.choice("scene", scene, PRESETS)
+        required_scene(scene)
         return lambda _question, view, _camera, _n: Step("scene", f"vizlight.presets.{scene}", view)
     _check.instance("scene", scene, Scene)
     return lambda *_: scene_step(scene)  # type: ignore[arg-type]

@@ -15,13 +15,14 @@ from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 from vizlight.looks.look import look
 from vizlight.scene.keywords import named
+from vizlight.scene.presets import optional_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Foreign, Given, Keywords
     from vizlight.draw.live import LightAt
-    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
 
 __all__ = ["plot"]
 
@@ -42,7 +43,7 @@ def plot(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
     *,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     light: LightAt = "auto",
     scalars: str | ArrayLike | None = None,
     camera: pv.Camera | None = None,
@@ -95,6 +96,7 @@ def plot(
         options = {"occlusion": SKY} | options
     named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
     given = {name: options.pop(name) for name in [*options] if name in named}
+    scene = optional_scene(scene)
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
     size = None if window_size is None else _size(window_size)
     if camera is not None and not hasattr(camera, "GetPosition"):

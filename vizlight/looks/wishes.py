@@ -16,6 +16,7 @@ from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, records
+from vizlight.scene.presets import PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,8 +45,6 @@ VIEWS: dict[str, Vector] = {
 SUN = (315.0, 40.0)
 #: Bounding box that shows where a camera of n-space looks.
 BOX = (-1, 1, -1, 1, -1, 1)
-#: Questions whose light is a preset.
-PRESETS = ("direction", "slope", "heading", "shape", "value")
 
 
 def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:

@@ -18,6 +18,7 @@ from vizlight.observers.measure import measure
 from vizlight.observers.samples import camera_of, part_on
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
+from vizlight.scene.presets import required_scene
 from vizlight.scene.view import is_camera
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.polylines import has_lines_only
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from vizlight.filters.tint import ColorMap
     from vizlight.observers.samples import Part
     from vizlight.scene.conversion import AnyView
+    from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Model
 
 __all__ = ["Legibility", "legibility"]
@@ -47,7 +49,7 @@ LIGHT = frozenset(LightOptions.__dataclass_fields__)
 def legibility(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
-    scene: Scene | None = None,
+    scene: AnyScene | None = None,
     *,
     tangents: str | ArrayLike | None = None,
     scalars: str | ArrayLike | None = None,
@@ -81,7 +83,7 @@ def legibility(
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
         Mesh as the picture shows it: surfaces, lines, points, or blocks of them.
-    scene : Scene, optional
+    scene : Scene or str, optional
         Lights and material that the mesh is drawn in. Needed without ``picture``.
     tangents : str or array_like, optional
         Name of a point array of 3 or 6 components, or its values, as for
@@ -188,8 +190,7 @@ def legibility(
     for name, value in (("key", key), ("camera", camera)):
         if value is not None:
             raise ValueError(_check.message(name, "picture= beside it", "none"))
-    _check.instance("scene", scene, Scene)
-    assert scene is not None
+    scene = required_scene(scene)
     dpi = _check.number("dpi", dpi, low=10.0, high=2400.0)
     size = ON_SCREEN
     if screen is None:
@@ -239,8 +240,8 @@ def _parts(
     keys = key if isinstance(key, list) else [key]
     scene, bar = None, None
     for one in keys:
-        if isinstance(one, Scene):
-            scene = one
+        if isinstance(one, Scene | str):
+            scene = required_scene(one)
         elif isinstance(one, tuple) and len(one) == 2:
             bar = one
         else:

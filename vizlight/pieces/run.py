@@ -25,8 +25,8 @@ from vizlight.mesh import normals
 from vizlight.pieces import task
 from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
 from vizlight.pieces.workers import RETRIES, Work
-from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
+from vizlight.scene.presets import required_scene
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import unlit
 from vizlight.verify import report
@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from vizlight.pieces.sources import Piece
     from vizlight.pieces.task import Found, Job
     from vizlight.pieces.workers import Map
+    from vizlight.scene import Scene
+    from vizlight.scene.presets import AnyScene
     from vizlight.vtk.normals import Told
 
 
@@ -81,7 +83,7 @@ class Lit:
 def light(
     sources: object,
     /,
-    scene: Scene,
+    scene: AnyScene,
     *,
     filter: str = "illuminate",
     contour: str | None = None,
@@ -182,7 +184,7 @@ def light(
     >>> len(lit.files), lit.points
     (2, 1684)
     """
-    _check.instance("scene", scene, Scene)
+    scene = required_scene(scene)
     path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
     _check_options(filter, options, contour, ghost)

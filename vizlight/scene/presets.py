@@ -8,7 +8,7 @@ draws what hue and lightness mean.
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TYPE_CHECKING, Literal, TypeAlias, cast
 
 import numpy as np
 
@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     from vizlight._types import Array
 
     Eye: TypeAlias = View | vtkCamera | pv.BasePlotter | None
+
+#: Questions that have a preset, and what stands for a scene: one, or the question of its preset.
+Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
+AnyScene: TypeAlias = Scene | Question
 
 #: Ambient light of data without colours.
 AMBIENT = 0.08
@@ -171,6 +175,51 @@ def value(view: Eye = None, /) -> Scene:
 PRESETS = {
     "direction": direction, "slope": slope, "heading": heading, "shape": shape, "value": value,
 }  # fmt: skip
+
+
+def optional_scene(scene: AnyScene | str | None) -> Scene | None:
+    """Return the scene that is meant: itself, the preset of a question, or None for None.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the argument is none of these.
+    """
+    if isinstance(scene, str):
+        if scene not in PRESETS:
+            expected = f"a vizlight.Scene, or {', '.join(map(repr, PRESETS))}"
+            raise ValueError(_check.message("scene", expected, repr(scene)))
+        return PRESETS[scene]()
+    _check.instance("scene", scene, Scene, optional=True)
+    return scene
+
+
+def required_scene(scene: AnyScene | str | None) -> Scene:
+    """Return the scene that is meant.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the argument is neither a scene nor a question.
+    """
+    if scene is None:
+        _check.instance("scene", scene, Scene)
+    return as_scene(scene)
+
+
+def as_scene(scene: AnyScene | str | None) -> Scene:
+    """Return the scene that is meant, for None the default one.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the argument is neither a scene nor a question.
+    """
+    return optional_scene(scene) or Scene()
+
+
+#: Questions about tangents, which lines have by themselves and surfaces do not.
+OF_TANGENTS = ("direction", "slope", "heading")
 
 #: A lamp: the direction toward it in the frame of the eye, of length 1, and its channels.
 Lamp = tuple["Array", "Array"]

@@ -285,18 +285,6 @@ def _sizes(lights: Iterable[Light], view: View | None) -> set[int]:
     }
 
 
-def as_scene(scene: Scene | None) -> Scene:
-    """Return a scene, for None the default one.
-
-    Raises
-    ------
-    TypeError
-        If the argument is neither.
-    """
-    _check.instance("scene", scene, Scene, optional=True)
-    return Scene() if scene is None else scene
-
-
 def _of_actor(
     actor: pv.Actor, lights: conversion.Lights, view: conversion.AnyView, model: str
 ) -> Material:

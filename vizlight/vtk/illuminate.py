@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vizlight import _check
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.scene import as_scene
+from vizlight.scene.presets import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions
