@@ -68,6 +68,8 @@ class Job:
         steps are taken one by one counts as several.
         """
         out, stems = self.out, [path.stem for path in paths]
+        if len(paths) > 1 and self._in_one_picture():
+            return self._all_in_one(paths)
         _check_output(out, several=len(paths) > 1 or self.part.times is not None)
         for twice in (name for name in stems if stems.count(name) > 1):
             expected = "files of different names, after which the outputs are named"
@@ -96,6 +98,26 @@ class Job:
             jobs = [[*([look.drawing.lit] if out.report else []), *last] for look, last in scripts]
             say(source(jobs, reported=reported))
         return max(codes)
+
+    def _in_one_picture(self) -> bool:
+        """Return whether several files make one picture: where one file is named for them."""
+        named = self.out.output or ()
+        return bool(named) and not any(path.is_dir() for path in named)
+
+    def _all_in_one(self, paths: Sequence[Path]) -> int:
+        """Show several files in one picture; return the exit code."""
+        from vizlight.looks.look import decide
+
+        if self.part.times is not None:
+            expected = "one time for several files in one picture"
+            raise ValueError(message("times", expected, self.part.times, "pass --time"))
+        _check_output(self.out, several=False)
+        look = decide(list(paths), self.wishes)
+        outputs = _outputs(look, "", self.out, paths)
+        if self.out.script:
+            say(source([[step for steps in outputs for step in steps]]))
+            return OK
+        return self._run(look, outputs)
 
     def _look(self, path: Path, time: float | str | None) -> Look:
         from vizlight.looks.look import decide

@@ -24,7 +24,7 @@ from vizlight.scene.presets import OF_TANGENTS, optional_scene
 from vizlight.shading.display import on_colors
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
-from vizlight.vtk.cells import GHOSTS, has_faces
+from vizlight.vtk.cells import GHOSTS
 from vizlight.vtk.corners import MANY_SHARP, SHARP
 from vizlight.vtk.normals import Sided, computed_normals, piece_numbers
 from vizlight.vtk.parts import uses_normals
@@ -77,7 +77,7 @@ def sources_of(
 
 
 def _has_sides(block: pv.DataSet) -> bool:
-    return has_faces(block) if isinstance(block, pv.PolyData) else block.n_cells > 0
+    return bool(block.n_cells) and block.max_cell_dimensionality > 1
 
 
 def _refuse_without_tangents(

@@ -14,14 +14,17 @@ from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES
 from vizlight.looks import options as look_options
+from vizlight.looks import together
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, reliefs, strokes, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
-from vizlight.mesh import blocks, georeference, height_grids, series
+from vizlight.mesh import blocks, cf_grids, georeference, height_grids, series
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import Given, Keywords
     from vizlight.looks.contents import Named, Role
     from vizlight.looks.recipes.drawing import Drawing, Recipe
@@ -285,7 +288,7 @@ def _key_step(plotter: Step, key: dict[str, object]) -> Step:
 
 
 def look(
-    data: pv.DataSet | pv.MultiBlock | str | Path,
+    data: pv.DataSet | pv.MultiBlock | str | Path | Sequence[pv.DataSet | str | Path],
     question: str = "auto",
     /,
     *,
@@ -299,8 +302,9 @@ def look(
 
     Parameters
     ----------
-    data : mesh, path or xarray object
-        Mesh, file, or dataset to show.
+    data : mesh, path, xarray object, or sequence of them
+        What is shown. Of several, and of blocks of different dimensions, each is drawn by its own
+        rule in one picture; walls of a volume are left out.
     question : str, default: "auto"
         What the picture should tell: ``"direction"``, ``"slope"``, ``"heading"``, ``"shape"``,
         ``"value"``, ``"relief"``, ``"flow"``. ``"auto"``: what suits the data.
@@ -348,14 +352,40 @@ def look(
 
 def decide(data: object, wishes: Wishes) -> Look:
     """Return the look of data, by options that are sorted out."""
-    step, contents, notes = prepared(data, wishes)
+    if isinstance(data, pv.MultiBlock):
+        blocks.check(data)
+        data = together.parts_of(data) or data
+    parts = list(data) if isinstance(data, list | tuple) else [data]
+    if not parts:
+        raise ValueError(message("data", "a mesh, a file, or several", "none"))
+    ready = [prepared(part, wishes) for part in parts]
     if wishes.question == "flow":
-        look_options.check_flow(data, step.run(), wishes.light.get("vectors"))
+        for part, (step, _, _) in zip(parts, ready, strict=True):
+            look_options.check_flow(part, step.run(), wishes.light.get("vectors"))
+    if len(ready) == 1:
+        return _decided(*ready[0], wishes)
+    own = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
+    if wishes.array is not None and not any(one.array for one in own):
+        own[0] = wishes  # whose error says what is there
+    cases = [
+        _chosen(step, contents, one)[1] for (step, contents, _), one in zip(ready, own, strict=True)
+    ]
+    shared = together.shared(cases, wishes)
+    looks = [_decided(*one, mine) for one, mine in zip(ready, shared, strict=True)]
+    drawing = together.joined([look.drawing for look in looks])
+    reasons = "; ".join(dict.fromkeys(look.reason for look in looks))
+    seen = drawing.camera.note
+    reason = f"{reasons}; seen {seen}" if seen else reasons
+    return replace(looks[0], reason=reason, others=(), wishes=wishes, drawing=drawing)
+
+
+def _decided(step: Step, contents: Contents, notes: Sequence[str], wishes: Wishes) -> Look:
+    """Return the look of one mesh."""
     rule, case = _chosen(step, contents, wishes)
     drawing = rule.recipe(case)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
-    seen = drawing.camera.note
+    seen = "" if wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
     shown = drawing.words.split(" ", 1)[0] if rule.shown == "isosurface" else rule.shown
     others = _others(contents, case)
@@ -365,7 +395,10 @@ def decide(data: object, wishes: Wishes) -> Look:
 def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
     """Return the step that reads data and takes a part of them, what they hold, and notes."""
     part, notes, raster = wishes.part, [], False
-    if isinstance(data, str | Path):
+    if cf_grids.is_grid(data):
+        keywords = {"time": part["time"]} if part.get("time") is not None else {}
+        step = Step("data", "vizlight.read", Step("ds", "-", data), **keywords)
+    elif isinstance(data, str | Path):
         keywords = {name: part[name] for name in ("time", "overlay") if name in part}
         step = Step("data", "vizlight.read", data, **keywords)
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")

@@ -103,6 +103,8 @@ class Wishes:
         Whether the outer surface is taken; otherwise all points are lit.
     refine : float, optional
         Largest error between points.
+    frame : Step, optional
+        Step of a camera that several meshes share.
     source : sequence of str
         File, and options of the command that shows it alike, which a page copies.
     """
@@ -119,6 +121,7 @@ class Wishes:
     make_scene: SceneMaker | None = None
     surface: bool = True
     refine: float | None = None
+    frame: Step | None = None
     source: Sequence[str] = ()
 
     @property
@@ -157,7 +160,7 @@ class Wishes:
     def camera(self, mesh: object, eye: Eye) -> Step:
         """Return the step that sets the camera on a mesh."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
-        fixed = self.fixed_camera()
+        fixed = self.frame or self.fixed_camera()
         if fixed is not None:
             return fixed
         keywords: Keywords = {}

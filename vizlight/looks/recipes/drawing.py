@@ -145,7 +145,9 @@ class Case:
 
     def eye(self, mesh: Step) -> Eye:
         """Return from where a mesh is seen, if no view is given in its place."""
-        return ISOMETRIC if self.wishes.view is not None else eye_of(mesh.run(), self.contents)
+        if self.wishes.view is not None or self.wishes.frame is not None:
+            return ISOMETRIC
+        return eye_of(mesh.run(), self.contents)
 
     def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
         """Return the step that sets the camera on a mesh, by the options or by what suits it."""

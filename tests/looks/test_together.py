@@ -1,0 +1,70 @@
+"""Several meshes and blocks of different dimensions in one picture."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.looks import together
+
+SIZE = (120, 80)
+
+
+def ball(x):
+    mesh = pv.Sphere(theta_resolution=12, phi_resolution=12, center=(x, 0, 0))
+    mesh["T"] = np.asarray(mesh.points)[:, 0]
+    return mesh
+
+
+def lines():
+    return pv.Spline(np.array([[0, 0, z] for z in (-2.0, 0.0, 2.0)]), 20)
+
+
+def test_each_mesh_is_drawn_by_its_rule_and_all_share_the_camera_and_the_range():
+    look = vizlight.look([ball(0), ball(3), lines()], size=SIZE)
+    layers = look.drawing.layers
+    assert [layer.keywords.get("scalars") for layer in layers] == ["T", "T", None]
+    first, second = (layer.keywords["clim"] for layer in layers[:2])
+    assert first == second == pytest.approx((-0.5, 3.5), abs=0.02)
+    assert len(look.drawing.keys) == 2
+    assert isinstance(look.mesh, pv.MultiBlock)
+    middle = np.asarray(look.view.GetFocalPoint())
+    assert middle[0] == pytest.approx(1.5, abs=0.6)
+    text = look.script("a.png")
+    assert text.count("render.camera_on(") == 1
+    assert text.count("vizlight.presets.heading") == 1
+
+
+def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
+    mixed = pv.MultiBlock({"ball": ball(0), "lines": lines()})
+    assert [part.max_cell_dimensionality for part in together.parts_of(mixed)] == [2, 1]
+    assert len(vizlight.look(mixed, size=SIZE).drawing.layers) == 2
+    volume = pv.ImageData(dimensions=(3, 3, 3))
+    walls = pv.MultiBlock(
+        {"air": volume, "wall": volume.extract_surface(algorithm="dataset_surface")}
+    )
+    assert [part.max_cell_dimensionality for part in together.parts_of(walls)] == [3]
+
+
+def test_an_array_that_one_of_several_has_is_enough():
+    bare = pv.Sphere(theta_resolution=12, phi_resolution=12, center=(3, 0, 0))
+    look = vizlight.look([ball(0), bare], array="T", size=SIZE)
+    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", None]
+    with pytest.raises(ValueError, match="array: expected the name of an array, one of"):
+        vizlight.look([ball(0), bare], array="U", size=SIZE)
+    with pytest.raises(ValueError, match="data: expected a mesh, a file, or several, got none"):
+        vizlight.look([])
+
+
+def test_files_of_one_command_are_one_picture(tmp_path, capsys):
+    from vizlight.cli.main import main
+
+    for name, x in (("a", 0), ("b", 3)):
+        ball(x).save(tmp_path / f"{name}.vtp")
+    files = [str(tmp_path / f"{name}.vtp") for name in "ab"]
+    page = tmp_path / "both.html"
+    assert main([*files, "-o", str(page)]) == 0
+    assert page.stat().st_size
+    assert "shown    2 meshes: T in colours" in capsys.readouterr().out
+    assert main([*files, "-o", str(page), "--times", "all"]) == 2
+    assert "one time for several files in one picture" in capsys.readouterr().err

@@ -1,0 +1,107 @@
+"""Several meshes in one picture: each is drawn by its own rule, and all share the camera."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pyvista as pv
+
+from vizlight.filters.key import preset_of
+from vizlight.looks.recipes.drawing import range_of
+from vizlight.looks.steps import Step
+from vizlight.mesh import blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Keywords
+    from vizlight.looks.contents import Contents
+    from vizlight.looks.recipes.drawing import Case, Drawing
+    from vizlight.looks.wishes import Wishes
+
+#: Options of a look that name an array, which not all parts need to have.
+_NAMING = ("tangents", "vectors", "elevation")
+
+
+def parts_of(mesh: pv.MultiBlock) -> list[pv.DataSet]:
+    """Return one mesh for each dimension of the cells of some blocks, the highest first.
+
+    Surfaces beside volumes are mostly their walls, which would hide them, and are left out.
+    """
+    by_size: dict[int, pv.MultiBlock] = {}
+    for block, path in blocks.named_blocks(mesh):
+        if not block.n_points:
+            continue
+        size = int(block.max_cell_dimensionality) if block.n_cells else 0
+        by_size.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
+    if 3 in by_size:
+        by_size.pop(2, None)
+    return [blocks.one_grid(by_size[size]) for size in sorted(by_size, reverse=True)]
+
+
+def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
+    """Return the wishes for one part, without arrays that it lacks."""
+    has = contents.named
+    light: Keywords = {
+        name: value
+        for name, value in wishes.light.items()
+        if name not in _NAMING or not isinstance(value, str) or has(value)
+    }
+    picture: Keywords = dict(wishes.picture)
+    scalars = picture.get("scalars")
+    if isinstance(scalars, str) and not has(scalars):
+        del picture["scalars"]
+    array = wishes.array if wishes.array is None or has(wishes.array) else None
+    return replace(wishes, array=array, light=light, picture=picture)
+
+
+def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
+    """Return the wishes of each case, with one camera and one range for each array.
+
+    The camera looks as suits the case of the highest dimension.
+    """
+    first = max(cases, key=lambda case: case.contents.dimension)
+    whole = Step("whole", "pyvista.MultiBlock", [case.data for case in cases])
+    camera = wishes.camera(whole, first.eye(first.data))
+    ranges: dict[str, list[tuple[float, float]]] = {}
+    for case in cases:
+        if case.array is not None and case.array.role in ("values", "heights"):
+            name = case.array.name
+            ranges.setdefault(name, []).append(range_of(case.data.run(), name))
+    found = []
+    for case in cases:
+        ends = ranges.get(case.array.name, []) if case.array is not None else []
+        picture: Keywords = dict(case.wishes.picture)
+        if len(ends) > 1:
+            picture = {
+                "clim": (min(low for low, _ in ends), max(high for _, high in ends))
+            } | picture
+        found.append(replace(case.wishes, picture=picture, frame=camera))
+    return found
+
+
+def joined(drawings: Sequence[Drawing]) -> Drawing:
+    """Return one drawing of several: all layers, and each key once."""
+    lit = Step("lit", "pyvista.MultiBlock", [drawing.lit for drawing in drawings])
+    keys: dict[str, Keywords] = {}
+    for drawing in drawings:
+        for key in drawing.keys:
+            scene = key.get("scene")
+            question = key.get("question") or (scene and preset_of(scene.run()))
+            told = (question, key.get("title") if question == "value" else "", key.get("clim"))
+            keys.setdefault(repr(told), key)
+    first = drawings[0]
+    words = dict.fromkeys(drawing.words for drawing in drawings)
+    background = next((one.background for one in drawings if one.background), None)
+    return replace(
+        first,
+        layers=[layer for drawing in drawings for layer in drawing.layers],
+        lit=lit,
+        words=f"{len(drawings)} meshes: {', '.join(words)}",
+        keys=list(keys.values()),
+        notes=list(dict.fromkeys(note for drawing in drawings for note in drawing.notes)),
+        kind=lit,
+        parts=(),
+        background=background,
+    )
