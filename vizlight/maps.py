@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from matplotlib import colormaps
-from matplotlib.colors import ListedColormap, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, to_rgba
 
 from vizlight import _check
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-__all__ = ["even", "kinds"]
+__all__ = ["even", "heights", "kinds"]
 
 #: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
 #: sets, one after the other.
@@ -56,6 +56,57 @@ even = ListedColormap(
     [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
 )
 colormaps.register(even, force=True)
+
+
+#: Colours of the sea bed from deep to shallow, and of the ground from low to high.
+_SEA = LinearSegmentedColormap.from_list("sea", ["#2f6495", "#78aed3", "#c3e1ee"])
+_GROUND = LinearSegmentedColormap.from_list(
+    "ground", ["#7fb57f", "#c3d29b", "#efe0ad", "#d3b082", "#c09c84", "#fbf8f5"]
+)
+
+
+def heights(low: float, high: float, /) -> pv.LookupTable:
+    """Return a lookup table for heights: blue below 0, and green over tan to white above.
+
+    The colours are light, since a shadow on them dims them. The sea is darker where it is deeper.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the heights, in the unit of the mesh.
+
+    Returns
+    -------
+    pyvista.LookupTable
+        256 colours from ``low`` to ``high``.
+
+    Raises
+    ------
+    ValueError
+        If the ends do not ascend.
+
+    Examples
+    --------
+    >>> from vizlight import maps
+    >>> maps.heights(-50.0, 1200.0).scalar_range
+    (-50.0, 1200.0)
+    """
+    import numpy as np
+    import pyvista as pv
+
+    low, high = _check.limits("low, high", (low, high))
+    if not low < high:
+        raise ValueError(_check.message("low, high", "ends that ascend", (low, high)))
+    table = pv.LookupTable(n_values=256)
+    # The middles of the 256 steps.
+    values = low + (high - low) * (np.arange(256) + 0.5) / 256
+    colors = _GROUND((values - max(low, 0.0)) / (high - max(low, 0.0)) if high > 0 else values)
+    if low < 0:
+        deep = _SEA((values - low) / (min(high, 0.0) - low))
+        colors = np.where((values < 0)[:, np.newaxis], deep, colors)
+    table.values = np.round(255 * colors).astype(np.uint8)
+    table.scalar_range = (low, high)
+    return table
 
 
 def kinds(values: Sequence[float], /) -> pv.LookupTable:

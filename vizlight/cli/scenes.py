@@ -194,7 +194,7 @@ def _scene_maker(
             keep_view = base.view is not None
         else:
             # Lamps that are named light a plain material, not that of a preset.
-            plain = "plain" if explicit and lights.question is None else question
+            plain = "plain" if explicit and question != "relief" else question
             scene = plain_scene(lights.question or plain, view, camera, n)
             keep_view = True
             if changes and not fresh:

@@ -45,6 +45,13 @@ LEAST, LETTERS_HIGH = 9, 24
 DIGITS = 7
 
 
+def _wrapped(text: str, columns: int) -> list[str]:
+    """Return the lines of a text, which may break after the underscores of a name too."""
+    spaced = text.replace("_", "_ ") if max(map(len, text.split()), default=0) > columns else text
+    lines = textwrap.wrap(spaced, columns)
+    return [line.replace("_ ", "_") for line in lines]
+
+
 def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
     """Leave room for the words of a scalar bar in the picture, and set them apart.
 
@@ -73,7 +80,7 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
         right = max(min(right, wide - 0.5 * number - 4), left + 1)
     middle = (left + right) / 2
     room = 2 * min(middle, wide - middle) / (LETTER * letters)
-    words = textwrap.wrap(str(bar.GetTitle()), max(int(room), 1))
+    words = _wrapped(str(bar.GetTitle()), max(int(room), 1))
     bar.SetTitle("\n".join(words))
     bar.SetPosition(left / wide, bar.GetPosition()[1])
     bar.SetWidth((right - left) / wide)
@@ -221,7 +228,7 @@ class MarginKey:
         """Return the width and height in pixels that the key takes at a size of letters."""
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        parts = [textwrap.wrap(part, columns) for part in self._title.splitlines()]
+        parts = [_wrapped(part, columns) for part in self._title.splitlines()]
         self._lines = [line for part in parts for line in part]
         below = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:

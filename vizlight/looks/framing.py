@@ -95,6 +95,26 @@ def _of_surface(surface: pv.PolyData) -> Eye:
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Eye(_vector(toward), up, False, "along its mean normal")
+    return _around(corners, normals, areas)
+
+
+def eye_around(surface: pv.PolyData) -> Eye:
+    """Return the eye that sees most of a surface from the side, open or not.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Surface of a volume, such as an isosurface.
+    """
+    corners = _triangles(surface)
+    if not len(corners):
+        return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return _around(corners, normals, np.linalg.norm(normals, axis=1))
+
+
+def _around(corners: Array, normals: Array, areas: Array) -> Eye:
+    """Return the eye from which most of some triangles is seen."""
     middles = corners.mean(axis=1)
     scores = [(_seen(middles, normals, areas, way), way) for way in _ways()]
     best = max(scores, key=lambda pair: pair[0])[1]

@@ -20,7 +20,7 @@ from vizlight.looks.recipes import fields, reliefs, strokes, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
-from vizlight.mesh import blocks, cf_grids, georeference, height_grids, series
+from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -414,6 +414,7 @@ def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
             raise TypeError(message("data", expected, _check.describe(data)))
         step = Step("mesh", "-", mesh)
     mesh = step.run()
+    notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:
         raise ValueError(message("data", "a mesh with points", "none"))
     step = look_options.cut(step, wishes)

@@ -16,6 +16,7 @@ from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, records
+from vizlight.scene.material import Material
 from vizlight.scene.presets import PRESETS
 
 if TYPE_CHECKING:
@@ -61,7 +62,10 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     if question == "relief":
         toward = _of_angles(*SUN)
         lights = [Step("", "vizlight.Light", direction=toward)]
-        return Step("scene", "vizlight.Scene", lights=lights, view=view)
+        # The light of level ground becomes 1: neighbouring maps are alike, whatever the slopes are.
+        plain = Material()
+        exposure = round(1 / (plain.ambient + plain.diffuse * toward[2]), 3)
+        return Step("scene", "vizlight.Scene", lights=lights, view=view, exposure=exposure)
     if question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.
         lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.looks.framing import Eye
-from vizlight.looks.recipes.drawing import Drawing, Layer
+from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.vtk.polylines import has_lines_only
 
@@ -43,7 +43,10 @@ def relief(case: Case) -> Drawing:
     notes = [note] if note else []
     if not keywords["lit"]:
         return _share(case, lit, camera, scene, f"shadow on {array.name}", "t", notes)
-    colors = {"cmap": "gist_earth"} | case.wishes.colors
+    colors = case.wishes.colors
+    if "cmap" not in colors:
+        ends = colors.get("clim") or range_of(data.run(), array.name)
+        colors = {"cmap": Step("", "vizlight.maps.heights", *ends)}
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     keys = [case.bar(array, colors)]
     layer = Layer(shown, {"show_scalar_bar": False})

@@ -9,6 +9,7 @@ import pyvista as pv
 
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
+from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, MISSING, Drawing, Layer
 from vizlight.looks.steps import Step
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
+#: Least share of the side of its box that an isosurface has where the box is drawn.
+LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan.
 VOXELS = 30
 
@@ -30,25 +33,30 @@ def isosurface(case: Case) -> Drawing:
         smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
         case = replace(case, data=smooth)
         notes = ["the values are smoothed by one voxel"]
+    volume = case.data
     level, contrast = levels.best_level(case.data.run(), array.name)
     if contrast < levels.GOOD:
         return slices(case, contrast)
     part = dict(case.wishes.part) | {"contour": array.name, "level": level}
     mesh = replace(case.wishes, part=part).isosurface(case.data)
     contents = Contents(mesh.run())
+    wishes = replace(case.wishes, part=part)
+    # The box tells where the isosurface is; one that is much larger would make it small.
+    around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
+    if around and wishes.view is None and wishes.frame is None:
+        eye = eye_around(mesh.run())
+        wishes = replace(wishes, frame=wishes.camera(Step("", ".outline", volume), eye))
+    case = replace(case, data=mesh, contents=contents, wishes=wishes)
     words = f"isosurface {array.name} = {levels.number(level)}"
     second = contents.first("values", "kinds")
     if second is None or case.wishes.question == "shape":
-        wishes = replace(case.wishes, part=part)
-        shape = replace(case, data=mesh, contents=contents, question="shape", wishes=wishes)
-        drawing = surfaces.surface(shape)
+        drawing = surfaces.surface(replace(case, question="shape"))
     else:
-        shown = replace(case, data=mesh, contents=contents, question="value", array=second)
-        drawing = surfaces.values(shown)
+        drawing = surfaces.values(replace(case, question="value", array=second))
         words += f" in the colours of {second.name}"
-    if notes:
+    if notes or not around:
         return replace(drawing, words=words, notes=[*drawing.notes, *notes])
-    box = Layer(Step("", ".outline", case.data), {"color": "gray", "line_width": 1}, live=False)
+    box = Layer(Step("", ".outline", volume), {"color": "gray", "line_width": 1}, live=False)
     return replace(drawing, layers=[*drawing.layers, box], words=words)
 
 
