@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from vizlight import maps
 from vizlight.maps import even
 
 COLORS = even(np.arange(256))[:, :3]
@@ -69,3 +70,21 @@ def test_it_has_a_name_for_matplotlib_and_pyvista():
     np.testing.assert_array_equal(mpl.colormaps["vizlight.even"].colors, even.colors)
     table = pv.LookupTable("vizlight.even").values[:, :3]
     np.testing.assert_array_equal(table, np.rint(255 * COLORS).astype(np.uint8))
+
+
+def test_heights_are_blue_below_0_and_lighter_toward_the_coast():
+    table = maps.heights(-100.0, 300.0)
+    colors = np.asarray(table.values, dtype=float)[:, :3]
+    values = -100 + 400 * (np.arange(256) + 0.5) / 256
+    sea, land = colors[values < 0], colors[values >= 0]
+    assert (sea[:, 2] > sea[:, 0]).all()
+    assert (land[:-8, 2] < land[:-8, 1]).all()
+    assert (np.diff(sea @ (0.2, 0.7, 0.1)) > 0).all()
+    # Light colours, as a shadow dims them.
+    assert (land @ (0.2126, 0.7152, 0.0722)).min() > 150
+    only = np.asarray(maps.heights(10.0, 20.0).values)
+    np.testing.assert_allclose(only[0, :3], land[0], atol=4)
+    deep = np.asarray(maps.heights(-20.0, -10.0).values, dtype=float)
+    assert (deep[:, 2] > deep[:, 0]).all()
+    with pytest.raises(ValueError, match="high: expected a number above low=5, got 5"):
+        maps.heights(5.0, 5.0)

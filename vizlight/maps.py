@@ -82,8 +82,8 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
 
     Raises
     ------
-    ValueError
-        If the ends do not ascend.
+    TypeError, ValueError
+        If an end is no finite number, or they do not ascend.
 
     Examples
     --------
@@ -94,9 +94,9 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     import numpy as np
     import pyvista as pv
 
-    low, high = _check.limits("low, high", (low, high))
+    low, high = _check.number("low", low), _check.number("high", high)
     if not low < high:
-        raise ValueError(_check.message("low, high", "ends that ascend", (low, high)))
+        raise ValueError(_check.message("high", f"a number above low={low:g}", high))
     table = pv.LookupTable(n_values=256)
     # The middles of the 256 steps.
     values = low + (high - low) * (np.arange(256) + 0.5) / 256

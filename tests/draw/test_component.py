@@ -12,7 +12,7 @@ from lamps import SHINY
 from shapes import ball
 
 import vizlight
-from vizlight import DepthCue, Light, Material, Scene, View
+from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw import component
 from vizlight.draw.live import COLORS, LUMINANCE, scene_of
 from vizlight.geometry import manifolds
@@ -598,3 +598,18 @@ def test_an_infinite_value_leaves_the_colours_to_the_others(plotter):
     mesh["height"][0] = np.inf
     actor = plotter.vizlight.add_mesh(mesh, scalars="height")
     assert actor.mapper.scalar_range == pytest.approx((known.min(), known.max()))
+
+
+def test_a_question_stands_for_its_scene_and_surfaces_need_tangents_for_directions(plotter):
+    mesh = pv.Sphere(theta_resolution=12, phi_resolution=12)
+    actor = plotter.vizlight.add_mesh(mesh, scene="shape")
+    plotter.show(auto_close=False)
+    by_name = picture(plotter)
+    plotter.vizlight.set_scene(actor, presets.shape())
+    np.testing.assert_array_equal(picture(plotter), by_name)
+    for question in ("direction", "slope", "heading"):
+        with pytest.raises(ValueError, match=f"tangents: expected vectors, whose {question} this"):
+            plotter.vizlight.add_mesh(mesh, scene=question)
+    # Lines have tangents of their own.
+    assert plotter.vizlight.add_mesh(pv.Line(), scene="direction") is not None
+    np.testing.assert_array_equal(presets.key("value")["rgb"], presets.key(presets.value())["rgb"])
