@@ -69,7 +69,7 @@ def test_lines_of_one_color_tell_no_order():
     assert "halos" in found.reason
 
 
-@pytest.mark.parametrize("width", [2, 3, 6, 12])
+@pytest.mark.parametrize("width", [3, 6, 12])
 def test_halos_tell_the_order(width):
     mesh = lattice()
     found = order(mesh, *shot(mesh, line_width=width), line_width=width)
@@ -82,10 +82,10 @@ def test_halos_tell_the_order(width):
 @pytest.mark.parametrize("background", [0, 255])
 def test_two_colors_tell_the_order_without_a_gap(background):
     mesh = lattice()
-    picture, camera = shot(mesh, ours=False, scalars="kind", cmap=["orange", "blue"], line_width=3,
+    picture, camera = shot(mesh, ours=False, scalars="kind", cmap=["orange", "blue"], line_width=5,
                            color=None)  # fmt: skip
     picture = np.where((picture == 0).all(axis=2, keepdims=True), np.uint8(background), picture)
-    found = order(mesh, picture, camera)
+    found = order(mesh, picture, camera, line_width=5)
     assert found.told > 0.9
     assert found.wrongly == 0
 

@@ -78,7 +78,7 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     u, v = _unit(lines.way[first]), _unit(lines.way[second])
     sine = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     steep = np.abs(sine) >= STEEP
-    first, second, u, v, sine = (x[steep] for x in (first, second, u, v, sine))
+    first, second, u, v, sine = first[steep], second[steep], u[steep], v[steep], sine[steep]
     away = lines.start[second] - lines.start[first]
     at = lines.start[first]
     at = at + ((away[:, 0] * v[:, 1] - away[:, 1] * v[:, 0]) / sine)[:, np.newaxis] * u
@@ -198,7 +198,7 @@ def _first_of_each(at: Array) -> Indices:
 
 
 def _taken(found: Crossings, rows: Bools | Indices) -> Crossings:
-    return Crossings(*(each[rows] for each in found))
+    return Crossings(found.at[rows], found.front[rows], found.back[rows])
 
 
 def _unit(vectors: Array) -> Array:

@@ -309,16 +309,18 @@ class _Reader:
     ) -> Keywords:
         """Return what all figures of matched colours have, and find the scale."""
         error = np.concatenate([one.error for one in readings])
-        bits = readers.information(readings)
+        bits = readers.told(readings)
         right = error <= TOLERANCE[question]
+        other = np.concatenate([one.other_error for one in readings])
+        guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
         unit = np.concatenate([one.unit for one in groups])
         if self.scale is None and np.isfinite(lengths).any():
-            self.scale = _scale(question, lengths, unit, right)
+            self.scale = _scale(question, lengths, unit, right, guessed)
         chance = TURN / 2 if question != "value" else 0.25
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
         return {
             "bits": bits,
-            "readable": 0.0 if unread else _beyond_chance(right, question),
+            "readable": 0.0 if unread else _beyond_chance(right, guessed),
             "samples": len(error),
             "reason": self._reason(question, groups, lengths) if unread else "",
         }
@@ -430,7 +432,7 @@ class _Reader:
                 ]
             )
         # Whether there is light on the colours is seen by the whole picture.
-        found = max(ways, key=readers.information)
+        found = max(ways, key=readers.told)
         lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
         common = self._common("value", groups, found, lengths)
         error = np.concatenate([one.error for one in found])
@@ -460,7 +462,7 @@ class _Reader:
         return {
             "spearman": 0.0 if unread else readers.rank_correlation(signal, magnitude),
             "bits": bits,
-            "readable": 0.0 if unread else _beyond_chance(right, "rank"),
+            "readable": 0.0 if unread else _beyond_chance(right, GUESSED["rank"]),
             "samples": len(signal),
             "reason": self._reason("rank", groups, none) if unread else "",
         }
@@ -479,13 +481,14 @@ def _angles(found: list[Reading], common: Keywords) -> Keywords:
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 
 
-def _beyond_chance(right: Bools, question: str) -> float:
+def _beyond_chance(right: Bools, guessed: float) -> float:
     """Return the share of right answers without those that are guessed (Abbott 1925)."""
-    guessed = GUESSED[question]
-    return max(0.0, (float(right.mean()) - guessed) / (1 - guessed))
+    return max(0.0, (float(right.mean()) - guessed) / max(1 - guessed, 1e-9))
 
 
-def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
+def _scale(
+    question: str, lengths: Array, unit: Array, right: Bools, guessed: float
+) -> Scale:  # fmt: skip
     """Return the finest structure that is read; each octave of structure is judged as a whole."""
     there = np.isfinite(lengths)
     lengths, unit, right = lengths[there], unit[there], right[there]
@@ -495,7 +498,7 @@ def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
         rows = octave == step
         if np.count_nonzero(rows) < FEW:
             continue
-        if _beyond_chance(right[rows], question) < HALF:
+        if _beyond_chance(right[rows], guessed) < HALF:
             break
         finest = float(max(2.0**step, lengths[rows].min()))
     length = None if finest is None else finest * float(np.median(unit))

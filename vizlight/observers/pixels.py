@@ -57,7 +57,7 @@ class Cells(NamedTuple):
         if self.diameter is None:
             return np.full(count, self.width)
         points = as_numpy(self.points.GetData()).astype(np.float64)[self.corners[:, 0]]
-        return np.maximum(self.diameter / footprint(camera, points, height), self.width)
+        return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
 
     def bands(self, camera: pv.Camera, height: int) -> tuple[vtkPoints, Indices]:
         """Return lines of a diameter as bands that face the eye, two triangles for each segment.

@@ -85,6 +85,9 @@ def legibility_of(
     """
     if not plotter.camera_set:
         plotter.renderer.view_isometric(render=False)
+    # PyVista takes the frame that it has, even if the camera has moved since.
+    assert plotter.render_window is not None
+    plotter.render_window.Render()
     whole = np.asarray(plotter.screenshot(return_img=True))[..., :3] / 255.0
     renderer = plotter.renderer
     (left, low), (wide, high) = renderer.GetOrigin(), renderer.GetSize()
@@ -164,7 +167,9 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Pa
     )
 
 
-def moved(mesh: pv.DataSet, options: LightOptions, matrix: Array) -> tuple[pv.DataSet, LightOptions]:
+def moved(
+    mesh: pv.DataSet, options: LightOptions, matrix: Array
+) -> tuple[pv.DataSet, LightOptions]:
     """Return a mesh, and the options of its light, where an actor has placed it.
 
     Parameters
