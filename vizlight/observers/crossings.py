@@ -28,9 +28,9 @@ STEEP = 0.5
 #: Length in pixels along a line beyond which it is another one, that may cross the first.
 APART = 40.0
 #: Distances in pixels beyond the border of a line at which its border is looked for.
-BESIDE = (1.0, 2.0, 3.0, 5.0, 7.0)
+BESIDE = (1.0, 2.0, 3.0, 5.0)
 #: Distance in pixels around both lines in which there is no third.
-CLEAR = 7.5
+CLEAR = 5.5
 #: Distance in pixels within which two crossings are one.
 SAME = 3.0
 #: Largest number of pairs of pixels that are looked at for each crossing that is asked for.
@@ -138,7 +138,7 @@ def _largest(stations: list[Array]) -> Array:
 
 
 def _arms(lines: Segments, found: Crossings, one: Indices, other: Indices) -> Array:
-    """Return places on a line beyond the borders of the other, shape (2, 5, N, 2)."""
+    """Return places on a line beyond the borders of the other, shape (2, 4, N, 2)."""
     u, v = _unit(lines.way[one]), _unit(lines.way[other])
     sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     far = (lines.width[other] / 2 + np.array(BESIDE)[:, np.newaxis]) / sine
