@@ -5,8 +5,8 @@ Blood in a vessel of glass
 The flow in arteries of a head, from a magnetic resonance scan; the source names no units. Lines are
 coloured by speed on a map of one lightness (``vizlight.maps.even``) and lit as cylinders across
 their width, so that bends and depth are seen. How well values are read from the bar, with this map
-and with ``viridis`` in the same light, is printed below. The wall is clear where it faces the eye, as
-glass is.
+and with ``viridis`` in the same light, is printed below. The wall is clear where it faces the eye,
+as glass is.
 """
 
 import numpy as np
