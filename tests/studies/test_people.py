@@ -5,6 +5,7 @@ import json
 import runpy
 from pathlib import Path
 
+import browsers
 import numpy as np
 import pytest
 
@@ -82,3 +83,48 @@ def test_answers_that_follow_the_bits_correlate_with_them(tmp_path, capsys):
     COMPARE["main"]([str(saved(tmp_path / "a.csv", sure))])
     text = capsys.readouterr().out
     assert float(text.rsplit(":", 1)[1]) > 0.4
+
+
+@browsers.needed()
+def test_the_page_takes_answers_and_saves_them(tmp_path):
+    from playwright.sync_api import sync_playwright
+
+    question_of = {t["trial"]: t["question"] for t in TRIALS}
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=browsers.CHROMIUM, args=browsers.SOFTWARE)
+        page, complaints = browser.new_page(), []
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.goto((HERE / "people.html").as_uri())
+        page.click("#begin")
+        for _ in TRIALS:
+            if page.is_visible("#sides"):
+                page.click('#sides button[data-answer="1"]')
+                continue
+            if page.is_visible("#dial"):
+                # Up and to the right: 45 degrees.
+                box = page.locator("#dial").bounding_box()
+                page.mouse.click(box["x"] + 120, box["y"] + 40)
+            else:
+                page.fill("#slide", "250")
+            page.click("#next")
+        with page.expect_download() as download:
+            page.click("#save")
+        path = tmp_path / "answers.csv"
+        download.value.save_as(path)
+        browser.close()
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert not complaints
+    assert sorted(int(row["trial"]) for row in rows) == list(range(1, 25))
+    for row in rows:
+        question = question_of[int(row["trial"])]
+        assert row["question"] == question
+        assert 0 <= float(row["seconds"]) < 600
+        if question == "direction":
+            assert float(row["answer"]) == pytest.approx(45, abs=2)
+        elif question == "shape":
+            np.testing.assert_allclose(
+                [float(x) for x in row["answer"].split()], [0.51, 0.51], atol=0.03
+            )
+        else:
+            assert row["answer"] == {"value": "0.250", "order": "1"}[question]
