@@ -86,7 +86,7 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     front = np.where(_near(lines, shown, first), first, second)
     back = np.where(front == first, second, first)
     found = Crossings(at, front, back)
-    keep = _near(lines, shown, front) & (shown >= 0)
+    keep = _near(lines, shown, front)
     for one, other in ((front, back), (back, front)):
         for side in _arms(lines, found, one, other):
             numbers = [_number(lines, places) for places in side]
