@@ -5,8 +5,8 @@ Which end of a line is near?
 The fibres of the example of slope, and three coloured lamps close around the eye
 (``vizlight.presets.heading``). Lightness tells how steeply a fibre runs toward you, and hue where
 its near end points on the screen: follow a fibre, and its hue on the disc says which of the two
-ways comes toward you. With the course on the screen known, the direction in space is read with a
-median error of 0.4 degrees; in white light (left) it is a coin's toss which end is near.
+ways comes toward you. In white light (left) it is a coin's toss which end is near. The figures
+below are read from the picture at the width of a column in print.
 """
 
 import pyvista as pv

@@ -5,8 +5,8 @@ What is the shape?
 The left half of the mean brain of 152 people. Left: PyVista's light. Right: three coloured lamps
 half way between the eye and the picture plane, and a white one at the eye
 (``vizlight.presets.shape``): each slope has a colour, which the ball shows at the place of the same
-slope. The light of the sky (``vizlight.sky``) darkens the folds. The normal is read with a median
-error of 3 degrees; in PyVista's light of 24.
+slope. The light of the sky (``vizlight.sky``) darkens the folds. How well the normal is read in
+either light is printed below.
 """
 
 import pyvista as pv

@@ -5,8 +5,8 @@ How steeply do lines run toward you?
 300 fibres of a brain's white matter. Left: PyVista's tubes under its light. Right: under one lamp
 at the eye (``vizlight.presets.slope``) a fibre is white where it runs across the view and dark
 where it runs toward you or away, as the bar tells: the top of the arch points at you. The rank
-correlation of lightness with slope is -0.95, in the pixels of the tubes -0.37. Which of its ends is
-near is not told; the example of heading tells that too.
+correlation of lightness with slope in the picture is printed below. Which of its ends is near is
+not told; the example of heading tells that too.
 """
 
 import pyvista as pv

@@ -5,8 +5,8 @@ What is the value?
 The speed of a gas on an isosurface of its temperature. Left: PyVista's light and highlight on
 ``viridis``: many colours of the picture are on no bar. Right: light that keeps the colour
 (``vizlight.presets.value``) on a map of one lightness and one chroma (``vizlight.maps.even``). Each
-pixel is read by the colour of the bar that is nearest to it: on the right 95 of 100 to 2 % of the
-range, ``viridis`` in the same light to 29 %, because its own lightness is taken for light.
+pixel is read by the colour of the bar that is nearest to it. ``viridis`` is read worse in the same
+light, because its own lightness is taken for light; both figures are printed below.
 """
 
 import numpy as np

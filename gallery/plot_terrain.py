@@ -3,9 +3,8 @@ Islands under a low sun
 =======================
 
 Hawaii and the sea floor around it, heights 9 times as they are, under a low warm sun in the west, a
-blue light from the other side, and the light of the sky. The two hues tell which way a slope faces:
-its normal is read with a median error of 6 degrees, in PyVista's light of 12, under one white sun
-of 30. Cast shadows tell heights, and valleys are dark out of the sun too, by the share of the sky
+blue light from the other side, and the light of the sky. The two hues tell which way a slope faces.
+Cast shadows tell heights, and valleys are dark out of the sun too, by the share of the sky
 that each point sees. One call finds both: ``relief_shadow(..., occlusion="sky")``.
 """
 

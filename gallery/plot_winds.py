@@ -4,9 +4,8 @@ The winds of July
 
 The mean wind of July around the Indian Ocean. Hue is the direction of the wind on the screen: find
 it on the disc. The trade winds of the south cross the equator, turn, and blow past the Horn of
-Africa toward India; where hue changes at once, winds meet. By the disc a reader is wrong by 2.7
-degrees in the median; under the white light of ``Scene()`` by 47, and 45 is chance. Which of two
-opposite ways the wind blows is not told: lines have no sense.
+Africa toward India; where hue changes at once, winds meet. Under the white light of ``Scene()`` the
+direction is unreadable. Which of two opposite ways the wind blows is not told: lines have no sense.
 """
 
 import numpy as np

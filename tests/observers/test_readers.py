@@ -151,15 +151,30 @@ def test_light_on_a_gray_bar_leaves_the_value_open():
     assert readers.information([found[1]]) < 2
 
 
+def reading_of(logarithms, right):
+    truth = readers.of_truth(logarithms, right)
+    other = readers.of_truth(logarithms, right[readers.elsewhere(len(right))])
+    return readers.Reading(np.zeros(len(right)), truth, 8, np.zeros(len(right)), other)
+
+
+def test_what_all_places_have_in_common_is_not_told():
+    right = np.arange(64) % 8
+    sure = np.where(np.eye(8)[right] > 0, 0.0, -50.0)
+    assert abs(readers.told([reading_of(sure, right)]) - 3) < 0.1
+    alike = np.zeros(64, dtype=int)
+    assert readers.told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
+    assert readers.information([reading_of(sure[:1].repeat(64, 0), alike)]) > 2.9
+
+
 def test_wrong_belief_tells_nothing_and_a_coin_one_bit_less():
     right = np.arange(64) % 8
     sure = np.where(np.eye(8)[right] > 0, 0.0, -50.0)
-    reading = readers.Reading(np.zeros(64), readers.of_truth(sure, right), 8)
+    reading = reading_of(sure, right)
     assert abs(readers.information([reading]) - 3) < 0.05
-    wrong = readers.Reading(np.zeros(64), readers.of_truth(sure, (right + 1) % 8), 8)
+    wrong = reading_of(sure, (right + 1) % 8)
     assert readers.information([wrong]) == 0
     coin = np.where(np.eye(8)[right] + np.eye(8)[right ^ 1] > 0, 0.0, -50.0)
-    half = readers.Reading(np.zeros(64), readers.of_truth(coin, right), 8)
+    half = reading_of(coin, right)
     assert abs(readers.information([half]) - 2) < 0.05
 
 

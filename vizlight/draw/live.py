@@ -113,6 +113,11 @@ class Live:
         return int(self.source.inputs.points.shape[1])
 
     @property
+    def line_diameter(self) -> float | None:
+        """Diameter of lines in the unit of the mesh; None for a width in pixels."""
+        return self._stroke.diameter
+
+    @property
     def own_eye(self) -> bool:
         """Whether the scene has an eye in n-space, which is not the camera's."""
         scene = self.scene

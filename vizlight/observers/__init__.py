@@ -1,1 +1,1 @@
-"""What a reader can read back from a lit picture: direction, slope, shape and value."""
+"""What a reader reads back from a picture: direction, order, sense, slope, shape and value."""

@@ -167,6 +167,44 @@ class Speed(Figure):
 
 
 @dataclass(frozen=True, kw_only=True)
+class TwoSided(Figure):
+    """Which of two sides is right, told at some places, told wrongly at others, or not at all.
+
+    ``readable`` is the share that is told less that which is told wrongly, and ``bits`` are those
+    of a yes or no, 1 at most.
+
+    Attributes
+    ----------
+    told : float
+        Share of the places at which the answer is right.
+    wrongly : float
+        Share at which it is wrong.
+    """
+
+    told: float
+    wrongly: float
+
+    ROWS = (("told", "told", "{:.0%}", "0%"), ("wrongly", "told wrongly", "{:.0%}", "0%"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order(TwoSided):
+    """Which of two lines is nearer where they cross, told by what goes on across the crossing.
+
+    Places are crossings at 30 degrees or more without a third line beside them.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sense(TwoSided):
+    """Which of two opposite ways a stroke runs, told by its width or lightness along it.
+
+    Places are strokes, all of whose ends ahead a reader takes for the wider, the narrower, the
+    lighter or the darker one, whichever is right more often.
+    """
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scale:
     """Finest structure of the data that is still read.
 
@@ -201,7 +239,7 @@ class Scale:
 
 
 #: Figures that are printed, in their order.
-QUESTIONS = ("direction", "slope", "heading", "shape", "value", "speed", "scale")
+QUESTIONS = ("direction", "slope", "heading", "sense", "order", "shape", "value", "speed", "scale")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,6 +254,11 @@ class Legibility:
         How steeply lines run toward the eye; None without lines.
     heading : Heading or None
         Direction of lines in space; None without lines.
+    sense : Sense or None
+        Which of two opposite ways strokes run; None without lines whose vectors or time of
+        integration tell a sense, and for fewer than 8 of them.
+    order : Order or None
+        Which of two crossing lines is nearer; None without crossings.
     shape : Shape or None
         How surfaces stand; None without a surface or normals.
     value : Value or None
@@ -243,6 +286,8 @@ class Legibility:
     direction: Direction | None = None
     slope: Slope | None = None
     heading: Heading | None = None
+    sense: Sense | None = None
+    order: Order | None = None
     shape: Shape | None = None
     value: Value | None = None
     speed: Speed | None = None

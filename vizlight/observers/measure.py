@@ -7,23 +7,27 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt
 
 from vizlight import _check
-from vizlight.observers import readers
+from vizlight.observers import crossings, readers
 from vizlight.observers.eye import Eye
 from vizlight.observers.figures import (
     FLOOR,
     Direction,
     Heading,
     Legibility,
+    Order,
     Scale,
+    Sense,
     Shape,
     Slope,
     Speed,
     Value,
 )
-from vizlight.observers.pixels import Pixels, visible
-from vizlight.observers.samples import footprint, sample
+from vizlight.observers.lines import SEEN, segments_of, strokes_of, two_sides
+from vizlight.observers.pixels import Pixels, footprint, visible
+from vizlight.observers.samples import sample
 from vizlight.shading import display
 
 if TYPE_CHECKING:
@@ -48,6 +52,11 @@ TURN = 90.0
 FEW, HALF = 32, 0.5
 #: Share of the error of chance above which an answer is chance.
 NEAR = 0.9
+#: Distances in arc minutes: from another mesh beyond which a colour has little of it (the filter of
+#: lightness is 2.8 wide at half height), and in which a reader looks for such a place.
+BLURRED, CLOSE = 2.5, 10.0
+#: Least number of strokes that are asked for their sense.
+STROKES = 8
 #: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
 #: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
@@ -163,6 +172,7 @@ def measure(
     for i, part in enumerate(parts):
         ids = chosen[pixels.part[chosen] == i]
         if len(ids):
+            ids = number[_between(pixels, number, i, ids, eye)]
             own = pixels.take(ids)
             colors = readers.colors_at(seen, own.row, own.column, random, noise)
             beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
@@ -173,8 +183,14 @@ def measure(
             groups.append(Places(part, here, right, up, apart, colors, unit))
     toward = -np.array(camera.GetDirectionOfProjection())
     reader = _Reader(groups, seed, eye, list(notes))
+    figures = reader.figures()
+    lines = segments_of(parts, pixels, camera)
+    if lines is not None:
+        found = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
+        figures["order"] = _order(crossings.told(found, lines, seen, noise))
+        figures["sense"] = _sense(*strokes_of(lines, seen, eye), noise)
     return Legibility(
-        **reader.figures(),
+        **figures,
         scale=reader.scale,
         pixels=len(pixels.row),
         size=(width, height),
@@ -187,6 +203,31 @@ def measure(
     )
 
 
+def _between(
+    pixels: Pixels, number: Indices, part: int, ids: Indices, eye: Eye
+) -> tuple[Indices, Indices]:  # fmt: skip
+    """Return where a reader looks at pixels of a mesh: close by, but not beside another mesh.
+
+    What lies over a surface, such as lines, colours what is beside it; a reader looks between.
+    Without a place within 10 arc minutes that is free of the other the pixel itself is taken.
+    """
+    row, column = pixels.row[ids], pixels.column[ids]
+    others = pixels.part != part
+    if not others.any():
+        return row, column
+    other = np.zeros(number.shape, dtype=np.bool_)
+    other[pixels.row[others], pixels.column[others]] = True
+    own = (number >= 0) & ~other
+    minute = eye.pixels_per_degree / 60
+    free = own & (distance_transform_edt(~other) > BLURRED * minute)
+    if not free.any():
+        return row, column
+    far, near = distance_transform_edt(~free, return_indices=True)
+    close = far[row, column] <= CLOSE * minute
+    rows = np.where(close, near[0][row, column], row)
+    return rows, np.where(close, near[1][row, column], column)
+
+
 def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]) -> Indices:
     """Return the pixels one step on either side of pixels, of the same mesh; else themselves."""
     found = ids.copy()
@@ -197,6 +238,42 @@ def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]
         fits = (other >= 0) & (pixels.part[np.maximum(other, 0)] == pixels.part[ids])
         found = np.where(fits, other, found)
     return np.asarray(found)
+
+
+def _order(answers: Array) -> Order | None:
+    """Return the figure of answers at crossings: 1 is right, -1 wrong, 0 none."""
+    if not len(answers):
+        return None
+    return Order(**_two_sided(answers, "draw halos, or lines of colours that differ"))
+
+
+def _sense(ink: Array, light: Array, noise: float) -> Sense | None:
+    """Return the figure of differences between both ends of strokes."""
+    if len(ink) < STROKES:
+        return None
+    answers = []
+    for difference in (ink, light):
+        answer = np.sign(difference) * (np.abs(difference) >= SEEN * noise)
+        # By the key or by some places a reader knows which end is which.
+        answers.append(-answer if answer.sum() < 0 else answer)
+    best = max(answers, key=lambda answer: answer.sum())
+    return Sense(**_two_sided(best, "draw strokes that are tapered or have heads"))
+
+
+def _two_sided(answers: Array, remedy: str) -> Keywords:
+    """Return the figures of answers of two sides; shares are kept where they are unreadable."""
+    told, wrongly = int(np.count_nonzero(answers > 0)), int(np.count_nonzero(answers < 0))
+    bits = two_sides(told, wrongly, len(answers))
+    silent = told + wrongly < len(answers) / 2
+    why = "most places look alike on both sides" if silent else "too many places tell it wrongly"
+    return {
+        "told": told / len(answers),
+        "wrongly": wrongly / len(answers),
+        "bits": bits,
+        "readable": 0.0 if bits < FLOOR else (told - wrongly) / len(answers),
+        "samples": len(answers),
+        "reason": f"{why}; {remedy}" if bits < FLOOR else "",
+    }
 
 
 class _Reader:
@@ -232,16 +309,18 @@ class _Reader:
     ) -> Keywords:
         """Return what all figures of matched colours have, and find the scale."""
         error = np.concatenate([one.error for one in readings])
-        bits = readers.information(readings)
+        bits = readers.told(readings)
         right = error <= TOLERANCE[question]
+        other = np.concatenate([one.other_error for one in readings])
+        guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
         unit = np.concatenate([one.unit for one in groups])
         if self.scale is None and np.isfinite(lengths).any():
-            self.scale = _scale(question, lengths, unit, right)
+            self.scale = _scale(question, lengths, unit, right, guessed)
         chance = TURN / 2 if question != "value" else 0.25
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
         return {
             "bits": bits,
-            "readable": 0.0 if unread else _beyond_chance(right, question),
+            "readable": 0.0 if unread else _beyond_chance(right, guessed),
             "samples": len(error),
             "reason": self._reason(question, groups, lengths) if unread else "",
         }
@@ -285,7 +364,8 @@ class _Reader:
         if not groups:
             return None
         steep = np.concatenate([readers.steepness(p.here) for p in groups])
-        return Slope(**self._ranked(steep, [p.colors.lab[:, 0] for p in groups], groups))
+        light = np.concatenate([p.colors.lab[:, 0] for p in groups])
+        return Slope(**self._ranked(steep, light, groups))
 
     def heading(self) -> Heading | None:
         """Return the direction of lines in space."""
@@ -352,7 +432,7 @@ class _Reader:
                 ]
             )
         # Whether there is light on the colours is seen by the whole picture.
-        found = max(ways, key=readers.information)
+        found = max(ways, key=readers.told)
         lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
         common = self._common("value", groups, found, lengths)
         error = np.concatenate([one.error for one in found])
@@ -362,22 +442,19 @@ class _Reader:
         return Value(median=float(np.median(error)), p95=p95, largest=largest, **common)
 
     def speed(self) -> Speed | None:
-        """Return how colours rank the lengths of vectors."""
+        """Return how colours rank the lengths of vectors, on the mesh where they tell most."""
         groups = [p for p in self.groups if p.here.magnitude is not None]
         groups = _kept(groups, lambda p: np.isfinite(np.asarray(p.here.magnitude)))
-        if not groups:
-            return None
-        length = np.concatenate([np.asarray(p.here.magnitude) for p in groups])
-        if np.ptp(length) <= 1e-3 * length.max():
-            return None
-        colors = [p.colors.lab for p in groups]
-        signals = [c[:, 0] for c in colors], [np.hypot(c[:, 1], c[:, 2]) for c in colors]
-        best = max(signals, key=lambda s: readers.mutual_information(length, np.concatenate(s)))
-        return Speed(**self._ranked(length, best, groups))
+        figures = []
+        for p in groups:
+            length, color = np.asarray(p.here.magnitude), p.colors.lab
+            if np.ptp(length) > 1e-3 * length.max():
+                for signal in (color[:, 0], np.hypot(color[:, 1], color[:, 2])):
+                    figures.append(Speed(**self._ranked(length, signal, [p])))
+        return max(figures, key=lambda each: each.bits, default=None)
 
-    def _ranked(self, magnitude: Array, signals: list[Array], groups: list[Places]) -> Keywords:
+    def _ranked(self, magnitude: Array, signal: Array, groups: list[Places]) -> Keywords:
         """Return the figures of a magnitude that a signal ranks."""
-        signal = np.concatenate(signals)
         bits = readers.mutual_information(magnitude, signal)
         right = readers.ranked_error(magnitude, signal) <= TOLERANCE["rank"]
         unread = bits < FLOOR
@@ -385,7 +462,7 @@ class _Reader:
         return {
             "spearman": 0.0 if unread else readers.rank_correlation(signal, magnitude),
             "bits": bits,
-            "readable": 0.0 if unread else _beyond_chance(right, "rank"),
+            "readable": 0.0 if unread else _beyond_chance(right, GUESSED["rank"]),
             "samples": len(signal),
             "reason": self._reason("rank", groups, none) if unread else "",
         }
@@ -404,13 +481,14 @@ def _angles(found: list[Reading], common: Keywords) -> Keywords:
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 
 
-def _beyond_chance(right: Bools, question: str) -> float:
+def _beyond_chance(right: Bools, guessed: float) -> float:
     """Return the share of right answers without those that are guessed (Abbott 1925)."""
-    guessed = GUESSED[question]
-    return max(0.0, (float(right.mean()) - guessed) / (1 - guessed))
+    return max(0.0, (float(right.mean()) - guessed) / max(1 - guessed, 1e-9))
 
 
-def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
+def _scale(
+    question: str, lengths: Array, unit: Array, right: Bools, guessed: float
+) -> Scale:  # fmt: skip
     """Return the finest structure that is read; each octave of structure is judged as a whole."""
     there = np.isfinite(lengths)
     lengths, unit, right = lengths[there], unit[there], right[there]
@@ -420,7 +498,7 @@ def _scale(question: str, lengths: Array, unit: Array, right: Bools) -> Scale:
         rows = octave == step
         if np.count_nonzero(rows) < FEW:
             continue
-        if _beyond_chance(right[rows], question) < HALF:
+        if _beyond_chance(right[rows], guessed) < HALF:
             break
         finest = float(max(2.0**step, lengths[rows].min()))
     length = None if finest is None else finest * float(np.median(unit))

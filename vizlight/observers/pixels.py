@@ -8,18 +8,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import pyvista as pv
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what draws registers itself
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from vizlight.draw.backends import choose_backend, window_class
+from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyvista as pv
     from vtkmodules.vtkCommonCore import vtkPoints
 
     from vizlight._types import Array, Bools, Indices
@@ -40,12 +41,43 @@ class Cells(NamedTuple):
     corners : ndarray of int, shape (C, s)
         Points, segments or triangles.
     width : float
-        Width of points and of lines in pixels.
+        Width of points and of lines in pixels, the least width of lines that have a diameter.
+    diameter : float or None
+        Diameter of lines in the unit of the mesh.
     """
 
     points: vtkPoints
     corners: Indices
     width: float
+    diameter: float | None = None
+
+    def widths(self, camera: pv.Camera, height: int) -> Array:
+        """Return the widths in pixels at the corners' beginnings, in a picture of some height."""
+        count = len(self.corners)
+        if self.diameter is None:
+            return np.full(count, self.width)
+        points = as_numpy(self.points.GetData()).astype(np.float64)[self.corners[:, 0]]
+        return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
+
+    def bands(self, camera: pv.Camera, height: int) -> tuple[vtkPoints, Indices]:
+        """Return lines of a diameter as bands that face the eye, two triangles for each segment.
+
+        They are nearer to the eye by half of their width, as a tube is.
+        """
+        points = as_numpy(self.points.GetData()).astype(np.float64)
+        size = footprint(camera, points, height)
+        toward = toward_eye(camera, points)
+        radius = np.maximum(self.diameter or 0.0, self.width * size)[:, np.newaxis] / 2
+        start, end = self.corners.T
+        along = points[end] - points[start]
+        corners = []
+        for ids in (start, end):
+            across = radius[ids] * unit_rows(np.cross(toward[ids], along))
+            near = points[ids] + radius[ids] * toward[ids]
+            corners += [near - across, near + across]
+        first = np.arange(len(start)) * 4
+        triangles = np.stack([first, first + 1, first + 2, first + 1, first + 3, first + 2], axis=1)
+        return pv.vtk_points(np.stack(corners, axis=1).reshape(-1, 3)), triangles.reshape(-1, 3)
 
 
 class Pixels(NamedTuple):
@@ -127,7 +159,7 @@ def visible(
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
         renderer.RemoveAllViewProps()
         for mesh, start in zip(meshes, starts.tolist(), strict=False):
-            renderer.AddActor(_actor(mesh, start, shift))
+            renderer.AddActor(_actor(mesh, start, shift, camera, height))
         for occluder in occluders:
             renderer.AddActor(occluder)
         renderer.ResetCameraClippingRange()
@@ -145,15 +177,38 @@ def visible(
     return Pixels(height - 1 - row, column, which, cell - starts[which], size)
 
 
-def _actor(mesh: Cells, start: int, shift: int) -> vtkActor:
+def toward_eye(camera: pv.Camera, points: Array) -> Array:
+    """Return the unit directions from points toward the eye of a camera."""
+    if camera.GetParallelProjection():
+        away = np.array(camera.GetDirectionOfProjection())
+        return np.broadcast_to(-away, points.shape).copy()
+    return unit_rows(np.array(camera.GetPosition()) - points)
+
+
+def footprint(camera: pv.Camera, points: Array, height: int) -> Array:
+    """Return the size of a pixel at points, in the unit of the mesh."""
+    if camera.GetParallelProjection():
+        return np.full(len(points), 2 * camera.GetParallelScale() / height)
+    away = np.array(camera.GetDirectionOfProjection())
+    depth = (points - np.array(camera.GetPosition())) @ away
+    return np.asarray(2 * depth * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
+
+
+def _actor(
+    mesh: Cells, start: int, shift: int, camera: pv.Camera, height: int
+) -> vtkActor:  # fmt: skip
     """Return a mesh whose cells have their numbers, from 1, as flat colours; 0 is background."""
-    count, corners = mesh.corners.shape
-    number = np.arange(start + 1, start + 1 + count) >> shift
+    points, shown = mesh.points, mesh.corners
+    number = np.arange(start + 1, start + 1 + len(shown)) >> shift
+    if mesh.diameter is not None:
+        points, shown = mesh.bands(camera, height)
+        number = np.repeat(number, 2)
+    corners = shown.shape[1]
     colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)
     cells = vtkCellArray()
-    cells.SetData(corners, as_vtk(mesh.corners.ravel()))
+    cells.SetData(corners, as_vtk(shown.ravel()))
     data = vtkPolyData()
-    data.SetPoints(mesh.points)
+    data.SetPoints(points)
     (data.SetVerts, data.SetLines, data.SetPolys)[corners - 1](cells)
     data.GetCellData().SetScalars(as_vtk(colors, "number"))
     mapper = vtkPolyDataMapper()

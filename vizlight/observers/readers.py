@@ -101,11 +101,27 @@ class Reading(NamedTuple):
         Probability that the reader gives the right candidate, for each sharpness.
     candidates : int
         Number of candidates.
+    other_error, other_truth : ndarray
+        The same for what is right at another place, at random: what guessing gives, since all data
+        may be alike.
     """
 
     error: Array
     truth: Array
     candidates: int
+    other_error: Array
+    other_truth: Array
+
+    @property
+    def elsewhere(self) -> Reading:
+        """Answers as they are compared with the data of other places."""
+        error, truth = self.other_error, self.other_truth
+        return Reading(error, truth, self.candidates, error, truth)
+
+
+def elsewhere(count: int) -> Indices:
+    """Return for each place another one, at random but always the same."""
+    return np.random.default_rng(count).permutation(count)
 
 
 def likelihood(colors: Colors, table: Array) -> Array:
@@ -154,6 +170,11 @@ def information(readings: list[Reading]) -> float:
     return best
 
 
+def told(readings: list[Reading]) -> float:
+    """Return the bits that a picture tells of its places, beyond what all places have in common."""
+    return max(0.0, information(readings) - information([one.elsewhere for one in readings]))
+
+
 def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) -> Reading:
     """Return the answers of a reader who matches hues with a disc of directions.
 
@@ -186,10 +207,12 @@ def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) 
     logarithms = gain / (colors.deviation[:, 1:] ** 2).mean(axis=1)[:, np.newaxis]
     angle = np.degrees(course(sample))
     right = np.rint(angle - start).astype(np.intp) % ANGLES
-    off = start + _drawn(logarithms) - angle
+    other = elsewhere(len(angle))
+    off = start + _drawn(logarithms) - np.stack([angle, angle[other]])
     # Lines have no sign, so that directions repeat after 180 degrees.
-    error = np.abs((off + 90) % 180 - 90)
-    return Reading(error, of_truth(logarithms, right), ANGLES)
+    error, other_error = np.abs((off + 90) % 180 - 90)
+    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
+    return Reading(error, truth, ANGLES, other_error, other_truth)
 
 
 def _drawn(logarithms: Array) -> Indices:
@@ -268,8 +291,11 @@ def read_heading(sample: Sample, middle: Array, colors: Colors) -> Reading:
         logarithms[rows] = likelihood(colors.take(rows), table[step])
     right = np.clip(np.floor(toward + 90), 0, SLOPES - 1).astype(np.intp)
     answer = _drawn(logarithms) - 90 + 0.5
-    off = np.abs(answer - toward)
-    return Reading(np.minimum(off, 180 - off), of_truth(logarithms, right), SLOPES)
+    other = elsewhere(len(toward))
+    off = np.abs(answer - np.stack([toward, toward[other]]))
+    error, other_error = np.minimum(off, 180 - off)
+    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
+    return Reading(error, truth, SLOPES, other_error, other_truth)
 
 
 def _light_in_frame(sample: Sample, middle: Array, ways: Array) -> Array:
@@ -310,6 +336,7 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
     axes = np.stack([sample.right, sample.up, sample.eye], axis=1)
     truth = np.einsum("ij,ikj->ik", sample.normals, axes)
     truth = np.where(truth[:, 2:] < 0, -truth, truth)
+    other = elsewhere(len(sample))
     errors, probabilities = [], []
     step = max(1, BLOCK // len(disc))
     for start in range(0, len(sample), step):
@@ -319,11 +346,17 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
         likely = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
         normal = likely.reshape(len(likely), turns, count).sum(axis=1)
         best = unit_rows(normal @ disc[:count])
-        cosine = np.einsum("ij,ij->i", best, truth[rows])
-        errors.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
-        right = np.argmax(truth[rows] @ disc[:count].T, axis=1)
-        probabilities.append(of_truth(np.log(np.maximum(normal, 1e-300)), right))
-    return Reading(np.concatenate(errors), np.concatenate(probabilities, axis=1), count)
+        logarithms = np.log(np.maximum(normal, 1e-300))
+        for normals in (truth[rows], truth[other[rows]]):
+            cosine = np.einsum("ij,ij->i", best, normals)
+            errors.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+            right = np.argmax(normals @ disc[:count].T, axis=1)
+            probabilities.append(of_truth(logarithms, right))
+    (error, other_error), (seen, other_seen) = (
+        (np.concatenate(each[::2], axis=-1), np.concatenate(each[1::2], axis=-1))
+        for each in (errors, probabilities)
+    )
+    return Reading(error, seen, count, other_error, other_seen)
 
 
 def candidates(count: int, turns: int, phase: float) -> tuple[Array, Array]:
@@ -382,8 +415,11 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
         lighted = display.on_colors(bar, np.full(count, amount)) / 255.0
         logarithms = np.logaddexp(logarithms, likelihood(colors, lab(lighted)))
     right = np.minimum((positions * count).astype(np.intp), count - 1)
-    error = np.abs((_drawn(logarithms) + 0.5) / count - positions)
-    return Reading(error, of_truth(logarithms, right), count)
+    other = elsewhere(len(positions))
+    answer = (_drawn(logarithms) + 0.5) / count
+    error, other_error = np.abs(answer - np.stack([positions, positions[other]]))
+    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
+    return Reading(error, truth, count, other_error, other_truth)
 
 
 def light_of(colors: Colors, table: pv.LookupTable) -> Colors:

@@ -15,7 +15,7 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.pixels import Cells
+from vizlight.observers.pixels import Cells, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
 from vizlight.shading import engine
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource
 
     Kind: TypeAlias = Literal["surface", "line", "point"]
+
+#: Array of VTK's streamlines that grows in the sense of the flow.
+TIME = "IntegrationTime"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +132,7 @@ def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
     share = weights(corners, *rays(camera, pixels.at))
     places = Places(np.arange(m * s).reshape(m, s), share)
     points = interpolated(corners.reshape(-1, 3), places)
-    toward = _toward_eye(camera, points)
+    toward = toward_eye(camera, points)
     right = unit_rows(np.cross(np.asarray(camera.GetViewUp()), toward))
     tangents = _tangents(part, ids, places)
     normals = _normals(part, ids, places, points)
@@ -149,14 +152,6 @@ def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
         tangents=tangents, normals=normals, values=values, valid=valid, scene=part.scene,
         options=part.options, magnitude=magnitude,
     )  # fmt: skip
-
-
-def _toward_eye(camera: pv.Camera, points: Array) -> Array:
-    """Return the unit directions from points toward the eye of a camera."""
-    if camera.GetParallelProjection():
-        away = np.array(camera.GetDirectionOfProjection())
-        return np.broadcast_to(-away, points.shape).copy()
-    return unit_rows(np.array(camera.GetPosition()) - points)
 
 
 def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
@@ -213,7 +208,12 @@ class Part:
     table : pyvista.LookupTable or None
         Colours of the values.
     width : float
-        Width of lines or points in pixels.
+        Width of lines or points in pixels, the least width of lines that have a diameter.
+    diameter : float or None
+        Diameter of lines in the unit of the mesh.
+    ahead : ndarray, shape (C,), or None
+        1 for segments that run in the sense of the data, -1 against it, 0 without; None where the
+        data have no sense.
     """
 
     kind: Kind
@@ -226,14 +226,17 @@ class Part:
     values: Raw | None = None
     table: pv.LookupTable | None = None
     width: float = 1.0
+    diameter: float | None = None
+    ahead: Array | None = None
 
     @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
         if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):
-            return Cells(self.mesh.GetPoints(), self.cells, self.width)
-        points = pv.vtk_points(np.asarray(self.inputs.points[:]))
-        return Cells(points, self.cells, self.width)
+            points = self.mesh.GetPoints()
+        else:
+            points = pv.vtk_points(np.asarray(self.inputs.points[:]))
+        return Cells(points, self.cells, self.width, self.diameter)
 
 
 def part_on(
@@ -275,9 +278,26 @@ def part_on(
     inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
+    ahead = _ahead(mesh, cells, inputs, options) if kind == "line" else None
     return Part(
-        kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, **more
-    )
+        kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
+        **more,
+    )  # fmt: skip
+
+
+def _ahead(
+    mesh: pv.DataSet, cells: Indices, inputs: ShadingInputs, options: LightOptions
+) -> Array | None:
+    """Return whether segments run with the data, by their vectors or by the time along them."""
+    if TIME in mesh.point_data:
+        return np.sign(np.diff(np.asarray(mesh.point_data[TIME], np.float64)[cells])[:, 0])
+    if options.tangents is None or inputs.tangents is None or options.line_field:
+        return None
+    if inputs.tangents.shape[1] != 3:
+        return None
+    vectors = np.asarray(inputs.tangents[:], dtype=np.float64)[cells].sum(axis=1)
+    points = np.asarray(inputs.points[:], dtype=np.float64)
+    return np.asarray(np.sign(dots(vectors, points[cells[:, 1]] - points[cells[:, 0]])))
 
 
 def rows_of(source: ArraySource, ids: Indices) -> Raw:
@@ -321,15 +341,6 @@ def camera_of(
     camera.focal_point = tuple(position - toward)
     camera.view_angle = VIEW_ANGLE
     return camera
-
-
-def footprint(camera: pv.Camera, points: Array, height: int) -> Array:
-    """Return the size of a pixel at points, in the unit of the mesh."""
-    if camera.GetParallelProjection():
-        return np.full(len(points), 2 * camera.GetParallelScale() / height)
-    away = np.array(camera.GetDirectionOfProjection())
-    depth = (points - np.array(camera.GetPosition())) @ away
-    return np.asarray(2 * depth * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
 
 
 def rays(camera: pv.Camera, at: Array) -> tuple[Array, Array]:

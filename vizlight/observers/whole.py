@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
 
 from vizlight import _check
-from vizlight.draw.live import Live, has_pass, items
+from vizlight.draw.live import Live, has_pass, items, matrix_of
 from vizlight.draw.render import SUPERSAMPLED
 from vizlight.filters.tint import values_of
 from vizlight.observers.eye import MM_PER_INCH, NOISE
@@ -17,11 +18,12 @@ from vizlight.observers.measure import measure
 from vizlight.observers.samples import part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vtkmodules.vtkRenderingCore import vtkRenderer
+    from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
 
     from vizlight._types import Array, Foreign, Keywords
     from vizlight.observers.figures import Legibility
@@ -83,6 +85,9 @@ def legibility_of(
     """
     if not plotter.camera_set:
         plotter.renderer.view_isometric(render=False)
+    # PyVista takes the frame that it has, even if the camera has moved since.
+    assert plotter.render_window is not None
+    plotter.render_window.Render()
     whole = np.asarray(plotter.screenshot(return_img=True))[..., :3] / 255.0
     renderer = plotter.renderer
     (left, low), (wide, high) = renderer.GetOrigin(), renderer.GetSize()
@@ -130,13 +135,12 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
         if not actor.GetVisibility() or mapper is None or mapper.GetInput() is None:
             continue
         live, style = live_of(actor), actor.GetProperty()
-        part = None
-        if np.array_equal(pv.array_from_vtkmatrix(actor.GetMatrix()), np.eye(4)):
-            width = max(1.0, style.GetLineWidth() / pixel)
-            if live is not None and live.n == 3:
-                part = _lit(live, renderer, actor, width)
-            elif live is None:
-                part = _colored(actor, renderer, width)
+        width = max(1.0, style.GetLineWidth() / pixel)
+        part = (
+            _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
+            if live is None
+            else _lit(live, renderer, actor, width)
+        )
         if part is not None:
             shown.parts.append(part)
         elif style.GetOpacity() >= HIDES:
@@ -146,28 +150,76 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
 
 def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Part | None:
     """Return a mesh with light of vizlight as a part."""
+    mesh, table = live.source.mesh, actor.GetMapper().GetLookupTable()
+    if live.n != 3:
+        # Light of n-space has no key in the picture; colours of values have.
+        return _colored(actor, renderer, width, mesh, live.given, live.line_diameter)
     scene = live.scene_of(renderer, actor)
     options = live.source.named or LightOptions.of(vars(live.source.options))
-    table = actor.GetMapper().GetLookupTable()
-    colors = _values(live.source.mesh, live.given, table)
-    if live.scalars is not None and not colors:
-        # Colours that were given mean nothing that a key tells.
+    colors = _values(mesh, live.given, table)
+    # Colours that were given mean nothing that a key tells; crossings of lines are still read.
+    lit = live.scalars is None or bool(colors)
+    if not lit and not has_lines_only(mesh):
         return None
-    return part_on(live.source.mesh, scene, options, width=width, **colors)
+    placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
+    return part_on(
+        placed, scene, options, lit=lit, width=width, diameter=live.line_diameter, **colors
+    )
 
 
-def _colored(actor: vtkActor, renderer: vtkRenderer, width: float) -> Part | None:
-    """Return a mesh of PyVista whose colours mean values as a part."""
-    mapper = actor.GetMapper()
+def moved(
+    mesh: pv.DataSet, options: LightOptions, matrix: Array
+) -> tuple[pv.DataSet, LightOptions]:
+    """Return a mesh, and the options of its light, where an actor has placed it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh; it is not changed.
+    options : LightOptions
+        How the mesh is lit: tangents move with it, and normals stay across its surface.
+    matrix : ndarray, shape (4, 4)
+        Matrix of the actor.
+    """
+    if np.array_equal(matrix, np.eye(4)):
+        return mesh, options
+    linear = matrix[:3, :3]
+    placed = mesh.transform(matrix, transform_all_input_vectors=False, inplace=False)
+    turned: Keywords = {}
+    for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
+        given = getattr(options, name)
+        if given is not None:
+            rows = np.asarray(mesh.point_data[given] if isinstance(given, str) else given)
+            turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
+    return placed, dataclasses.replace(options, **turned)
+
+
+def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
+    """Return the mesh of a mapper of PyVista whose colours may mean values."""
     mesh = pv.wrap(mapper.GetInput())
-    name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
-    if not isinstance(mesh, pv.DataSet) or not mesh.n_points or mapper.GetColorMode() == 2:
+    direct = mapper.GetColorMode() == 2 and bool(mapper.GetScalarVisibility())
+    return mesh if isinstance(mesh, pv.DataSet) and mesh.n_points and not direct else None
+
+
+def _colored(
+    actor: vtkActor,
+    renderer: vtkRenderer,
+    width: float,
+    mesh: pv.DataSet | None,
+    name: str | None,
+    diameter: float | None = None,
+) -> Part | None:
+    """Return a mesh whose colours mean values, or nothing on lines, as a part."""
+    mapper = actor.GetMapper()
+    if mesh is None:
         return None
-    colors = _values(mesh, name, mapper.GetLookupTable())
-    if not colors:
+    colors = _values(mesh, name if mapper.GetScalarVisibility() else None, mapper.GetLookupTable())
+    # Crossings of lines are read whatever their colours mean.
+    if not colors and not has_lines_only(mesh):
         return None
     scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
-    return part_on(mesh, scene, LightOptions(), width=width, lit=False, **colors)
+    placed, options = moved(mesh, LightOptions(), matrix_of(actor.GetMatrix()))
+    return part_on(placed, scene, options, width=width, lit=False, diameter=diameter, **colors)
 
 
 def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:

@@ -1,0 +1,217 @@
+"""Crossings of lines are found, and the nearer line is told where the picture shows it."""
+
+import io
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+
+import vizlight
+from vizlight import presets
+from vizlight.draw.cameras import camera_on
+
+pytestmark = pytest.mark.opengl
+
+SIZE = (600, 400)
+
+
+def lines(*pieces):
+    """Return a mesh of lines through points."""
+    starts = np.cumsum([0, *map(len, pieces)])
+    cells = [[len(p), *range(a, a + len(p))] for a, p in zip(starts, pieces, strict=False)]
+    return pv.PolyData(np.concatenate(pieces).astype(float), lines=np.concatenate(cells))
+
+
+def straight(start, end, count=30):
+    return np.linspace(start, end, count)
+
+
+def lattice(across=5, along=4, depth=0.3):
+    """Return lines that cross at right angles, of which every other one passes in front."""
+    rows = [straight((0, y, 0), (7, y, 0)) for y in np.arange(along) + 0.5]
+    columns = [
+        straight((x + 1, -0.2, s * depth), (x + 1, along + 0.2, s * depth))
+        for x, s in zip(range(across), np.tile([1, -1], across), strict=False)
+    ]
+    mesh = lines(*rows, *columns)
+    mesh["kind"] = np.repeat([0.0, 1.0], [30 * along, 30 * across])
+    return mesh
+
+
+def shot(mesh, *, ours=True, light=None, view=(0, 0, 1), parallel=True, **how):
+    """Return a picture of lines on black, and its camera."""
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.background_color = "black"
+    plotter.enable_anti_aliasing("msaa", multi_samples=8)
+    if ours:
+        plotter.vizlight.add_mesh(mesh, scene=light or vizlight.Scene(), **how)
+    else:
+        plotter.add_mesh(mesh, show_scalar_bar=False, **({"color": "tan", "lighting": False} | how))
+    plotter.camera = camera_on(mesh, view, aspect=1.5, parallel=parallel)
+    picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
+    plotter.close()
+    return picture, camera
+
+
+def order(mesh, picture, camera, **how):
+    how = {"key": [], "line_width": 3, "size_mm": 50, "samples": 256} | how
+    return vizlight.legibility(mesh, picture=picture, camera=camera, **how).order
+
+
+def test_lines_of_one_color_tell_no_order():
+    mesh = lattice()
+    found = order(mesh, *shot(mesh, ours=False, line_width=3))
+    assert found.samples == 20
+    assert (found.told, found.wrongly, found.bits) == (0, 0, 0)
+    assert found.unreadable
+    assert "halos" in found.reason
+
+
+@pytest.mark.parametrize("width", [3, 6, 12])
+def test_halos_tell_the_order(width):
+    mesh = lattice()
+    found = order(mesh, *shot(mesh, line_width=width), line_width=width)
+    assert found.samples == 20
+    assert found.told > 0.9
+    assert found.wrongly == 0
+    assert found.readable == found.told
+
+
+@pytest.mark.parametrize("background", [0, 255])
+def test_two_colors_tell_the_order_without_a_gap(background):
+    mesh = lattice()
+    picture, camera = shot(mesh, ours=False, scalars="kind", cmap=["orange", "blue"], line_width=5,
+                           color=None)  # fmt: skip
+    picture = np.where((picture == 0).all(axis=2, keepdims=True), np.uint8(background), picture)
+    found = order(mesh, picture, camera, line_width=5)
+    assert found.told > 0.9
+    assert found.wrongly == 0
+
+
+def test_a_picture_of_the_mirrored_lines_tells_the_order_wrongly():
+    mesh = lattice()
+    other = lattice(depth=-0.3)
+    found = order(mesh, *shot(other, line_width=3))
+    assert found.wrongly > 0.9
+    assert found.told == 0
+    assert found.bits == 0
+    assert "wrongly" in found.reason
+    assert order(other, *shot(other, line_width=3)).told > 0.9
+
+
+def test_half_of_the_lines_mirrored_are_chance():
+    columns = lattice(across=6)
+    picture = shot(columns, line_width=3)
+    points = np.asarray(columns.points).copy()
+    points[(np.isin(np.arange(len(points)) // 30 - 4, [2, 3, 4])), 2] *= -1
+    columns.points = points
+    found = order(columns, *picture)
+    assert abs(found.told - found.wrongly) < 0.1
+    assert found.bits < 0.05
+
+
+def told_of(pictures, camera, mesh):
+    return [order(mesh, picture, camera).told for picture in pictures]
+
+
+def test_more_blur_tells_less():
+    mesh = lattice()
+    picture, camera = shot(mesh, line_width=3)
+    blurred = [gaussian_filter(picture.astype(float), (s, s, 0)) / 255 for s in (0, 1, 2, 4)]
+    told = told_of(blurred, camera, mesh)
+    assert told == sorted(told, reverse=True)
+    assert told[0] > 0.9
+    assert told[-1] < 0.1
+
+
+def test_less_contrast_tells_less():
+    mesh = lattice()
+    picture, camera = shot(mesh, line_width=3)
+    told = told_of([picture / 255 * c for c in (1, 0.3, 0.1, 0.03, 0)], camera, mesh)
+    assert told == sorted(told, reverse=True)
+    assert told[0] > 0.9
+    assert told[-1] == 0
+
+
+def test_narrower_lines_tell_less():
+    mesh = lattice()
+    told = []
+    for width in (4, 2, 1, 0.5, 0.25):
+        # A picture of a quarter of the size has lines of a quarter of the width.
+        picture, camera = shot(mesh, line_width=4)
+        how = {"line_width": 4, "size_mm": 50 * width / 4}
+        told.append(order(mesh, picture, camera, **how).told)
+    assert told == sorted(told, reverse=True)
+    assert told[0] > 0.9
+    assert told[-1] == 0
+
+
+def test_a_jpeg_of_usual_quality_tells_the_order_as_well():
+    mesh = lattice()
+    picture, camera = shot(mesh, line_width=3)
+    file = io.BytesIO()
+    Image.fromarray(picture).save(file, "JPEG", quality=75)
+    assert order(mesh, np.asarray(Image.open(file)), camera).told > 0.9
+
+
+def test_crossings_beside_a_third_line_and_flat_ones_are_left_out():
+    first, second = straight((0, 0, 0), (3, 0, 0)), straight((1, -1, 1), (1, 1, 1))
+    third = straight((0.98, -1, 2), (0.98, 1, 2))
+    alone, disturbed = lines(first, second), lines(first, second, third)
+    assert order(alone, *shot(alone, line_width=3)).samples == 1
+    assert order(disturbed, *shot(disturbed, line_width=3)) is None
+    flat = lines(first, straight((0, -0.5, 1), (3, 0.5, 1)))
+    assert order(flat, *shot(flat, line_width=3)) is None
+    end = lines(first, straight((1, -1, 1), (1, 0, 1)))
+    assert order(end, *shot(end, line_width=3)) is None
+
+
+def test_a_line_that_crosses_itself_is_asked():
+    turn = np.linspace(0, 2 * np.pi, 400)[:-2]
+    knot = np.stack(
+        [np.sin(turn) + 2 * np.sin(2 * turn), np.cos(turn) - 2 * np.cos(2 * turn),
+         -np.sin(3 * turn)], axis=1,
+    )  # fmt: skip
+    mesh = lines(knot)
+    found = order(mesh, *shot(mesh, line_width=3))
+    assert found.samples == 3
+    assert found.told == 1
+
+
+def test_lines_behind_a_surface_have_no_crossings():
+    mesh = lattice()
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.vizlight.add_mesh(mesh, scene=presets.heading(), line_width=3)
+    plotter.add_mesh(pv.Plane(center=(1, 2, 1), i_size=3, j_size=6), color="red")
+    plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
+    found = plotter.vizlight.legibility(samples=256, size_mm=50).order
+    plotter.close()
+    assert found.samples == 12
+
+
+@pytest.mark.parametrize("parallel", [True, False])
+def test_lines_of_a_diameter_are_as_wide_as_they_are_drawn(parallel):
+    mesh = lattice(depth=1.5)
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.background_color = "white"
+    plotter.vizlight.add_mesh(mesh, scene=presets.heading(), line_diameter=0.2, halo=False)
+    plotter.camera = camera_on(mesh, (0.1, 0.1, 1), aspect=1.5, parallel=parallel)
+    found = plotter.vizlight.legibility(samples=256, size_mm=50)
+    drawn = np.asarray(plotter.screenshot(return_img=True))
+    plotter.close()
+    assert found.pixels == pytest.approx(np.count_nonzero((drawn < 250).any(axis=2)), rel=0.08)
+    assert found.order.samples == 20
+    assert found.order.told > 0.9
+
+
+def test_plain_lines_of_a_plotter_are_asked():
+    mesh = lattice()
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.add_mesh(mesh, color="tan", line_width=3)
+    plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
+    found = plotter.vizlight.legibility(samples=256)
+    plotter.close()
+    assert found.order.unreadable
+    assert found.heading is None
