@@ -581,3 +581,18 @@ test_bad_cross_fields = refusals(
         "vectors: expected two point arrays of the surface, got 'u'; attach both",
     ),
 )
+
+
+def test_two_components_have_no_third():
+    mesh = pv.Plane(i_resolution=20, j_resolution=20)
+    mesh["U"] = np.asarray(mesh.points)[:, :2] @ [[0, 1], [-1, 0]]
+    lines = streamlines(mesh, SCENE, vectors="U", seeds=[[0.3, 0, 0]])
+    np.testing.assert_allclose(np.linalg.norm(lines.points, axis=1), 0.3, atol=1e-2)
+    assert mesh["U"].shape[1] == 2
+
+
+def test_a_cloud_has_no_cells():
+    cloud = pv.PolyData(np.random.default_rng(0).random((20, 3)))
+    cloud["U"] = np.asarray(cloud.points)
+    with pytest.raises(ValueError, match="mesh: expected a mesh with cells, got vertices alone"):
+        streamlines(cloud, SCENE, vectors="U", seeds=5)

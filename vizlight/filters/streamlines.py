@@ -287,6 +287,9 @@ def _check_mesh(mesh: object, argument: str) -> None:
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
     check_whole(mesh, argument)
+    if mesh.n_points and not mesh.GetMaxSpatialDimension():
+        remedy = "interpolate its vectors onto a grid, between points there are none"
+        raise ValueError(_check.message(argument, "a mesh with cells", "vertices alone", remedy))
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
