@@ -124,7 +124,8 @@ def read(
         Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
         .trx) need the extra ``tracts``; netCDF files (.nc, .cdf) and those that PyVista reads by
         meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
-        (.tif, .asc, .hgt) the extra ``maps``.
+        (.tif, .asc, .hgt) the extra ``maps``; GRIB (.grib, .grb) cfgrib and Zarr (.zarr) zarr
+        beside ``formats``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
         an integer and no time of a step. Default: the last step.
@@ -192,7 +193,8 @@ def read(
         raise _damaged(path, short)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
-    with reading, captured_errors() as errors:
+    # Damaged numbers overflow in readers, which say what is wrong beside that.
+    with reading, captured_errors() as errors, np.errstate(all="ignore"):
         try:
             found: Foreign = _found(path, time, at, nodata)
             for block in blocks.all_blocks(found):
@@ -244,8 +246,11 @@ def _check_there(path: Path, overlays: Sequence[Path]) -> None:
 
 
 def no_file(path: Path) -> str:
-    """Return why a path is no file that can be read, an empty text if it is one."""
-    if path.is_file():
+    """Return why a path is no file that can be read, an empty text if it is one.
+
+    A store of Zarr is a folder.
+    """
+    if path.is_file() or (path.is_dir() and path.suffix.lower() in cf_grids.ZARR):
         return ""
     return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
 

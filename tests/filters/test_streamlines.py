@@ -596,3 +596,15 @@ def test_a_cloud_has_no_cells():
     cloud["U"] = np.asarray(cloud.points)
     with pytest.raises(ValueError, match="mesh: expected a mesh with cells, got vertices alone"):
         streamlines(cloud, SCENE, vectors="U", seeds=5)
+
+
+@pytest.mark.parametrize("kind", ["image", "rectilinear"])
+def test_flat_grids_are_surfaces(kind):
+    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.05, 0.05, 1))
+    grid = grid if kind == "image" else grid.cast_to_rectilinear_grid()
+    x, y = np.asarray(grid.points)[:, :2].T
+    grid["V"] = np.stack([0.5 - y, x - 0.5, 0 * x], axis=1)
+    lines = streamlines(grid, SCENE, vectors="V", spacing=0.1)
+    assert lines.field_data["largest_gap"][0] < 1.5
+    # Vectors are no heights: such a grid is flat below the sky.
+    np.testing.assert_allclose(vizlight.sky(grid)["sky"], 1, atol=0.02)

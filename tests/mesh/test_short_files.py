@@ -50,3 +50,11 @@ def test_places_beyond_the_largest(tmp_path):
     pv.RectilinearGrid([0.0, 1e200], [0.0, 1], [0.0, 1]).save(tmp_path / "a.vtr")
     with pytest.raises(files.FileError, match=r"points beyond 1e\+100, the largest coordinate"):
         vizlight.read(tmp_path / "a.vtr")
+
+
+def test_a_legacy_file_that_ends_before_its_cells(tmp_path):
+    path = tmp_path / "a.vtk"
+    BOX.cast_to_unstructured_grid().save(path, binary=False)
+    path.write_text(path.read_text().partition("CELLS")[0] + "METADATA\n")
+    with pytest.raises(files.FileError, match="its last block is not whole"):
+        vizlight.read(path)

@@ -315,8 +315,8 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
 
 
 def _as_surface(mesh: object) -> pv.PolyData | None:
-    """Return a grid of points whose cells are faces as a surface; others as they are."""
-    grid = isinstance(mesh, pv.StructuredGrid | pv.UnstructuredGrid)
+    """Return a grid whose cells are faces as a surface; others as they are."""
+    grid = isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData)
     if grid and mesh.n_cells and mesh.GetMaxSpatialDimension() == 2:  # type: ignore[attr-defined]
         return blocks.outer_surface(mesh)[0]  # type: ignore[arg-type]
     return mesh  # type: ignore[return-value]

@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["SUFFIXES", "Steps", "add", "is_grid", "of_dataset", "read"]
+__all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 
-#: File name extensions of netCDF.
-SUFFIXES = (".nc", ".nc4", ".cdf")
+#: File name extensions of netCDF, of GRIB and of Zarr, and of xarray's engines for them.
+NETCDF, GRIB, ZARR = (".nc", ".nc4", ".cdf"), (".grib", ".grib2", ".grb", ".grb2"), (".zarr",)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR)
+_ENGINES = dict.fromkeys(GRIB, "cfgrib") | dict.fromkeys(ZARR, "zarr")
 
 #: Largest deviation from equal steps, as a share of a step, of the axes of an image.
 EQUAL = 1e-4
@@ -122,7 +124,7 @@ def is_grid(value: object) -> bool:
 def read(
     path: Path, time: object, at: Mapping[str, object] | None = None, nodata: float | None = None
 ) -> pv.DataSet:
-    """Return the variables of a netCDF file on the grid of its largest variable.
+    """Return the variables of a file of netCDF, GRIB or Zarr on the grid of its largest variable.
 
     Parameters
     ----------
@@ -138,7 +140,12 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
-        opened = xarray.open_dataset(path, decode_times=False, decode_coords="all")
+        opened = xarray.open_dataset(
+            path,
+            engine=_ENGINES.get(path.suffix.lower()),
+            decode_times=False,
+            decode_coords="all",
+        )
     with opened as file:
         return of_dataset(file, time, at, nodata, source=str(path))
 

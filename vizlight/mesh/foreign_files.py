@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Indices, Raw
 
-#: Package that reads the files of a suffix, and the extra that installs it.
+#: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {
     ".trk": ("nibabel", "tracts"),
     ".tck": ("nibabel", "tracts"),
@@ -31,7 +31,9 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
-} | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
+} | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
+    cf_grids.GRIB, ("cfgrib", "")
+) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
     (
         ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".inp", ".mdpa", ".mesh",
         ".meshb", ".msh", ".nas", ".node", ".post", ".su2", ".tec", ".ugrid", ".vol",
@@ -58,7 +60,7 @@ def missing(path: Path) -> str:
     except ImportError:
         return (
             f"{path.suffix.lower()} files are read by {package}: "
-            f"run pip install 'vizlight[{extra}]'"
+            f"run pip install '{f'vizlight[{extra}]' if extra else package}'"
         )
     return ""
 
@@ -72,6 +74,8 @@ def read(
 ) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
+    if suffix in cf_grids.SUFFIXES:
+        return cf_grids.read(path, time, at, nodata)
     if suffix in _BY_SUFFIX:
         return _BY_SUFFIX[suffix](path)
     if path.name.lower().endswith((".tt", ".tt.gz")):
@@ -80,8 +84,6 @@ def read(
         return brains.read(path)
     if path.name.lower().endswith(brains.VOLUMES):
         return brains.volume(path, time)
-    if suffix in cf_grids.SUFFIXES:
-        return cf_grids.read(path, time, at, nodata)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path, nodata)
     if suffix == ".mesh" and geomview.is_mesh(path):

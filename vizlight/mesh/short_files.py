@@ -228,6 +228,9 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
     if path.suffix.lower() != ".vtk":
         return ""
     with path.open("rb") as file:
+        if _last(file).rstrip().endswith(b"METADATA"):
+            return "its last block is not whole"
+        file.seek(0)
         # The third line says whether numbers are text; binary files are not looked at.
         if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
             return ""

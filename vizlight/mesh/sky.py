@@ -12,7 +12,7 @@ from vizlight import _check, _compiled
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import blocks, bundles, georeference, normals, sky_rays
-from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.mesh.height_grids import Grid, elevation_name, heights_of
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
 from vizlight.verify import between
@@ -156,7 +156,9 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
         return None
     mesh = georeference.in_metres(mesh)
     if not isinstance(mesh, pv.StructuredGrid):
-        return heights_of(mesh, elevation, factor)
+        # Without heights such a grid is flat.
+        known = elevation is not None or elevation_name(mesh) is not None
+        return heights_of(mesh, elevation, factor) if known else None
     try:
         return heights_of(mesh, elevation, factor)
     except ValueError:
