@@ -462,11 +462,17 @@ def test_a_working_folder_that_is_gone_is_seen_early(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks of folders")
 def test_what_a_killed_writer_left_is_swept_by_the_next(tmp_path):
-    left = [tmp_path / f"{files.DRAFTS}{name}" for name in ("old", "new", "busy")]
+    names = (
+        f"{files.DRAFTS}dead",
+        f"{files.FRESH}young",
+        f"{files.DRAFTS}busy",
+        f"{files.FRESH}old",
+    )
+    left = [tmp_path / name for name in names]
     for folder in left:
         folder.mkdir()
         (folder / "a.vtp").write_text("part")
-    for folder in (left[0], left[2]):
+    for folder in left[2:]:
         os.utime(folder, (0, 0))
     with files._locked(left[2]):
         files.write_mesh(pv.Cube(), tmp_path / "b.vtp")
@@ -650,3 +656,15 @@ def test_fine_ground_far_from_the_origin_is_moved_in_stl(tmp_path):
         files.write_mesh(ground, tmp_path / "a.stl")
     solid = pv.read(tmp_path / "a.stl")
     assert len(np.unique(np.asarray(solid.points)[:, 1])) == 6
+
+
+def test_fine_rows_far_away_stay_apart_in_stl(tmp_path):
+    x, y = np.meshgrid(np.arange(40.0) + 4e5, 0.05 * np.arange(60) + 5e5)
+    ground = pv.StructuredGrid(x, y, np.sin(x)).extract_surface(algorithm="dataset_surface")
+    field = pv.ImageData(dimensions=(40, 60, 1), spacing=(1, 0.05, 1), origin=(4e5, 5e5, 0))
+    field["height"] = np.sin(x).ravel()
+    for mesh in (ground, field):
+        with pytest.warns(UserWarning, match="do not resolve its points where it is"):
+            files.write_mesh(mesh, tmp_path / "a.stl")
+        again = vizlight.read(tmp_path / "a.stl")
+        assert len(np.unique(np.asarray(again.points)[:, 1])) == 60

@@ -29,6 +29,7 @@ REASONS = {
     "check-wheel-contents": "command",
     "codespell": "command",
     "distributed": "what vizlight light --scheduler connects to, a client that users bring",
+    "h5py": "meshio reads .med by it",
     "hatchling": "builds what tests/test_release.py inspects, in a second process",
     "ipykernel": "kernel of the notebooks that tests/test_gallery.py runs",
     "mypy": "command",

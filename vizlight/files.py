@@ -45,6 +45,7 @@ from vizlight.mesh import (
     series,
     short_files,
 )
+from vizlight.mesh.subdivision import simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity
 from vizlight.vtk.topology import place_numbers
 
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from vizlight._types import Foreign, Keywords, Raw
+    from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
     "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
@@ -77,8 +79,9 @@ SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
-#: Largest rounding of points in a file of float32, as a share of a cell.
-FINE = 1e-2
+#: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
+#: the percentage of cells that may be smaller.
+FINE, SHORT = 1e-2, 5.0
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -93,8 +96,9 @@ _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 _HARMLESS = re.compile("bad X server connection|Could not locate key|Skipping BC_t node")
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
-#: Begin of the names of temporary folders, and seconds after which one without a lock is swept.
-DRAFTS, ABANDONED = ".vizlight-file-", 60.0
+#: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
+#: after which one of these is swept.
+DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 
 
 class FileError(ValueError):
@@ -120,7 +124,8 @@ def read(
         Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
         .trx) need the extra ``tracts``; netCDF files (.nc, .cdf) and those that PyVista reads by
         meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
-        (.tif, .asc, .hgt) the extra ``maps``.
+        (.tif, .asc, .hgt) the extra ``maps``; GRIB (.grib, .grb) cfgrib and Zarr (.zarr) zarr
+        beside ``formats``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
         an integer and no time of a step. Default: the last step.
@@ -188,7 +193,8 @@ def read(
         raise _damaged(path, short)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
-    with reading, captured_errors() as errors:
+    # Damaged numbers overflow in readers, which say what is wrong beside that.
+    with reading, captured_errors() as errors, np.errstate(all="ignore"):
         try:
             found: Foreign = _found(path, time, at, nodata)
             for block in blocks.all_blocks(found):
@@ -240,8 +246,11 @@ def _check_there(path: Path, overlays: Sequence[Path]) -> None:
 
 
 def no_file(path: Path) -> str:
-    """Return why a path is no file that can be read, an empty text if it is one."""
-    if path.is_file():
+    """Return why a path is no file that can be read, an empty text if it is one.
+
+    A store of Zarr is a folder.
+    """
+    if path.is_file() or (path.is_dir() and path.suffix.lower() in cf_grids.ZARR):
         return ""
     return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
 
@@ -251,6 +260,9 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     size = getattr(mesh, "dimensions", (1,))
     if min(size) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {tuple(size)}")
+    ends = np.abs(mesh.bounds)
+    if mesh.n_points and np.any(np.isfinite(ends) & (ends > _check.FARTHEST)):
+        raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
     odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]
     for key in odd:
@@ -413,6 +425,8 @@ def _by_vtk(path: Path) -> pv.DataObject:
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
         if path.suffix.lower() in (*_UNPACK, ".zip"):
             way = "unpack it first"
+        if path.suffix.lower() == ".geo":
+            way = f"gmsh makes a mesh of it: gmsh -3 -format msh2 '{path.name}'"
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
@@ -774,8 +788,8 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         mesh = mesh.cast_to_unstructured_grid()
     # STL has no cells but triangles.
     if path.suffix.lower() == ".stl":
-        mesh = _resolved(mesh)
-        mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh.triangulate()
+        mesh = _resolved(mesh if isinstance(mesh, pv.ImageData) else mesh.triangulate())
+        mesh = _solid(mesh) if isinstance(mesh, pv.ImageData) else mesh
 
     # Files of blocks are moved there when all of them are whole.
     folder = path.with_suffix("")
@@ -801,11 +815,16 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
             folder.rmdir()
 
 
-def _resolved(mesh: pv.DataSet) -> pv.DataSet:
+def _resolved(mesh: DataSetT) -> DataSetT:
     """Return a mesh moved to the origin if float32, which .stl has, does not resolve its points."""
     origin = np.array(blocks.near_origin(mesh))
-    # A side of a typical cell, by the area or the volume that a point has.
-    cell = blocks.box(mesh)[1] / max(mesh.n_points, 1) ** 0.5
+    # Rows may be closer to each other than columns.
+    if isinstance(mesh, pv.ImageData):
+        cell = min(mesh.spacing[:2])
+    else:
+        corners = np.asarray(mesh.points, dtype=np.float64)[simplices(mesh)]
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min(axis=1)
+        cell = float(np.percentile(sides[sides > 0], SHORT)) if sides.any() else np.inf
     if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * cell:
         return mesh
     words = ", ".join(f"{-part:.9g}" for part in origin)
@@ -902,12 +921,13 @@ def _refuse_others(name: str, path: Path) -> None:
 
 def _sweep(place: Path) -> None:
     """Remove the temporary folders of writers that were killed: those still at work lock theirs."""
-    for folder in place.glob(f"{DRAFTS}*") if fcntl else ():
+    for folder in [*place.glob(f"{DRAFTS}*"), *place.glob(f"{FRESH}*")] if fcntl else ():
         with contextlib.suppress(OSError), _opened(folder) as opened:
             # An error says that it is locked, another's, or gone.
             fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # A folder without a lock may belong to a writer that has just made it.
-            if time.time() - os.fstat(opened).st_mtime > ABANDONED:
+            # A fresh one may belong to a writer that has just made it.
+            age = time.time() - os.fstat(opened).st_mtime
+            if folder.name.startswith(DRAFTS) or age > ABANDONED:
                 shutil.rmtree(folder)
 
 
@@ -971,13 +991,19 @@ def replace_file(
     _refuse_others("output", path)
     target = path.resolve()  # a symbolic link stays, and what it points to is replaced
     _sweep(target.parent)
-    # A parent knows of the folder before it is there and until it is gone.
-    folder = target.parent / f"{DRAFTS}{uuid.uuid4().hex[:12]}"
+    # A parent knows of the folder before it is there and until it is gone. It has its name from the
+    # time of its lock on: others sweep folders of that name without one.
+    number = uuid.uuid4().hex[:12]
+    fresh, folder = (target.parent / f"{begin}{number}" for begin in (FRESH, DRAFTS))
     try:
-        with _supervise.stage(doing, path, temporary=str(folder)):
-            folder.mkdir(mode=0o700)
+        with (
+            _supervise.stage(doing, path, temporary=str(fresh)),
+            _supervise.stage(doing, path, temporary=str(folder)),
+        ):
+            fresh.mkdir(mode=0o700)
             try:
-                with _locked(folder):
+                with _locked(fresh):
+                    fresh.rename(folder)
                     draft = folder / f"{path.stem}{path.suffix.lower()}"
                     write(str(draft))
                     # A file that is replaced hands on its permissions.
@@ -987,7 +1013,7 @@ def replace_file(
                     # new one.
                     draft.replace(target)
             finally:
-                shutil.rmtree(folder)
+                shutil.rmtree(folder if folder.exists() else fresh)
     except OSError as error:
         got = f"'{path}' ({error.strerror})"
         raise FileError(_check.message("output", "a file that can be written", got)) from error

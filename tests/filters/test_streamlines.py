@@ -581,3 +581,30 @@ test_bad_cross_fields = refusals(
         "vectors: expected two point arrays of the surface, got 'u'; attach both",
     ),
 )
+
+
+def test_two_components_have_no_third():
+    mesh = pv.Plane(i_resolution=20, j_resolution=20)
+    mesh["U"] = np.asarray(mesh.points)[:, :2] @ [[0, 1], [-1, 0]]
+    lines = streamlines(mesh, SCENE, vectors="U", seeds=[[0.3, 0, 0]])
+    np.testing.assert_allclose(np.linalg.norm(lines.points, axis=1), 0.3, atol=1e-2)
+    assert mesh["U"].shape[1] == 2
+
+
+def test_a_cloud_has_no_cells():
+    cloud = pv.PolyData(np.random.default_rng(0).random((20, 3)))
+    cloud["U"] = np.asarray(cloud.points)
+    with pytest.raises(ValueError, match="mesh: expected a mesh with cells, got vertices alone"):
+        streamlines(cloud, SCENE, vectors="U", seeds=5)
+
+
+@pytest.mark.parametrize("kind", ["image", "rectilinear"])
+def test_flat_grids_are_surfaces(kind):
+    grid = pv.ImageData(dimensions=(21, 21, 1), spacing=(0.05, 0.05, 1))
+    grid = grid if kind == "image" else grid.cast_to_rectilinear_grid()
+    x, y = np.asarray(grid.points)[:, :2].T
+    grid["V"] = np.stack([0.5 - y, x - 0.5, 0 * x], axis=1)
+    lines = streamlines(grid, SCENE, vectors="V", spacing=0.1)
+    assert lines.field_data["largest_gap"][0] < 1.5
+    # Vectors are no heights: such a grid is flat below the sky.
+    np.testing.assert_allclose(vizlight.sky(grid)["sky"], 1, atol=0.02)

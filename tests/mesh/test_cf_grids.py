@@ -1,5 +1,7 @@
 """Grids of netCDF and of xarray: one field has one picture, however its file spells it."""
 
+import sys
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -215,3 +217,22 @@ def test_two_files_of_one_wind(tmp_path):
 def test_a_range_that_the_file_states():
     data = {"t": (("y", "x"), np.array([[0.0, 1], [2, 99]]), {"valid_range": [0.0, 10.0]})}
     assert np.isnan(grid(data, {})["t"]).tolist() == [False, False, False, True]
+
+
+def test_a_store_of_zarr(tmp_path):
+    pytest.importorskip("zarr")
+    data = xr.Dataset({"t": (("y", "x"), HEIGHTS)}, coords={"y": LAT, "x": LON})
+    data.to_zarr(tmp_path / "a.zarr")
+    data.to_netcdf(tmp_path / "a.nc")
+    one, other = (vizlight.read(tmp_path / name) for name in ("a.zarr", "a.nc"))
+    np.testing.assert_allclose(one.points, other.points)
+
+
+@pytest.mark.parametrize(("name", "package"), [("a.grib", "cfgrib"), ("a.zarr", "zarr")])
+def test_the_way_to_read_grib_and_zarr(tmp_path, name, package, monkeypatch):
+    monkeypatch.setitem(sys.modules, package, None)
+    (tmp_path / name).write_bytes(b"GRIB")
+    with pytest.raises(
+        files.FileError, match=f"are read by {package}: run pip install '{package}'"
+    ):
+        vizlight.read(tmp_path / name)

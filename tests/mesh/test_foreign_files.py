@@ -280,16 +280,6 @@ def test_a_volume_in_degrees_is_no_needle_in_pictures(cut, rise, tmp_path, capsy
     assert pv.read(out).bounds_size[2] == pytest.approx(rise)
 
 
-def test_a_mesh_of_ugrid_is_no_grid(tmp_path):
-    xarray = pytest.importorskip("xarray")
-    topology = ((), 0, {"cf_role": "mesh_topology"})
-    corners = (("face", "corner"), np.arange(12.0).reshape(3, 4))
-    mesh = xarray.Dataset({"mesh": topology, "corners": corners})
-    mesh.to_netcdf(tmp_path / "mesh.nc", engine="scipy")
-    with pytest.raises(files.FileError, match=r"a mesh of UGRID, not a grid; convert it to \.vtu"):
-        vizlight.read(tmp_path / "mesh.nc")
-
-
 def test_a_file_of_no_grid(tmp_path):
     with pytest.raises(files.FileError, match="no variable on a grid of two or three axes"):
         grid_file(tmp_path / "a.nc", [1, 2, 3], series=np.ones(3))
@@ -313,3 +303,46 @@ def test_colours_of_directions_are_of_lines():
         polylines.direction_colors(pv.Sphere())
     with pytest.raises(TypeError, match="mesh: expected a PyVista mesh of lines, got list"):
         polylines.direction_colors([])
+
+
+def test_tracts_whose_header_has_no_size(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    lines = nibabel.streamlines.Tractogram([np.eye(3, dtype="f4")], affine_to_rasmm=np.eye(4))
+    nibabel.streamlines.save(lines, str(tmp_path / "a.trk"))
+    data = bytearray((tmp_path / "a.trk").read_bytes())
+    data[12:24] = bytes(12)
+    (tmp_path / "a.trk").write_bytes(data)
+    with pytest.raises(files.FileError, match="no point is finite, by the affine of its header"):
+        vizlight.read(tmp_path / "a.trk")
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("hello\n", "invalid literal"),
+        ("hello world\n", "could not convert string"),
+        ("\0\1\2", "invalid literal"),
+        ("1 2\n3 4\n", "2 columns are no places"),
+        ("", "1 columns are no places"),
+        ("3\n1 2 3\n4 5 6\n", "2 of 3 points are there"),
+    ],
+)
+def test_scans_that_are_no_points(tmp_path, text, reason):
+    (tmp_path / "a.pts").write_text(text)
+    with pytest.raises(files.FileError, match=reason):
+        vizlight.read(tmp_path / "a.pts")
+
+
+@pytest.mark.parametrize("count", ["2\n", ""])
+def test_points_of_a_scan(tmp_path, count):
+    (tmp_path / "a.pts").write_text(f"{count}0 0 0 5 255 0 0\n1 2 3 6 0 255 7\n")
+    scan = vizlight.read(tmp_path / "a.pts")
+    np.testing.assert_array_equal(scan.points, [[0, 0, 0], [1, 2, 3]])
+    np.testing.assert_array_equal(scan["intensity"], [5, 6])
+    np.testing.assert_array_equal(scan["rgb"], [[255, 0, 0], [0, 255, 7]])
+
+
+def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):
+    (tmp_path / "t1.geo").write_text("Point(1) = {0, 0, 0, 1};\n")
+    with pytest.raises(files.FileError, match="gmsh makes a mesh of it: gmsh -3 -format msh2"):
+        vizlight.read(tmp_path / "t1.geo")

@@ -292,3 +292,10 @@ def test_normals_of_a_scan_that_are_all_zero_are_estimated(tmp_path):
     assert vizlight.illuminate(scan, scene)["luminance"].min() > 0.99
     scan.save(tmp_path / "scan.vtp")
     assert "Normals" not in vizlight.read(tmp_path / "scan.vtp").point_data
+
+
+def test_points_of_hidden_cells_are_no_fault():
+    x, y = np.meshgrid(np.linspace(-1, 1, 11), np.linspace(-1, 1, 11))
+    grid = pv.StructuredGrid(x, y, 0 * x).hide_cells(range(30))
+    lit = grid.vizlight.illuminate()
+    assert np.count_nonzero(~lit["luminance_valid"].astype(bool)) == 33

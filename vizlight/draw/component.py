@@ -516,6 +516,8 @@ class Component:
         self, plotter: pv.BasePlotter, live: Live, scalars: str | None, drawing: Keywords
     ) -> pv.Actor:
         """Draw a mesh, light it once, and let its light follow."""
+        if drawing.get("name") is not None:
+            _check.text("name", drawing["name"], expected="a name for the actor")
         # The first frame comes at the end, when the mesh has its light.
         rendered = drawing.pop("render", True)
         asked = drawing.get("scalar_bar_args") or {}

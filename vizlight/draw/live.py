@@ -134,10 +134,7 @@ class Live:
         """Return the rows of the points that are drawn, from one for each point of the mesh."""
         if self._shown is None:
             return rows
-        # A control point of a curved cell, which has no index, is not lit.
-        missing, rows = self._shown < 0, rows[self._shown]
-        rows[missing] = 0
-        return rows
+        return rows[self._shown]
 
     # Colours of data.
 
@@ -274,7 +271,7 @@ class Live:
     def invalid(self) -> int:
         """Return the number of points whose vectors have no direction."""
         # Points inside a volume, which are not drawn, have no normal.
-        seen = None if self._shown is None else self._shown[self._shown >= 0]
+        seen = self._shown
         good: Bools = np.ones(1, dtype=np.bool_)
         for rows in (self.source.inputs.tangents, self.source.inputs.normals):
             if rows is not None and rows.shape[0] == self.source.inputs.rows:
@@ -571,8 +568,7 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
     if not isinstance(mesh, pv.PolyData):
         shell, ids = blocks.outer_surface(mesh)
         starts, ends = (ids[corners] for corners in _edges(shell))
-        inside = (starts >= 0) & (ends >= 0)
-        return starts[inside], ends[inside]
+        return starts, ends
     pairs = []
     for cells in (mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()):
         ids = pv.convert_array(cells.GetConnectivityArray())

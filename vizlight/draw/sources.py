@@ -274,8 +274,6 @@ def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Indices)
         (shading,), _ = lighting.light(parts, scene, progress_bar=False)
         # One half makes the cast to bytes round; the fourth channel is full opacity.
         lit = np.insert(255.0 * on_screen(shading) + 0.5, 3, 255.0, axis=1).astype(np.uint8)[ids]
-    # A control point of a curved cell, which has no index, is not lit.
-    lit[ids < 0] = 0
     return lit
 
 

@@ -382,8 +382,7 @@ def _on_surface(
     if value is None or isinstance(value, str):
         return value
     rows = array_of(mesh, name, value)
-    # Points that the surface has beside the mesh's own, as of curved cells, have the value 0.
-    return np.where(ids[:, np.newaxis] < 0, 0, rows[ids])
+    return rows[ids]
 
 
 def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices | None]:

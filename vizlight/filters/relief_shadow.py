@@ -67,6 +67,7 @@ class ReliefOptions(CasterOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.flags(self)
+        _check.array_name("name", self.name)
         if self.occlusion is not None:
             _check.text("occlusion", self.occlusion, expected="the name of a point array")
             if not self.lit:
@@ -222,7 +223,7 @@ def relief_shadow(
     name = asked.name
     each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
     made = [name, name + VALID, *each]
-    records.refuse_overwriting([(mesh, "")], _check.array_name("name", name), made)
+    records.refuse_overwriting([(mesh, "")], name, made)
     if asked.lit:
         taken = sorted({DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}.intersection(made))
         if taken:

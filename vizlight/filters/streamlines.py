@@ -287,6 +287,9 @@ def _check_mesh(mesh: object, argument: str) -> None:
         remedy = "interpolate its vectors onto a grid, between points there are none"
         raise TypeError(_check.message(argument, "a dataset with cells", "PointSet", remedy))
     check_whole(mesh, argument)
+    if mesh.n_points and not mesh.GetMaxSpatialDimension():
+        remedy = "interpolate its vectors onto a grid, between points there are none"
+        raise ValueError(_check.message(argument, "a mesh with cells", "vertices alone", remedy))
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
@@ -312,8 +315,8 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
 
 
 def _as_surface(mesh: object) -> pv.PolyData | None:
-    """Return a grid of points whose cells are faces as a surface; others as they are."""
-    grid = isinstance(mesh, pv.StructuredGrid | pv.UnstructuredGrid)
+    """Return a grid whose cells are faces as a surface; others as they are."""
+    grid = isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData)
     if grid and mesh.n_cells and mesh.GetMaxSpatialDimension() == 2:  # type: ignore[attr-defined]
         return blocks.outer_surface(mesh)[0]  # type: ignore[arg-type]
     return mesh  # type: ignore[return-value]

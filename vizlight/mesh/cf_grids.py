@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +12,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.relief import height_field
-from vizlight.mesh import georeference, meaning, series
+from vizlight.mesh import georeference, meaning, series, unstructured
 from vizlight.mesh.meaning import Meaning
 
 if TYPE_CHECKING:
@@ -19,10 +21,12 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["SUFFIXES", "Steps", "add", "is_grid", "of_dataset", "read"]
+__all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 
-#: File name extensions of netCDF.
-SUFFIXES = (".nc", ".nc4", ".cdf")
+#: File name extensions of netCDF, of GRIB and of Zarr, and of xarray's engines for them.
+NETCDF, GRIB, ZARR = (".nc", ".nc4", ".cdf"), (".grib", ".grib2", ".grb", ".grb2"), (".zarr",)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR)
+_ENGINES = dict.fromkeys(GRIB, "cfgrib") | dict.fromkeys(ZARR, "zarr")
 
 #: Largest deviation from equal steps, as a share of a step, of the axes of an image.
 EQUAL = 1e-4
@@ -42,8 +46,12 @@ _UNITS = {
     "t": r".* since .*",
 }
 #: Names of longitude and of latitude.
-_LONGITUDE = r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?\d*([_\W].*)?|glam.*"
-_LATITUDE = r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?\d*([_\W].*)?|gphi.*"
+_LONGITUDE = (
+    r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?\d*(vertex|cell|node|edge)?([_\W].*)?|glam.*"
+)
+_LATITUDE = (
+    r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?\d*(vertex|cell|node|edge)?([_\W].*)?|gphi.*"
+)
 #: Names and first words of long names that say what an axis is.
 _NAMES = {
     "x": rf"x|x[cthqu]|x[_\d].*|xi(_.*)?|i|n[ix]|{_LONGITUDE}|e|east(ing)?|west_east.*|xaxis"
@@ -55,6 +63,8 @@ _NAMES = {
     r"|lv_.*|vertical.*",
     "t": r"t|.*time.*|date|dates?|days?|months?|years?|hours?|t\d+|step|tstep",
 }
+#: Names of lengths along x and y of the nodes of a mesh.
+_NODES = r"(.*_)?[xy](_?(nodes?|vert\w*|coord\w*))?"
 #: Pressures in hectopascals of other units.
 _PRESSURES = {
     "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
@@ -114,7 +124,7 @@ def is_grid(value: object) -> bool:
 def read(
     path: Path, time: object, at: Mapping[str, object] | None = None, nodata: float | None = None
 ) -> pv.DataSet:
-    """Return the variables of a netCDF file on the grid of its largest variable.
+    """Return the variables of a file of netCDF, GRIB or Zarr on the grid of its largest variable.
 
     Parameters
     ----------
@@ -127,7 +137,16 @@ def read(
 
     # With all coordinates, corners of cells are none of the variables.
     # Times stay numbers, which every calendar of a climate model has.
-    with xarray.open_dataset(path, decode_times=False, decode_coords="all") as file:
+    with warnings.catch_warnings():
+        # Attributes that name corners or areas which are not there mean nothing for the grid.
+        warnings.filterwarnings("ignore", "Variable.s. referenced in")
+        opened = xarray.open_dataset(
+            path,
+            engine=_ENGINES.get(path.suffix.lower()),
+            decode_times=False,
+            decode_coords="all",
+        )
+    with opened as file:
         return of_dataset(file, time, at, nodata, source=str(path))
 
 
@@ -227,9 +246,8 @@ class _Reader:
     """Reader of one dataset, which notes what the grid means."""
 
     def __init__(self, data: Foreign) -> None:
-        if any(one.attrs.get("cf_role") == "mesh_topology" for one in data.variables.values()):
-            raise ValueError("a mesh of UGRID, not a grid; convert it to .vtu")
         self.file, self.said = _with_numbers(data), Meaning()
+        self.topology = unstructured.topology(self.file, _node_letter)
         #: Letter of the axis of each dimension, or an empty text, and what says so.
         self.letters = {str(dim): self._letter(str(dim)) for dim in data.sizes}
 
@@ -260,6 +278,9 @@ class _Reader:
         """Return the grid; see :func:`of_dataset`."""
         ticking, step, single = self._step(time)
         single |= self._chosen(at)
+        if self.topology is not None:
+            mesh = self._surface(self.topology, single, nodata, source)
+            return series.marked(mesh, ticking, step) if len(ticking) > 1 else mesh
         fields = self._fields(single)
         if not fields:
             raise ValueError("no variable on a grid of two or three axes")
@@ -298,9 +319,7 @@ class _Reader:
             self._set_unit(grid, axes, mapped=mapped)
         if left := sorted({*fields} - {*grid.point_data}):
             self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
-        if words:
-            meaning.say(source, words)
-            self.said.notes += words
+        self._say(source, words)
         if places is not None:
             ordered = [
                 np.take(np.take(part, axes[1].order, 0), axes[0].order, 1) for part in places
@@ -312,6 +331,60 @@ class _Reader:
             self.said.notes.append(f"{astray.sum()} cells without a place are left out")
         meaning.attach(grid, self.said)
         return series.marked(grid, ticking, step) if len(ticking) > 1 else grid
+
+    def _say(self, source: str, words: list[str]) -> None:
+        """Warn of missing values, and note them."""
+        if words:
+            meaning.say(source, words)
+            self.said.notes += words
+
+    def _surface(
+        self,
+        of: unstructured.Topology,
+        single: dict[str, int],
+        nodata: float | None,
+        source: str,
+    ) -> pv.PolyData:
+        """Return the faces of a mesh in the plane, with the values of its nodes and faces."""
+        kind = _in_degrees(of.x, self.file[of.x].attrs)
+        unit = meaning.metres(str(self.file[of.x].attrs.get("units", "")))
+        scale = math.degrees(1) if kind == "radians" else unit or 1.0
+        mesh, origin = unstructured.surface(self.file, of, scale, degrees=kind != "")
+        words, left = [], []
+        for key, variable in self.file.data_vars.items():
+            name, dims = str(key), [str(dim) for dim in variable.dims]
+            along = [dim for dim in dims if dim in (of.nodes, of.faces)]
+            if len(along) != 1 or name in (of.x, of.y, of.table):
+                continue
+            if variable.dtype.kind not in "biuf" or _node_letter(name, variable.attrs):
+                continue
+            others = {dim: single.get(dim, 0) for dim in dims if dim not in along}
+            self._note_first([dim for dim in others if dim not in single])
+            self.said.add_array(name, variable.attrs)
+            rows = _within(np.asarray(variable.isel(others).values), variable.attrs)
+            rows, missing = meaning.without_missing(name, rows, nodata)
+            words += [missing] if missing else []
+            rows = self._heights(name, rows, variable.attrs, flat=True)
+            if along == [of.nodes]:
+                mesh.point_data[name] = rows[origin]
+            elif len(rows) == mesh.n_cells:
+                mesh.cell_data[name] = rows
+            else:
+                left.append(name)
+        self.said.axes = [f"x {of.x!r} and y {of.y!r} of the nodes in {of.table!r} by {of.by}"]
+        if left:
+            self.said.notes.append(f"left out, on other axes: {', '.join(sorted(left))}")
+        self._say(source, words)
+        if kind or unit:
+            mesh.field_data[georeference.UNIT] = [georeference.DEGREE if kind else "metre"]
+        meaning.attach(mesh, self.said)
+        return mesh
+
+    def _note_first(self, dims: Sequence[str]) -> None:
+        """Note that the first value along some axes is taken."""
+        for dim in dims:
+            if f"first of {dim}" not in self.said.notes:
+                self.said.notes.append(f"first of {dim}")
 
     def _step(self, time: object) -> tuple[list[float], int, dict[str, int]]:
         """Return the times of the steps, the index of one, and that along each axis of time."""
@@ -364,9 +437,7 @@ class _Reader:
             there = [dim for dim in dims if dim not in single and self.file.sizes[dim] > 1]
             named = self._named(there)
             first = {dim: single.get(dim, 0) for dim in dims if dim not in named.values()}
-            for dim in there:
-                if dim in first and f"first of {dim}" not in self.said.notes:
-                    self.said.notes.append(f"first of {dim}")
+            self._note_first([dim for dim in there if dim in first])
             if len(named) in (2, 3):
                 fields[name] = variable.isel(first)
         return fields
@@ -564,6 +635,14 @@ def _letter_of(name: str, attributes: Mapping[str, Foreign]) -> tuple[str, str]:
             if text and re.fullmatch(pattern, text):
                 return letter, source
     return "", ""
+
+
+def _node_letter(name: str, attributes: Mapping[str, Foreign]) -> str:
+    """Return x or y for coordinates of the nodes of a mesh, else an empty text."""
+    letter, _ = _letter_of(name, attributes)
+    plain = re.fullmatch(_NODES, name.lower()) or attributes.get("axis")
+    earth = _in_degrees(name, attributes, strict=True)
+    return letter if letter in ("x", "y") and (plain or earth) else ""
 
 
 def _in_degrees(name: str, attributes: Mapping[str, Foreign], *, strict: bool = False) -> str:

@@ -6,6 +6,7 @@ import importlib
 import re
 import tempfile
 import threading
+import warnings
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,11 +19,11 @@ from vizlight import _check
 from vizlight.mesh import brains, cf_grids, geomview, georeference, polylines, scene_files
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from vizlight._types import Array, Foreign, Indices, Raw
 
-#: Package that reads the files of a suffix, and the extra that installs it.
+#: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {
     ".trk": ("nibabel", "tracts"),
     ".tck": ("nibabel", "tracts"),
@@ -30,14 +31,18 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
-} | dict.fromkeys(cf_grids.SUFFIXES, ("xarray", "formats")) | dict.fromkeys(
+} | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
+    cf_grids.GRIB, ("cfgrib", "")
+) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
     (
-        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".h5m", ".inp", ".mdpa", ".med", ".mesh",
+        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".inp", ".mdpa", ".mesh",
         ".meshb", ".msh", ".nas", ".node", ".post", ".su2", ".tec", ".ugrid", ".vol",
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
-) | dict.fromkeys(georeference.SUFFIXES, ("rasterio", "maps"))  # fmt: skip
+) | dict.fromkeys((".h5m", ".med"), ("h5py", "formats")) | dict.fromkeys(
+    georeference.SUFFIXES, ("rasterio", "maps")
+)  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
@@ -55,7 +60,7 @@ def missing(path: Path) -> str:
     except ImportError:
         return (
             f"{path.suffix.lower()} files are read by {package}: "
-            f"run pip install 'vizlight[{extra}]'"
+            f"run pip install '{f'vizlight[{extra}]' if extra else package}'"
         )
     return ""
 
@@ -69,24 +74,18 @@ def read(
 ) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
-    if suffix in (".trk", ".tck"):
-        return _tracts(path)
+    if suffix in cf_grids.SUFFIXES:
+        return cf_grids.read(path, time, at, nodata)
+    if suffix in _BY_SUFFIX:
+        return _BY_SUFFIX[suffix](path)
     if path.name.lower().endswith((".tt", ".tt.gz")):
         return _polylines(*brains.tracks_of_tt(path), {}, {})
     if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
         return brains.read(path)
     if path.name.lower().endswith(brains.VOLUMES):
         return brains.volume(path, time)
-    if suffix == ".trx":
-        return _tracts_of_trx(path)
-    if suffix in cf_grids.SUFFIXES:
-        return cf_grids.read(path, time, at, nodata)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path, nodata)
-    if suffix in scene_files.SUFFIXES:
-        return scene_files.read(path)
-    if suffix == ".off":
-        return geomview.read_off(path)
     if suffix == ".mesh" and geomview.is_mesh(path):
         return geomview.read_mesh(path)
     if suffix == ".dem":
@@ -94,7 +93,7 @@ def read(
     if suffix == ".inp" and _head(path, 1) == b"*":
         # PyVista takes it for the format of AVS.
         return _of_meshio(path, ("abaqus",))
-    if PACKAGES.get(suffix, ("",))[0] == "meshio" and missing(path) == "":
+    if PACKAGES.get(suffix, ("",))[0] in ("meshio", "h5py") and missing(path) == "":
         return _of_meshio(path)
     # PyVista has readers for the parallel files of grids, but none for those of surfaces.
     if suffix == ".pvtp":
@@ -157,6 +156,33 @@ class _Console:
         _SAID.texts = [*getattr(_SAID, "texts", ()), plain]
 
 
+#: Columns of a line of a scan: place, intensity, colour.
+_SCAN = {3: (), 4: ("intensity",), 6: ("rgb",), 7: ("intensity", "rgb")}
+
+
+def _scan(path: Path) -> pv.PolyData:
+    """Return the points of a scan: a count, if it is there, and a line for each point.
+
+    VTK's reader loses the first of them, and ends the process where a line has no numbers.
+    """
+    with path.open(encoding="latin-1") as file:
+        first = file.readline().split()
+        count = int(first[0]) if len(first) == 1 else None
+        if count is None:
+            file.seek(0)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "loadtxt: input contained no data")
+            rows = np.loadtxt(file, ndmin=2, comments=("#", "//"))
+    if rows.shape[1] not in _SCAN:
+        raise ValueError(f"{rows.shape[1]} columns are no places with intensities or colours")
+    if count is not None and len(rows) != count:
+        raise ValueError(f"{len(rows)} of {count} points are there")
+    mesh = pv.PolyData(rows[:, :3].copy())
+    for name in _SCAN[rows.shape[1]]:
+        mesh.point_data[name] = rows[:, -3:].astype(np.uint8) if name == "rgb" else rows[:, 3]
+    return mesh
+
+
 def _refuse_narrow(path: Path) -> None:
     """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
     number = _head(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
@@ -169,8 +195,13 @@ def _tracts(path: Path) -> pv.PolyData:
     import nibabel
 
     # nibabel applies the affine of the header: points are in RAS+ and in mm, not in voxels.
-    tracts: Foreign = nibabel.streamlines.load(path).tractogram
+    with np.errstate(all="ignore"), warnings.catch_warnings(record=True) as said:
+        tracts: Foreign = nibabel.streamlines.load(path).tractogram
     lines = tracts.streamlines
+    if len(lines) and not np.isfinite(lines.get_data()).any():
+        raise ValueError("no point is finite, by the affine of its header")
+    for one in said:
+        _check.warn(f"file: '{path}': {one.message}")
     if path.suffix.lower() == ".trk":
         # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
         header = nibabel.streamlines.load(path, lazy_load=True).header
@@ -276,3 +307,10 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
     native = np.float32 if array.dtype == np.float16 else array.dtype.newbyteorder("=")
     rows = array.reshape(len(array), -1)
     data[str(name)] = np.array(rows[:, 0] if rows.shape[1] == 1 else rows, dtype=native)
+
+
+#: Readers that need the path alone, by suffix.
+_BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock]] = {
+    ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan,
+    ".off": geomview.read_off,
+} | dict.fromkeys(scene_files.SUFFIXES, scene_files.read)  # fmt: skip

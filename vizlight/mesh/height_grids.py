@@ -264,7 +264,9 @@ def raised(grid: Grid) -> Grid:
 def heights_name(grid: pv.DataSet) -> str | None:
     """Return the name of the point array of heights: the active one, or the only one."""
     there = [key for key in grid.point_data if np.ndim(grid.point_data[key]) == 1]
-    return grid.point_data.active_scalars_name or (there[0] if len(there) == 1 else None)
+    active = grid.point_data.active_scalars_name
+    # Vectors may be the active array.
+    return active if active in there else there[0] if len(there) == 1 else None
 
 
 def elevation_name(grid: Grid | pv.PolyData) -> str | None:

@@ -258,7 +258,8 @@ def with_named(
         Mesh, which is not changed.
     named : str or None
         Name of vectors, or names of their components separated by commas. None takes the only
-        components of the mesh, if it has no array of three components.
+        components of the mesh, if it has no array of three components. Vectors of two components
+        get 0 as the third.
     argument : str
         Name of the argument for messages.
 
@@ -276,6 +277,11 @@ def with_named(
     """
     if named is None:
         named = only_vectors(mesh, argument)
+    if isinstance(named, str) and named in mesh.array_names and np.shape(mesh[named])[1:] == (2,):
+        mesh = records.averaged(mesh, named).copy(deep=False)
+        flat = np.asarray(mesh.point_data[named])
+        mesh.point_data[named] = np.pad(flat, ((0, 0), (0, 1)))
+        return mesh, named
     if not isinstance(named, str) or "," not in named or named in mesh.array_names:
         return mesh, named
     group = tuple(named.split(","))

@@ -5,6 +5,7 @@ Readers say most of what is wrong with a file. This is what they take for whole,
 
 from __future__ import annotations
 
+import mmap
 import re
 import struct
 from typing import TYPE_CHECKING, BinaryIO, Literal
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, BinaryIO, Literal
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.mesh import series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
@@ -67,6 +69,26 @@ def _xml(file: BinaryIO) -> str:
     if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
         return ""  # VTK's reader says so
     return "" if b"</VTKFile>" in _last(file) else "its end is missing"
+
+
+def _grid(file: BinaryIO) -> str:
+    """Compare the extents of the pieces of a grid with that of the whole.
+
+    What no piece has VTK leaves as it is in memory, and a huge whole takes it long.
+    """
+    if lacks := _xml(file):
+        return lacks
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+        # What follows are no words.
+        end = text.find(b"<AppendedData")
+        head = text[:end] if end >= 0 else text[:]
+    found = re.finditer(rb'<(?:(Piece)|\w+)[^<>]*?\s(?:Whole)?Extent="([^"]*)"', head)
+    whole, *pieces = [(one[1], [int(word) for word in one[2].split()]) for one in found]
+    boxes = np.array([extent for piece, extent in pieces if piece])
+    if len(whole[1]) != 6 or boxes.shape[1:] != (6,):
+        return "its extents are no six numbers"
+    covered = np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0)).tolist()
+    return "" if covered == whole[1] else f"its pieces cover {covered} of {whole[1]}"
 
 
 #: First bytes of netCDF 3 files that SciPy maps, of others, and of HDF5 files.
@@ -139,8 +161,24 @@ def _ply(file: BinaryIO) -> str:
         order: Literal["big", "little"] = "big" if "big" in form else "little"
         return _size(file, whole.end() + _stated_bytes(file.read(), elements, order))
     lines = sum(count for count, _ in elements)
-    there = sum(bool(line.strip()) for line in file)
-    return f"{there} of {lines} lines are there" if there < lines else ""
+    there, last = 0, b""
+    for line in file:
+        if line.strip():
+            there, last = there + 1, line
+    if there < lines:
+        return f"{there} of {lines} lines are there"
+    # More lines are comments of other programs.
+    if there > lines or not elements:
+        return ""
+    row, numbers = last.split(), 0
+    for sizes in next(own for count, own in reversed(elements) if count):
+        # The first number of a list says how many follow it.
+        numbers += 1 if len(sizes) == 1 else 1 + int(row[numbers])
+    if len(row) < numbers:
+        return f"{len(row)} of {numbers} numbers of the last line are there"
+    if not last.endswith(b"\n"):
+        _check.warn(f"file: '{file.name}' may be cut in its last line, which has no line break")
+    return ""
 
 
 def _stated_bytes(
@@ -166,7 +204,8 @@ def _stated_bytes(
 
 
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    **dict.fromkeys((".vti", ".vtm", ".vtp", ".vtr", ".vts", ".vtu"), _xml),
+    **dict.fromkeys((".vtm", ".vtp", ".vtu"), _xml),
+    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
     **dict.fromkeys((".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"), _xml),
     **dict.fromkeys(
         (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
@@ -189,6 +228,9 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
     if path.suffix.lower() != ".vtk":
         return ""
     with path.open("rb") as file:
+        if _last(file).rstrip().endswith(b"METADATA"):
+            return "its last block is not whole"
+        file.seek(0)
         # The third line says whether numbers are text; binary files are not looked at.
         if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
             return ""

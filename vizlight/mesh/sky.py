@@ -12,7 +12,7 @@ from vizlight import _check, _compiled
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import blocks, bundles, georeference, normals, sky_rays
-from vizlight.mesh.height_grids import Grid, heights_of
+from vizlight.mesh.height_grids import Grid, elevation_name, heights_of
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
 from vizlight.verify import between
@@ -77,10 +77,7 @@ class Sky(NamedTuple):
 
 
 class _Shape(NamedTuple):
-    """Triangles of a mesh, and the points that look at the sky with their indices in the mesh.
-
-    Points of a surface that are none of the mesh have the index -1.
-    """
+    """Triangles of a mesh, and the points that look at the sky with their indices in the mesh."""
 
     points: Array
     triangles: Indices
@@ -159,7 +156,9 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
         return None
     mesh = georeference.in_metres(mesh)
     if not isinstance(mesh, pv.StructuredGrid):
-        return heights_of(mesh, elevation, factor)
+        # Without heights such a grid is flat.
+        known = elevation is not None or elevation_name(mesh) is not None
+        return heights_of(mesh, elevation, factor) if known else None
     try:
         return heights_of(mesh, elevation, factor)
     except ValueError:
@@ -257,9 +256,7 @@ def _by_rays(
         done += len(shape.ids)
         share = np.zeros(mesh.n_points, np.float32)
         valid = np.zeros(mesh.n_points, np.bool_)
-        own = shape.ids >= 0
-        # Points of the surface that are none of the mesh have looked for the error only.
-        share[shape.ids[own]], valid[shape.ids[own]] = seen.share[own], seen.valid[own]
+        share[shape.ids], valid[shape.ids] = seen.share, seen.valid
         record: Record = {
             "method": hidden.tracer.name, "error": seen.error, "rays": seen.rays,
             "directions": round(seen.rays / max(len(shape.ids), 1)),
@@ -372,7 +369,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     faces = np.asarray(triangles(faces_only(surface)), np.intp)
     view = None if up is None else View(direction=up)
     ways = np.asarray(normals.normals_of(mesh, None, 3, view), np.float64)
-    outward = np.where((ids >= 0)[:, np.newaxis], ways[ids], 0.0)
+    outward = ways[ids]
     faces = sky_rays.turned(points, faces, outward)
     # A ray must not meet the faces around its own start.
     beside = sky_rays.beside(points, faces)
@@ -398,4 +395,4 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
     if isinstance(mesh, pv.PolyData):
         return mesh, np.arange(mesh.n_points)
     surface, ids = blocks.outer_surface(mesh)
-    return surface, ids if numbers is None else np.where(ids >= 0, numbers[ids], -1)
+    return surface, ids if numbers is None else numbers[ids]

@@ -13,6 +13,7 @@ from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
 from vizlight.vtk import hull, polylines
+from vizlight.vtk.bezier import as_lagrange
 from vizlight.vtk.cells import connectivity, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
 
@@ -72,10 +73,9 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
     if isinstance(mesh, pv.PolyData):
         found = mesh
     else:
+        # Of cells of Bezier the control points are not on the surface.
+        mesh = pv.wrap(as_lagrange(mesh)) if isinstance(mesh, pv.UnstructuredGrid) else mesh
         surface, origin = blocks.outer_surface(mesh)
-        if (origin < 0).any():
-            remedy = "take the mesh's extract_surface()"
-            raise ValueError(_check.message("mesh", "flat cells", "curved cells", remedy))
         found = pv.PolyData()
         found.points = np.asarray(mesh.points)
         for get, put in (

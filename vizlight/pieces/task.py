@@ -269,8 +269,7 @@ def _lit(
     # Found while the ghost cells are there: where they are cut off no surface of the whole begins.
     if not isinstance(lit, pv.PolyData) and hull.dimension(lit) == 3:
         inside = np.ones(lit.n_points, dtype=np.bool_)
-        on_surface = hull.outer_surface(lit)[1]
-        inside[on_surface[on_surface >= 0]] = False
+        inside[hull.outer_surface(lit)[1]] = False
         lit.point_data[INSIDE] = inside
     own = piece.own(lit) if job.filter == "illuminate" else lit
     valid = f"{job.name}_valid"

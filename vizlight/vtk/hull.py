@@ -116,9 +116,7 @@ def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
 def scattered(rows: AnyArray, origin: Indices, count: int) -> AnyArray:
     """Return an array of all points of a mesh from one of its surface; other rows are zero."""
     found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
-    # The index -1 would write to the last row.
-    there = origin >= 0
-    found[origin[there]] = rows[there]
+    found[origin] = rows
     return found
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
@@ -280,8 +280,7 @@ def sided_normals(
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(given)
-    # The index -1, of a point that the mesh does not have, would take the last normal.
-    own = given if origin is None else np.where(origin[:, np.newaxis] < 0, 0, given[origin])
+    own = given if origin is None else given[origin]
     if told is None:
         closed, alike = is_closed(surface)
         # A closed surface whose faces have no common side, such as Boy's, has no outside.
@@ -447,9 +446,9 @@ def computed_normals(
             sharp = crease_share(shape.edges)
     number = side[shape.piece]
     if origin is not None:
-        if dimension(mesh) == 3:
-            # Points inside a volume have no normal; they are no fault.
-            inside = count - int(np.count_nonzero(origin >= 0))
+        if dimension(mesh) == 3 or not isinstance(mesh, vtkUnstructuredGrid):
+            # Points inside a volume or of hidden cells have no normal; they are no fault.
+            inside = count - len(origin)
         vectors = scattered(vectors, origin, count)
         number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)

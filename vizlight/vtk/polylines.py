@@ -48,7 +48,7 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
     # than all.
     found = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
     found[connectivity(surface.GetVerts())[0]] = 0.0
-    own = ~carried if origin is None else (origin < 0) | ~carried[origin]
+    own = ~carried if origin is None else ~carried[origin]
     found[~own] = 2.0
     found[connectivity(surface.GetLines())[0]] = 1.0
     for ids, _ in faces(surface):
@@ -56,7 +56,7 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
     if origin is not None:
         # Points that the surface lacks count as on faces, and without a normal are not lit.
         whole = np.full(mesh.GetNumberOfPoints(), 2.0, dtype=np.float32)
-        whole[origin[origin >= 0]] = found[origin >= 0]
+        whole[origin] = found
         found = whole
     return found if np.any(found < 2) else None
 

@@ -1,0 +1,106 @@
+"""Meshes of netCDF files: one mesh, however its table of nodes is spelled."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import files
+
+xr = pytest.importorskip("xarray")
+pytest.importorskip("cf_xarray")
+
+EARTH = pv.Icosphere(nsub=3)
+PLACES = np.asarray(EARTH.points) / np.linalg.norm(EARTH.points, axis=1)[:, np.newaxis]
+LON = np.degrees(np.arctan2(PLACES[:, 1], PLACES[:, 0]))
+LAT = np.degrees(np.arcsin(np.clip(PLACES[:, 2], -1, 1)))
+FACES = EARTH.regular_faces
+UGRID = {
+    "cf_role": "mesh_topology", "topology_dimension": 2, "node_coordinates": "lon lat",
+    "face_node_connectivity": "faces",
+}  # fmt: skip
+
+
+def written(folder, table, *, names=("lon", "lat"), scale=1.0, units="degrees", topology=None):
+    """Write the globe with a value for each node and each face, and return the path."""
+    x, y = names
+    variables = {
+        "warmth": (("time", "node"), np.stack([LAT, LON])),
+        "rain": (("face", "level"), np.arange(2.0 * len(FACES)).reshape(-1, 2)),
+        x: ("node", scale * LON, {"units": units}),
+        y: ("node", scale * LAT, {"units": units}),
+        "faces": table,
+    }
+    if topology is not None:
+        variables["mesh"] = ((), 0, topology)
+    path = folder / "mesh.nc"
+    xr.Dataset(variables, coords={"time": ("time", [0.0, 6.0])}).to_netcdf(path)
+    return path
+
+
+TABLES = {
+    "from 0": (("face", "three"), FACES),
+    "from 1": (("face", "three"), FACES + 1),
+    "by columns": (("three", "face"), FACES.T + 1),
+    "of four": (("face", "four"), np.pad(FACES, ((0, 0), (0, 1)), constant_values=-1)),
+    "repeated": (("face", "four"), np.pad(FACES, ((0, 0), (0, 1)), mode="edge")),
+}
+
+
+@pytest.mark.parametrize("table", TABLES.values(), ids=TABLES)
+@pytest.mark.parametrize("topology", [None, UGRID])
+def test_spellings(tmp_path, table, topology):
+    path = written(tmp_path, table, topology=topology)
+    mesh = vizlight.read(path, time="first")
+    assert mesh.n_cells == len(FACES)
+    assert mesh.field_data["unit"][0] == "degree"
+    # Faces across the meridian of 180 degrees are whole, with some nodes twice.
+    lon, lat = np.asarray(mesh.points)[:, :2].T
+    assert (
+        np.ptp(lon[mesh.regular_faces], axis=1)[np.abs(lat[mesh.regular_faces]).max(1) < 80].max()
+        < 90
+    )
+    np.testing.assert_allclose(mesh["warmth"], lat, atol=1e-5)
+    np.testing.assert_array_equal(mesh.cell_data["rain"], 2.0 * np.arange(len(FACES)))
+    assert "first of level" in mesh.field_data["meaning"][0]
+
+
+def test_radians(tmp_path):
+    path = written(
+        tmp_path, TABLES["from 1"], names=("lonVertex", "latVertex"),
+        scale=np.pi / 180, units="radian",
+    )  # fmt: skip
+    assert vizlight.read(path).bounds[2:4] == pytest.approx((-90, 90), abs=1e-3)
+
+
+def test_a_node_that_is_not_there(tmp_path):
+    table = (("face", "three"), FACES + 2, {"start_index": 1})
+    with pytest.raises(files.FileError, match="'faces' has the node 643 of 642"):
+        vizlight.read(written(tmp_path, table, topology=UGRID))
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"face_node_connectivity": ""}, "the mesh 'mesh' of UGRID has no faces"),
+        ({"face_node_connectivity": "cells"}, "names 'cells', which is not there"),
+    ],
+)
+def test_a_topology_that_is_not_whole(tmp_path, change, reason):
+    with pytest.raises(files.FileError, match=reason):
+        vizlight.read(written(tmp_path, TABLES["from 0"], topology=UGRID | change))
+
+
+def test_counts_on_a_grid_are_no_table(tmp_path):
+    counts = np.arange(24).reshape(8, 3)
+    data = xr.Dataset({"count": (("y", "x"), counts)}, coords={"y": np.arange(8.0), "x": [0, 1, 2]})
+    data["lon"], data["lat"] = ("station", np.arange(30.0)), ("station", np.arange(30.0))
+    data.to_netcdf(tmp_path / "a.nc")
+    assert isinstance(vizlight.read(tmp_path / "a.nc"), pv.ImageData)
+
+
+def test_a_table_alone_is_no_image(tmp_path):
+    data = {"elements": TABLES["from 1"], "depth": ("node", LAT)}
+    xr.Dataset(data).to_netcdf(tmp_path / "a.nc")
+    with pytest.raises(files.FileError, match="'elements' seems a table of the nodes of faces"):
+        vizlight.read(tmp_path / "a.nc")

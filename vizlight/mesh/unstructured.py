@@ -1,0 +1,218 @@
+"""Meshes of netCDF files: nodes and a table of the nodes of each face, by UGRID or as is usual."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.mesh import blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from vizlight._types import Array, Bools, Foreign, Indices
+
+__all__ = ["Topology", "surface", "topology"]
+
+#: Numbers of nodes of a face that a table of a file without names may have.
+_CORNERS = range(3, 17)
+#: Names of tables of the nodes of faces, among others of such files.
+_TABLES = re.compile(
+    r"(.*[_\W])?(ele(m|ments?)?|tri(s|angles?)?|faces?|cells?|nv|ikle\w*|connect\w*)([_\W].*)?"
+    r"|.*(node|vert|corner).*",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Names of the variables and dimensions of a mesh in a file.
+
+    Attributes
+    ----------
+    x, y : str
+        Names of the coordinates of the nodes.
+    table : str
+        Name of the table of the nodes of each face.
+    nodes, faces : str
+        Names of the dimensions of nodes and of faces.
+    by : str
+        What says so.
+    """
+
+    x: str
+    y: str
+    table: str
+    nodes: str
+    faces: str
+    by: str
+
+
+def topology(
+    file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
+) -> Topology | None:
+    """Return the mesh of a dataset, None where it has none.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    letter_of : callable
+        Function of the name and the attributes of coordinates that returns x, y or an empty text.
+
+    Raises
+    ------
+    ValueError
+        If UGRID names a mesh that has no faces of nodes, or parts of it are missing.
+    """
+    for name, variable in file.variables.items():
+        if variable.attrs.get("cf_role") == "mesh_topology":
+            return _of_ugrid(file, str(name), letter_of)
+    return _guessed(file, letter_of)
+
+
+def _of_ugrid(
+    file: Foreign,
+    name: str,
+    letter_of: Callable[[str, Mapping[str, Foreign]], str],
+) -> Topology:
+    """Return the mesh that a variable of UGRID describes."""
+    # xarray takes the names of coordinates out of the attributes of what has them.
+    attributes = file[name].encoding | file[name].attrs
+    table = attributes.get("face_node_connectivity", "")
+    places = str(attributes.get("node_coordinates", "")).split()
+    if not table or len(places) < 2:
+        raise ValueError(f"the mesh {name!r} of UGRID has no faces of nodes in a plane")
+    missing = [one for one in (table, *places[:2]) if one not in file.variables]
+    if missing:
+        raise ValueError(f"the mesh {name!r} of UGRID names {missing[0]!r}, which is not there")
+    by_letter = {letter_of(one, file[one].attrs): one for one in places}
+    x, y = by_letter.get("x", places[0]), by_letter.get("y", places[1])
+    dims = [str(dim) for dim in file[table].dims]
+    own = str(attributes.get("face_dimension", ""))
+    faces = own if own in dims else _longer(file, dims)
+    return Topology(x, y, str(table), str(file[x].dims[0]), faces, "UGRID")
+
+
+def _longer(file: Foreign, dims: list[str]) -> str:
+    """Return the dimension of the faces of a table, which are more than the nodes of one."""
+    first, second = dims
+    return first if file.sizes[first] >= file.sizes[second] else second
+
+
+def _guessed(
+    file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
+) -> Topology | None:
+    """Return the mesh of a table of numbers of nodes, which have an x and a y each.
+
+    Raises
+    ------
+    ValueError
+        If there is such a table alone: it is no image.
+    """
+    places: dict[str, dict[str, str]] = {}
+    for key, variable in file.variables.items():
+        name, dims = str(key), [str(dim) for dim in variable.dims]
+        letter = letter_of(name, variable.attrs)
+        if len(dims) == 1 and dims != [name] and letter in ("x", "y"):
+            pair = places.setdefault(dims[0], {})
+            # Files may have lengths beside degrees, of which either may be all 0.
+            if letter not in pair or not np.any(file[pair[letter]].values):
+                pair[letter] = name
+    found, tables = [], []
+    for key, variable in file.variables.items():
+        name, dims = str(key), [str(dim) for dim in variable.dims]
+        if len(dims) != 2 or min(variable.shape) not in _CORNERS:
+            continue
+        faces = _longer(file, dims)
+        # The corners of a face have no coordinates.
+        if {*dims} - {faces} & {*map(str, file.variables)}:
+            continue
+        sizes = [count for dim, count in file.sizes.items() if dim not in dims]
+        if _TABLES.fullmatch(name) and any(_numbers(variable, count) for count in sizes):
+            tables.append(name)
+        for nodes, pair in places.items():
+            if len(pair) == 2 and nodes not in dims and _numbers(variable, file.sizes[nodes]):
+                fields = sum({nodes, faces} & {*map(str, one.dims)} != set() for one in
+                             file.data_vars.values())  # fmt: skip
+                rank = bool(_TABLES.fullmatch(name)), fields, file.sizes[faces]
+                found.append((rank, Topology(pair["x"], pair["y"], name, nodes, faces, "table")))
+    if tables and not found:
+        raise ValueError(
+            f"{tables[0]!r} seems a table of the nodes of faces, which have no x and y: "
+            "name them as UGRID does, by node_coordinates"
+        )
+    return max(found, key=lambda one: one[0])[1] if found else None
+
+
+def _numbers(variable: Foreign, count: int) -> bool:
+    """Return whether a variable has numbers of nodes, which differ in most rows."""
+    if variable.dtype.kind not in "iuf":
+        return False
+    values = np.asarray(variable.values, dtype=np.float64)
+    values = values if values.shape[0] >= values.shape[1] else values.T
+    known = values[np.isfinite(values) & (values >= 0)]
+    if not known.size or np.any(known != np.round(known)) or known.max() > count:
+        return False
+    ordered = np.sort(values, axis=1)
+    return bool(np.median((np.diff(ordered, axis=1) > 0).sum(axis=1)) >= min(_CORNERS) - 1)
+
+
+def surface(
+    file: Foreign, of: Topology, scale: float, *, degrees: bool
+) -> tuple[pv.PolyData, Indices]:
+    """Return the faces of a mesh in a plane, and the node of the file that each point is.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    of : Topology
+    scale : float
+        Factor of the coordinates.
+    degrees : bool
+        Whether they are longitude and latitude then. Nodes of faces across the meridian at which
+        counting begins anew are there twice.
+
+    Raises
+    ------
+    ValueError
+        If a face has a node that is not there.
+    """
+    x, y = (np.ravel(file[name].values).astype(np.float64) * scale for name in (of.x, of.y))
+    table = file[of.table]
+    rows: Array = np.asarray(
+        table.values if table.dims[0] == of.faces else table.values.T, np.float64
+    )
+    # A face of fewer nodes than others has no number in the rest of its row.
+    start = float(table.attrs.get("start_index", _start(rows, len(x))))
+    there: Bools = np.isfinite(rows) & (rows >= start)
+    ids = np.where(there, rows - start, 0).astype(np.intp)
+    if ids.max(initial=0) >= len(x):
+        raise ValueError(f"{of.table!r} has the node {ids.max() + start:g} of {len(x)}")
+    # Some repeat the last node in place of that.
+    there[:, 1:] &= (ids[:, 1:] != ids[:, :-1]) | ~there[:, :-1]
+    whole = there.sum(axis=1) >= min(_CORNERS)
+    there[~whole] = False
+    ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))])
+    origin = np.arange(len(x))
+    if degrees:
+        x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
+        # Of a face across the meridian the western half is counted on.
+        wide = np.ptp(np.where(there, x[ids], x[ids[:, :1]]), axis=1) > 180
+        west = there & wide[:, np.newaxis] & (x[ids] < 0)
+        again, number = np.unique(ids[west], return_inverse=True)
+        ids[west] = len(x) + number
+        origin, x = np.concatenate([origin, again]), np.concatenate([x, x[again] + 360.0])
+    mesh = pv.PolyData()
+    mesh.points = np.column_stack([x, y[origin], np.zeros(len(x))])
+    mesh.SetPolys(blocks.cell_array(ids[there], ends[np.concatenate([[True], whole])]))
+    return mesh, origin
+
+
+def _start(rows: Array, count: int) -> int:
+    """Return the number of the first node of a table that does not say it."""
+    known = rows[np.isfinite(rows) & (rows >= 0)]
+    return int(known.size and known.min() >= 1 and known.max() == count)
