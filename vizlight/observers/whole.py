@@ -9,8 +9,9 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
 
 from vizlight import _check
-from vizlight.draw.live import Live, has_pass, items
-from vizlight.draw.render import SUPERSAMPLED
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.live import Live, items
+from vizlight.draw.strokes import SUPERSAMPLED, has_pass
 from vizlight.filters.tint import values_of
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.measure import measure
@@ -134,7 +135,9 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
         if np.array_equal(pv.array_from_vtkmatrix(actor.GetMatrix()), np.eye(4)):
             width = max(1.0, style.GetLineWidth() / pixel)
             if live is not None and live.n == 3:
-                part = _lit(live, renderer, actor, width)
+                # Strokes are as wide as their property says.
+                own = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
+                part = _lit(live, renderer, actor, own)
             elif live is None:
                 part = _colored(actor, renderer, width)
         if part is not None:
