@@ -43,5 +43,5 @@ def test_strokes_are_equally_long_and_thin_where_they_come_from(signed):
     for line in (cut.get_cell(i) for i in range(7)):
         widths = cut["width"][line.point_ids]
         ends = widths[[0, -1]] if line.points[0, 1] != 1 else widths[[-1, 0]]
-        assert ends == pytest.approx([0.15, 1.0 if signed else 0.15], abs=1e-6)
+        assert ends == pytest.approx([0.3, 1.0 if signed else 0.3], abs=1e-6)
         assert widths.max() == pytest.approx(1.0, abs=0.05)

@@ -355,11 +355,14 @@ def _border(stroke: Stroke) -> str:
         "  float vizBlur = 0.5 * fwidth(vizAway);\n"
         "  float vizGap = smoothstep(-vizBlur, vizBlur, vizAway);\n"
         f"  if (vizAway > {band}) discard;\n"
-        # The blurred border is already deeper, so that it hides nothing of a quad that joins.
-        f"  float vizTent = clamp((vizAway + vizBlur) / {band}, 0.0, 1.0);\n"
+        # The blurred border is already behind, so that it hides nothing of a quad that joins, and
+        # yet before a surface on which the line lies.
+        "  float vizOut = clamp(0.5 + 0.5 * vizAway / vizBlur, 0.0, 1.0);\n"
+        "  float vizNear = vizDepths.x * (1.0 - 0.75 * vizOut);\n"
+        f"  float vizTent = clamp((vizAway - vizBlur) / {band}, 0.0, 1.0);\n"
         # Before the nearest depth, to which all that is nearer would be clamped alike.
-        "  gl_FragDepth = max(gl_FragCoord.z + vizDepths.x, 1e-3)\n"
-        "    + vizTent * (vizDepths.y - vizDepths.x);\n"
+        "  gl_FragDepth = max(gl_FragCoord.z + vizNear, 1e-3)\n"
+        "    + vizTent * (vizDepths.y - vizNear);\n"
     )
 
 

@@ -182,7 +182,7 @@ def streamlines(
         box. A line ends after 1,200 cell lengths in any case.
     stroke_length : float, optional
         Length, in the unit of the mesh, of strokes into which the lines are cut, at points of
-        theirs. They have the point array ``width``, which grows along the vectors from 0.15 at the
+        theirs. They have the point array ``width``, which grows along the vectors from 0.3 at the
         tail to 1 at the head, and so tells their sense; in a line field both ends are thin. It is
         what ``plotter.vizlight.add_mesh(lines, width="width")`` takes. Default: lines are whole.
     conditioned : bool or str, optional

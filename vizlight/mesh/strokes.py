@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Array, Bools, Indices
 
 #: Width of the thin end of a stroke, as a share of its largest width.
-TAIL = 0.15
+TAIL = 0.3
 
 
 class Segments(NamedTuple):
@@ -113,7 +113,7 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     Returns
     -------
     pyvista.PolyData
-        Strokes with the arrays of the mesh, and the point array ``width``: from 0.15 to 1.
+        Strokes with the arrays of the mesh, and the point array ``width``: from 0.3 to 1.
     """
     segments = segments_of(mesh)
     totals = segments.totals()

@@ -35,8 +35,8 @@ TURN, TURN_HUE = 0.6, 0.8
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 #: Length of a stroke in distances between strokes, and its largest width and halo.
 LONG, WIDE, HALO = 3.5, 2.4, 0.35
-#: Colour map of speed, pale where it is slow, on which black is seen everywhere.
-SPEED = "YlGnBu"
+#: Colour map of lengths of vectors, on which black is seen everywhere.
+SPEED = "vizlight.speed"
 #: Number of streamlines of a volume.
 SEEDS = 300
 
@@ -47,25 +47,27 @@ def vectors(case: Case) -> Drawing:
     mesh = case.wishes.joined(case.surface, array)
     camera = case.camera(mesh)
     if case.wishes.question != "auto" or has_lines_only(mesh.run()):
-        return _lit(case, mesh, camera)
+        spacing = mesh.run().length * SPACING
+        return _lit(case, mesh, camera, _strokes(mesh, case.scene(camera), array, spacing))
     pixel = _pixel(case, camera)
     turn = _turn(records.averaged(mesh.run(), array.name), array.name) * pixel
-    spacing = max(TURN / max(turn, 1e-9), LEAST_SPACING * case.width) * pixel
-    room = TURN / max(turn, 1e-9) / case.width
-    if room >= LEAST_SPACING / 2:
-        scene = case.wishes.scene("none", camera)
-        strokes = _strokes(mesh, scene, array, min(spacing, mesh.run().length * SPACING))
-        if strokes is not None:
-            return _speed(case, mesh, camera, strokes)
-    if room * TURN_HUE / TURN >= LEAST_PLACE:
+    # Distances over which the field turns by a radian, in least widths of lines.
+    room = 1 / max(turn * case.width, 1e-9)
+    if room * TURN < LEAST_SPACING and room * TURN_HUE < LEAST_PLACE:
+        note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
+        return replace(_speed(case, mesh, camera, None), notes=[note])
+    if room * TURN < LEAST_SPACING:
         note = f"{array.name} turns too fast here for strokes: hue tells its course, not its sense"
-        return replace(_lit(case, mesh, camera), notes=[note])
-    note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
-    return replace(_speed(case, mesh, camera, None), notes=[note])
+        return replace(_lit(case, mesh, camera, strokes=None), notes=[note])
+    spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
+    strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
+    if strokes is None:
+        return _lit(case, mesh, camera, strokes=None)
+    return _speed(case, mesh, camera, strokes)
 
 
-def _lit(case: Case, mesh: Step, camera: Step) -> Drawing:
-    """Draw vectors by light, with lines along them."""
+def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
+    """Draw vectors by light, with strokes along them."""
     array = case.needed_array
     scene = case.scene(camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
@@ -81,7 +83,6 @@ def _lit(case: Case, mesh: Step, camera: Step) -> Drawing:
         keys = [case.bar(other, case.wishes.colors)]
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
-    strokes = _strokes(mesh, scene, array, mesh.run().length * SPACING)
     if strokes is not None:
         layers.append(_inked(case, strokes, camera, halo=False))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
@@ -110,12 +111,12 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
 
 
 def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
-    """Return the layer of strokes in the ink of the style, black on paper."""
-    ink = "black" if case.wishes.style == "paper" else "white"
+    """Return the layer of strokes in black, for grounds that are light in either style."""
     scene = case.wishes.scene("none", camera)
     wide = round(WIDE * case.width, 1)
     return Layer(
-        strokes, {"scene": scene, "color": ink, "width": "width", "line_width": wide, "halo": halo}
+        strokes,
+        {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": halo},
     )
 
 
