@@ -11,17 +11,25 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
-from vizlight.looks.recipes.drawing import MISSING, Drawing, Layer, titled, unlit
+from vizlight.filters.streamlines import own_name
+from vizlight.looks.recipes.drawing import (
+    LIGHTNESS,
+    MISSING,
+    Drawing,
+    Layer,
+    range_of,
+    titled,
+    unlit,
+)
 from vizlight.looks.steps import Step
 from vizlight.mesh import records
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
@@ -37,8 +45,15 @@ LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 LONG, WIDE, HALO = 3.5, 2.4, 0.35
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
-#: Number of streamlines of a volume.
-SEEDS = 300
+#: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
+SPACING_IN_VOLUME, LONG_IN_VOLUME = 1 / 25, 1 / 10
+#: Largest width of those strokes, and their halo.
+WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
+#: Length below which streamlines of a volume are left out, in distances between them: many are cut
+#: short where the field is noise.
+SHORTEST = 4 * SPACING_IN_VOLUME
+#: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
+MOST_CELLS, SEEDS = 250_000, 300
 
 
 def vectors(case: Case) -> Drawing:
@@ -147,7 +162,10 @@ def _turn(mesh: pv.DataSet, name: str) -> float:
 
 
 def flow(case: Case) -> Drawing:
-    """Draw streamlines of the vectors in a volume, lit by their heading, in its outline."""
+    """Draw streamlines of the vectors in a volume as strokes, in the colours of their speed.
+
+    Where a question or an isosurface is asked for, they are lit by their heading.
+    """
     array = case.needed_array
     mesh = case.wishes.joined(case.data, array)
     if array.of_cells:
@@ -156,25 +174,68 @@ def flow(case: Case) -> Drawing:
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
-    elif "spacing" not in keywords and "seeds" not in keywords:
-        keywords["seeds"] = SEEDS
     camera = case.camera(on if keywords.get("confined") else mesh)
-    scene = case.scene(camera)
-    lit = case.wishes.step("lit", "streamlines", mesh, scene, **keywords)
-    # Fewer lines than a number that nobody asked for are no concern of the reader.
-    lit.quiet = "seeds" not in case.wishes.light
-    lines = Layer(lit, {"scene": scene, "line_width": case.width})
+    by_speed = case.wishes.question == "auto" and "surface" not in keywords
+    scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
+    lit = _streamlines(case, mesh, scene, keywords)
+    keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
+    drawn: Keywords = {"width": "width", "line_width": round(WIDE_IN_VOLUME * case.width, 1)}
+    drawn["halo"] = HALO_IN_VOLUME
+    words = f"streamlines of {array.name}"
+    if by_speed:
+        speed = own_name(mesh.run(), "speed")
+        # What is fast stands out from the ground.
+        default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
+        colors = {"cmap": default} | case.wishes.colors
+        drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
+        title = f"length of {titled(mesh.run(), array.name)}; strokes run from thin to thick"
+        bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
+        bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
+        keys = [bar]
+        words += " in the colours of their speed"
+    lines = Layer(lit, {"scene": scene, **drawn})
     if "surface" in keywords:
         # The surface that conditions the light of the lines is not drawn with them.
         name = str(keywords.get("name", "luminance"))
         lines = unlit(lit, scene, name, line_width=case.width)
-    layers = [
-        lines,
-        Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False),
-    ]
-    words = f"streamlines of {array.name}"
-    key = {"scene": scene, "title": titled(mesh.run(), array.name)}
-    return Drawing(layers, camera, scene, lit, words, [key])
+    notes = []
+    if left_out := int(lit.run().field_data.get("left_out", [0])[0]):
+        least = f"{lit.keywords['min_length']:g}"
+        notes = [f"lines shorter than {least}, four times their distance, are left out: {left_out}"]
+    layers = [lines, _hull(mesh)]
+    return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
+
+
+def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Step:
+    """Return the step that lays strokes in a volume, without short ones where some are long."""
+    size = float(mesh.run().length)
+    own: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * size:.3g}")}
+    if "spacing" not in keywords and "seeds" not in keywords:
+        if mesh.run().n_cells <= MOST_CELLS and "surface" not in keywords:
+            own["spacing"] = float(f"{SPACING_IN_VOLUME * size:.3g}")
+        else:
+            own["seeds"] = SEEDS
+    shortest = {"min_length": float(f"{SHORTEST * size:.3g}")}
+    for least in (shortest, {}):
+        step = case.wishes.step("lit", "streamlines", mesh, scene, **(own | least | keywords))
+        # Fewer lines than a number that nobody asked for are no concern of the reader.
+        step.quiet = "seeds" not in case.wishes.light
+        try:
+            step.run()
+        except ValueError as error:
+            if least and "min_length" in str(error):
+                continue
+            raise
+        break
+    return step
+
+
+def _hull(mesh: Step) -> Layer:
+    """Return the layer of what bounds a volume: the edges of a box, or a faint hull."""
+    if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
+        return Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
+    hull = Step("hull", ".extract_surface", mesh)
+    return Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)
 
 
 def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | None:
