@@ -39,7 +39,8 @@ class Segments(NamedTuple):
 
     def totals(self) -> Array:
         """Return the lengths of the lines."""
-        return np.bincount(self.lines, weights=self.lengths)
+        totals: Array = np.bincount(self.lines, weights=self.lengths)
+        return totals
 
 
 def segments_of(mesh: pv.PolyData) -> Segments:

@@ -144,7 +144,7 @@ def _pixel(case: Case, camera: Step) -> float:
         half = eye.distance * math.tan(math.radians(eye.view_angle) / 2)
     key = case.wishes.picture.get("key", True)
     share = data_share(case.wishes.size, KEY_SIZE) if key else (1.0, 1.0)
-    return 2 * half / (case.wishes.size[1] * share[1])
+    return float(2 * half / (case.wishes.size[1] * share[1]))
 
 
 def _turn(mesh: pv.DataSet, name: str) -> float:
