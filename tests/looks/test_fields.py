@@ -81,10 +81,10 @@ def volume(noise):
 
 
 def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
-    clean, noisy, noise = (vizlight.look(volume(below)) for below in (-9, 0, 9))
-    assert clean.drawing.words == "streamlines of V in the colours of their speed"
+    noisy, noise = (vizlight.look(volume(below), "flow", seeds=60) for below in (0, 9))
+    assert noisy.drawing.words == "streamlines of V"
     lines = noisy.drawing.lit.run()
-    assert lines.field_data["left_out"][0] > 10
+    assert lines.field_data["left_out"][0] > 5
     assert noisy.notes[0].endswith(f"are left out: {lines.field_data['left_out'][0]}")
     assert not noise.notes
     assert noise.drawing.lit.run().n_lines > 0

@@ -39,8 +39,7 @@ class Segments(NamedTuple):
 
     def totals(self) -> Array:
         """Return the lengths of the lines."""
-        totals: Array = np.bincount(self.lines, weights=self.lengths)
-        return totals
+        return np.asarray(np.bincount(self.lines, weights=self.lengths), dtype=np.float64)
 
 
 def segments_of(mesh: pv.PolyData) -> Segments:
