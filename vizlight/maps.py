@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-__all__ = ["even", "heights", "kinds"]
+__all__ = ["even", "heights", "kinds", "speed"]
 
 #: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
 #: sets, one after the other.
@@ -56,6 +56,13 @@ even = ListedColormap(
     [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
 )
 colormaps.register(even, force=True)
+#: Pale yellow over green to blue, no darker than a CIELAB lightness of 45, so that black strokes
+#: are seen on all of it: the lighter part of Cynthia Brewer's YlGnBu, named ``"vizlight.speed"``.
+#: It is the map of the lengths of vectors in a look.
+speed = ListedColormap(
+    [colormaps["YlGnBu"](0.7 * i / 255) for i in range(256)], name="vizlight.speed"
+)
+colormaps.register(speed, force=True)
 
 
 #: Colours of the sea bed from deep to shallow, and of the ground from low to high.

@@ -666,3 +666,20 @@ def test_a_page_has_the_key_of_its_light(tmp_path):
     assert key_of(scene, tangents="flow", scalars="z") is None
     assert key_of(Scene(), scalars="z") is None
     assert key_of(Scene(lights=Light(direction=(1, 2, 3)))) is None
+
+
+def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    scene = Scene(material=Material(ambient=0.4, diffuse=0, specular=0))
+    front, back = pv.Line((-1, 0, 0), (1, 0, 0)), pv.Line((0, -0.6, -1), (0, 0.6, -1))
+    back["share"], front["share"] = [1.0, 1.0], [0.2, 1.0]
+    for line in (front, back):
+        plotter.vizlight.add_mesh(line, scene=scene, line_width=16, width="share")
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    expected = np.asarray(plotter.screenshot(return_img=True), dtype=np.int16)
+    path = plotter.vizlight.export_html(tmp_path / "lines.html", key=False)
+    plotter.close()
+    page, _ = opened(path)
+    # The gaps of the halo are 0.7 % of the picture.
+    assert np.mean(np.abs(shot(page) - expected).max(axis=2) > 60) < 0.003

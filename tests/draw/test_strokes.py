@@ -243,3 +243,68 @@ def test_pictures_have_halos_where_they_are_asked_for(light):
         columns.append(picture[[80, 93, 95, 104, 106, 120], 99])
     assert columns[0] == pytest.approx(0.4, abs=0.02)
     assert columns[1] == pytest.approx([0.4, 1, 1, 1, 1, 0.4], abs=0.02)
+
+
+def drawn(line, *, ssaa=False, camera=None, **options):
+    """Picture of white lines on black, 200 pixels wide and high for 2 units."""
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = "black"
+    if ssaa:
+        plotter.enable_anti_aliasing("ssaa")
+    plotter.vizlight.add_mesh(line, scene=WHITE, **options)
+    plotter.camera = looking_down(parallel=True) if camera is None else camera
+    plotter.reset_camera_clipping_range()
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+    plotter.close()
+    return picture
+
+
+@pytest.mark.parametrize("light", ["fragments", "points"])
+@pytest.mark.parametrize("halo", [None, False])
+def test_widths_hold_under_supersampling_for_lines_with_halos(light, halo):
+    """Lines without halos are VTK's own, whose width is less than half there."""
+    picture = drawn(pv.Line((-2, 0, 0), (2, 0, 0)), ssaa=True, line_width=6, light=light, halo=halo)
+    width = picture[:, 50:150].sum(axis=0)
+    assert width == pytest.approx(6 if halo is None else 6 * 0.45, abs=0.2)
+
+
+@pytest.mark.parametrize("light", ["fragments", "points"])
+@pytest.mark.parametrize("halo", [None, False, 1.0])
+@pytest.mark.parametrize("option", [{"line_width": 20}, {"line_diameter": 0.2}])
+def test_lines_have_the_widths_of_their_points(light, halo, option):
+    line = pv.Line((-1.5, 0, 0), (1.5, 0, 0), resolution=3)
+    line["share"] = [0.0, 0.25, 0.75, np.nan]
+    picture = drawn(line, width="share", light=light, halo=halo, **option)
+    widths = picture.sum(axis=0)[[5, 25, 50, 75, 100, 125, 150, 175, 195]]
+    shares = np.interp(np.array([5, 25, 50, 75, 100, 125, 150, 175, 195]) / 100 - 0.995,
+                       line.points[:, 0], [0, 0.25, 0.75, 0])  # fmt: skip
+    assert widths == pytest.approx(20 * shares, abs=0.8)
+
+
+def test_widths_of_lines_that_are_lit_by_normals_are_drawn_with_light_at_the_points():
+    line = pv.Line((-2, 0, 0), (2, 0, 0), resolution=2)
+    line["share"], line["Normals"] = [0.5, 0.5, 0.5], np.tile([0.0, 0.0, 1.0], (3, 1))
+    picture = drawn(line, width="share", normals="Normals", conditioned=True, line_width=8)
+    assert picture[:, 50:150].sum(axis=0) == pytest.approx(4, abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["missing", "vectors", 3])
+def test_widths_are_one_number_per_point(name):
+    line = pv.Line()
+    line["vectors"] = line.points
+    with pytest.raises((TypeError, ValueError), match="width: expected"):
+        drawn(line, width=name)
+
+
+def test_lines_that_pass_the_eye_are_cut_at_the_near_plane():
+    """A segment from before the eye to behind it runs to the border of the picture, not across."""
+    camera = looking_down(parallel=False)
+    line = pv.Line((0.3, 0, -5), (0.3, 0, 15), resolution=1)
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = "black"
+    plotter.vizlight.add_mesh(line, scene=WHITE, line_width=4)
+    plotter.camera = camera
+    plotter.camera.clipping_range = (0.1, 100)
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
+    assert np.all(picture[:, :105] == 0)
+    assert picture[:, 130:195].sum(axis=0) == pytest.approx(4, abs=0.3)

@@ -14,10 +14,10 @@ from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.html import Shown, write_page
 from vizlight.draw.legends import Margin, ink_on, name_no_data, settle
-from vizlight.draw.live import Fragments, LightAt, Live, draws_light, has_pass, items, unfit
+from vizlight.draw.live import Fragments, LightAt, Live, draws_light, items, unfit
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
-from vizlight.draw.strokes import with_halo
+from vizlight.draw.strokes import check_widths, has_pass, stroke_of
 from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
@@ -79,6 +79,7 @@ class Component:
         scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
         halo: bool | float | None = None,
+        width: str | None = None,
         **options: Given,
     ) -> pv.Actor | list[pv.Actor]:
         """Add a mesh whose light follows the camera.
@@ -115,6 +116,10 @@ class Component:
             run together have no gap. Lines with halos have round ends and joints, and are drawn
             nearer to the eye by their own width, so that a surface on which they lie does not hide
             them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
+        width : str, optional
+            Name of a point array of lines, one number per point: the width of the line there, as a
+            share from 0 to 1 of ``line_width`` or ``line_diameter``, such as ``"width"`` of the
+            strokes of :func:`vizlight.streamlines`. NaN is 0. Halos keep their width.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
             except ``name`` and ``components``, with ``feature_angle="auto"`` by default: where
@@ -170,7 +175,7 @@ class Component:
         scene = optional_scene(scene)
         _check.choice("light", light, get_args(LightAt))
         own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
-        width_of_lines = _check_lines(line_diameter, halo)
+        width_of_lines = _check_lines(mesh, line_diameter, halo, width)
         if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
             mesh = mesh.copy(deep=False)
         # Some styles are PyVista's own shading: the mesh is added as it would be without this
@@ -618,13 +623,23 @@ class Component:
     __plotter_deep_clean__ = __plotter_close__
 
 
-def _check_lines(line_diameter: float | None, halo: bool | float | None) -> Keywords:
+def _check_lines(
+    mesh: pv.DataSet | pv.MultiBlock,
+    line_diameter: float | None,
+    halo: bool | float | None,
+    width: str | None,
+) -> Keywords:
     """Return the keywords of how lines are drawn, checked."""
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
     if halo is not None and not isinstance(halo, bool):
         halo = _check.number("halo", halo, low=0.0, high=100.0)
-    return {"line_diameter": line_diameter, "halo": halo}
+    if width is not None:
+        width = _check.text("width", width, expected="the name of a point array")
+        for block, _ in blocks.named_blocks(mesh):
+            if block.n_points and has_lines_only(block):
+                check_widths(block, width)
+    return {"line_diameter": line_diameter, "halo": halo, "width": width}
 
 
 def _address(thing: vtkObject) -> str:
@@ -656,7 +671,7 @@ def _add_cloud(
 
 def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords) -> Live:
     """Return a live light in each fragment, or at the points where that is asked for or needed."""
-    stroke = _stroke(source, drawing)
+    stroke = stroke_of(source.mesh, drawing)
     reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
     if not reason:
         return Fragments(source, scene, stroke)
@@ -667,24 +682,6 @@ def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords
         drawing["render_lines_as_tubes"] = True
         stroke = Stroke()
     return Live(source, scene, stroke._replace(round=False), reason=reason)
-
-
-def _stroke(source: Source, drawing: Keywords) -> Stroke:
-    """Take from keywords how lines are drawn; a surface has none."""
-    diameter, halo = drawing.pop("line_diameter", None), drawing.pop("halo", False)
-    if not has_lines_only(source.mesh):
-        return Stroke()
-    # Across a line of one pixel there is no roundness to show.
-    width = drawing.get("line_width") or pv.global_theme.line_width
-    wide = diameter is not None or width > 1
-    stroke = Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
-    if halo is None:
-        # What is behind a translucent line is meant to be seen.
-        opacity = drawing.get("opacity")
-        halo = opacity is None or (isinstance(opacity, int | float) and opacity >= 1)
-    if halo is False:
-        return stroke
-    return with_halo(stroke, source.mesh, width, None if halo is True else halo)
 
 
 def _reason(source: Source, drawing: Keywords, stroke: Stroke) -> str:
@@ -735,7 +732,7 @@ def add_recorded(
     except (TypeError, ValueError):
         # The array says more than the record.
         return None
-    stroke = _stroke(source, drawing)
+    stroke = stroke_of(source.mesh, drawing)
     if _reason(source, drawing, stroke):
         return None
     # The array of the light has no colours, whatever those of the lamps: it is drawn in grey.

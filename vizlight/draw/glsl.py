@@ -377,25 +377,29 @@ class Stroke(NamedTuple):
         Width of the band of the ground's colour on each side of a line, in widths of the line.
     depth : float
         Distance by which the border of the halo is behind the line, in the unit of the mesh.
+    width : str or None
+        Name of the point array of widths, as shares from 0 to 1 of the width of the line; None for
+        lines of one width.
     """
 
     diameter: float | None = None
     round: bool = False
     halo: float = 0.0
     depth: float = 0.0
+    width: str | None = None
 
 
 #: Direction of the line at a vertex; its array takes the place of normals.
 ALONG = Varying("vizD", "vec4", "{along}")
 #: The same where normals are those of a surface: the line is lit by its tangents.
 COURSE = Varying("vizD", "vec4", "{course}")
-#: What lines with halos have: the place across a line and past either end, in half widths, and the
-#: changes of depth of the line and of the border of its halo.
+#: What lines with halos have: the place across a line and past either end, in half widths, the
+#: changes of depth of the line and of the border of its halo, and the widths at both ends.
 HALO = (
     Varying("vizLine", "vec3", "vec3(0.0)"),
-    Varying("vizDeep", "vec2", "vec2(0.0)"),
+    Varying("vizDeep", "vec4", "vec4(0.0)"),
 )
-#: Length of the direction of a line, which is 2 at an end.
+#: Length of the direction of a line, which is longer by 1 at an end, and by half of a width.
 END = Varying("vizEnd", "float", "{length}")
 #: Normal of the cylinder at a fragment, from the tangent and the place across the line.
 CYLINDER_NORMAL = """  vec3 vizLast = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]);
@@ -488,7 +492,7 @@ def write(
     elif stroke != Stroke():
         # A stroke without normals needs the direction of the line, by which VTK's geometry is
         # widened.
-        names += [ALONG, END] if stroke.halo else [ALONG]
+        names += [ALONG, END] if stroke.halo or stroke.width else [ALONG]
     if stroke.halo:
         names += HALO
     if plan.fur or turned:

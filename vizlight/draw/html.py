@@ -163,6 +163,11 @@ class Page:
             "pointSize": prop.GetPointSize(),
             "representation": prop.GetRepresentation(),
         }
+        if live.stroke.halo:
+            made |= {"halo": live.stroke.halo, "depth": live.stroke.depth}
+        if live.stroke.width is not None:
+            shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
+            made["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
         if shown.frame is not None:
             made["frame"] = shown.frame
         if prop.GetEdgeVisibility():

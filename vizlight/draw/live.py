@@ -88,7 +88,7 @@ class Live:
         follow: bool = True,
     ) -> None:
         self.source, self.scene, self.reason, self.follow = source, scene, reason, follow
-        self._stroke = stroke
+        self.stroke = stroke
         # VTK takes normals from the mesh of cells where it extracts the outer surface itself.
         self._by_surface = not reason and not isinstance(source.mesh, pv.PolyData)
         self._shown: Indices | None = None
@@ -111,11 +111,6 @@ class Live:
     def n(self) -> int:
         """Dimension of the space of the light."""
         return int(self.source.inputs.points.shape[1])
-
-    @property
-    def line_diameter(self) -> float | None:
-        """Diameter of lines in the unit of the mesh; None for a width in pixels."""
-        return self._stroke.diameter
 
     @property
     def own_eye(self) -> bool:
@@ -196,9 +191,10 @@ class Live:
         channels = 3 if self.scalars is None else 4
         kind = np.float64 if self.scalars is None else np.uint8
         records.attach_rows(self.drawn, COLORS, np.zeros((count, channels), kind))
-        if self._stroke != Stroke():
+        if self.stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
-            along = self.picked(strokes.directions(self.source.mesh)).astype(np.float32)
+            along = strokes.directions(self.source.mesh, self.stroke.width)
+            along = self.picked(along).astype(np.float32)
             records.attach_rows(self.drawn, NORMALS, along)
             self.drawn.GetPointData().SetActiveNormals(NORMALS)
 
@@ -223,8 +219,8 @@ class Live:
         prop = actor.GetProperty()
         # Without lights VTK multiplies by the sum of both coefficients, which are the material.
         as_it_is = [] if self.scene is not None else [AS_IT_IS]
-        if self._stroke != Stroke():
-            strokes.widen(actor, self._stroke, as_it_is)
+        if self.stroke != Stroke():
+            strokes.widen(actor, self.stroke, as_it_is)
         elif as_it_is:
             dialects.replace(actor, as_it_is)
         if self.scene is not None:
@@ -315,8 +311,8 @@ class Live:
         if source is not self.source:
             self.source, self._placed = source, None
         self.show(scene, renderer, actor)
-        if self._stroke.halo:
-            strokes.put_ground(actor, renderer)
+        if self.stroke != Stroke():
+            strokes.adapt(actor, renderer)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""
@@ -324,8 +320,8 @@ class Live:
         # The address is there because another camera may have the same time of change.
         state: list[object] = [camera.GetAddressAsString(""), camera.GetMTime()]
         state += [self.source.mesh.GetMTime(), _elements(actor)]
-        if self._stroke.halo:
-            state.append(renderer.GetBackground())
+        if self.stroke != Stroke():
+            state += [renderer.GetBackground(), strokes.has_pass(renderer.GetPass(), "vtkSSAAPass")]
         if self.scene is None:
             lights = renderer.GetLights()
             state += [lights.GetMTime(), *(light.GetMTime() for light in items(lights))]
@@ -434,17 +430,6 @@ def draws_light(actor: vtkActor) -> bool:
     return arrays is not None and any(map(arrays.HasArray, (NORMALS, TANGENTS, COLORS)))
 
 
-def has_pass(step: Foreign, kind: str) -> bool:
-    """Return whether a pass of VTK is of a class, or holds one that is: passes nest."""
-    if step is None or step.IsA(kind):
-        return step is not None
-    held = [*items(step.GetPasses())] if step.IsA("vtkSequencePass") else []
-    held += [
-        getattr(step, name)() for name in ("GetDelegatePass", "GetSequence") if hasattr(step, name)
-    ]
-    return any(has_pass(one, kind) for one in held)
-
-
 def matrix_of(matrix: vtkMatrix4x4) -> Array:
     """Return a matrix of VTK in float64."""
     return np.asarray(pv.array_from_vtkmatrix(matrix), np.float64)
@@ -523,6 +508,8 @@ def unfit(source: Source, stroke: Stroke = Stroke()) -> str:  # noqa: B008 (a tu
     # A round line has the normals of a cylinder, made in the shader: there is no room for others.
     if stroke.round and (options.conditioned or not alone):
         return "only lines that are lit by their tangents alone can be round"
+    if stroke.width is not None and layout.normals:
+        return "the widths of lines at their points take the place of normals"
     reason = unfit_layout(layout, options, stroke)
     lines = inputs.tangents is not None and inputs.dimensions is None
     # Between opposite tangents the interpolated one passes through 0 and tells no direction.
@@ -623,8 +610,9 @@ class Fragments(Live):
             normals = tangents
             # A stroke is widened across the line's own direction, whatever the light takes for its
             # tangent.
-            if self._stroke != Stroke():
-                normals = self.picked(strokes.directions(self.source.mesh))
+            if self.stroke != Stroke():
+                along = strokes.directions(self.source.mesh, self.stroke.width)
+                normals = self.picked(along)
         else:
             normals = normals * self._lengths()
         if normals is not None:
@@ -705,10 +693,10 @@ class Fragments(Live):
         given = glsl.numbers(scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data)
         if renew:
             turned = self.source.sided is not None
-            written = glsl.write(plan, turned=turned, stroke=self._stroke, data=data)
+            written = glsl.write(plan, turned=turned, stroke=self.stroke, data=data)
             texts = dialects.VTK.replacements(written, given)
-            if self._stroke != Stroke():
-                texts = strokes.widened(actor, texts, self._stroke)
+            if self.stroke != Stroke():
+                texts = strokes.widened(actor, texts, self.stroke)
             dialects.replace(actor, texts)
             self._key, self._plan = key, plan
         _set_uniforms(given, renderer, actor)
@@ -728,7 +716,7 @@ class Fragments(Live):
         """Return the layout and the options of a source, or of the cylinders of its lines."""
         source, layout = self.source, self.source.inputs.layout
         options = dataclasses.replace(source.options, components=False)
-        if self._stroke.round:
+        if self.stroke.round:
             layout, options = Layout(normals=True, occluded=layout.occluded), options.for_surface()
         return layout, options
 

@@ -24,7 +24,7 @@ from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.legends import ink_on, name_no_data
-from vizlight.draw.strokes import directions, put_ground, widen, with_halo
+from vizlight.draw.strokes import SUPERSAMPLED, adapt, directions, has_pass, stroke_of, widen
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
@@ -73,9 +73,6 @@ IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 LIFT = 3e-3
 #: Width of a key, as a share of the shorter side of the picture.
 KEY_SIZE = 0.2
-#: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
-#: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
-SUPERSAMPLED = 2 / 0.9
 
 
 @dataclass(frozen=True)
@@ -242,10 +239,7 @@ def make_plotter(
             else:  # PyVista's theme asks for several samples of a pixel all the same
                 plotter.render_window.SetMultiSamples(0)  # type: ignore[union-attr]
             # PyVista supersamples for FXAA too where the driver lacks that.
-            drawn = plotter.renderer.GetPass()
-            pixel = SUPERSAMPLED if drawn is not None and drawn.IsA("vtkSSAAPass") else 1.0
-            # Supersampling draws a picture that many times as wide and shrinks it.
-            lines: Keywords = {"line_width": line_width * pixel, "line_diameter": line_diameter}
+            lines: Keywords = {"line_width": line_width, "line_diameter": line_diameter}
             lines |= {"render_lines_as_tubes": tubes, "halo": halo}
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
@@ -442,10 +436,7 @@ def _draw(
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
         if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
             continue
-        stroke = Stroke(width["line_diameter"]) if lines else Stroke()
-        if lines and width["halo"] is not False:
-            share = None if width["halo"] is True else width["halo"]
-            stroke = with_halo(stroke, mesh, width["line_width"], share)
+        stroke = stroke_of(mesh, width | {"render_lines_as_tubes": False})
         if stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
             shown["vizlight along"] = directions(mesh).astype(np.float32)
@@ -469,13 +460,12 @@ def _draw(
             nan_color=NO_DATA,
             # The array is light already, which VTK's lamps would light once more.
             lighting=False,
-            line_width=width["line_width"],
+            line_width=_pixels(plotter, mesh, width),
             show_scalar_bar=False,
         )
         if stroke != Stroke():
             widen(actor, stroke)
-        if stroke.halo:
-            put_ground(actor, plotter.renderer)
+            adapt(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)
@@ -488,7 +478,18 @@ def _add_in_fragments(plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: K
     flat = drawing | {"render_lines_as_tubes": False}
     from vizlight.draw.component import add_recorded
 
-    return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
+    for options in (drawing, flat):
+        wide = options | {"line_width": _pixels(plotter, mesh, options)}
+        if add_recorded(plotter, mesh, name, **wide):
+            return True
+    return False
+
+
+def _pixels(plotter: pv.Plotter, mesh: pv.DataSet, width: Keywords) -> float:
+    """Return the width that VTK is given; supersampling draws a larger picture and shrinks it."""
+    is_stroke = stroke_of(mesh, dict(width)) != Stroke()
+    supersampled = has_pass(plotter.renderer.GetPass(), "vtkSSAAPass")
+    return float(width["line_width"]) * (SUPERSAMPLED if supersampled and not is_stroke else 1.0)
 
 
 def _lifted(points: Array, camera: pv.Camera, by: float) -> Foreign:

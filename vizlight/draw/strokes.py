@@ -11,19 +11,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
+from vizlight import _check
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
 from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
 from vizlight.vtk import polylines
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Foreign, Indices, Keywords
 
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.
@@ -31,12 +33,61 @@ LEAST = 1.01
 #: Cosine of the angle between a segment and the tangent of the line up to which ends are mitred;
 #: with halos, which are wider, sharper bends are round.
 SHARPEST, SHARPEST_HALO = 0.5, 0.85
+#: Length of a direction above which a point is an end of its line.
+AT_END = 1.75
 #: Width of a halo on each side in widths of the line, and its least width in pixels.
 WIDTHS, PIXELS = 1.0, 2.0
 #: Depth of the border of a halo behind its line, as a share of the size of the lines.
 DEPTH = 0.05
-#: Colour of halos, a uniform.
-GROUND = "vizGround"
+#: Colour of halos, and pixels that are drawn for each pixel of the picture, as uniforms.
+GROUND, SAMPLES = "vizGround", "vizSamples"
+#: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
+#: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
+SUPERSAMPLED = 2 / 0.9
+
+
+def stroke_of(mesh: pv.DataSet, drawing: Keywords) -> Stroke:
+    """Take from keywords how lines are drawn.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh; one that is not of lines has no stroke.
+    drawing : dict
+        Keywords of ``add_mesh``, from which those of strokes are taken: line_diameter, halo, width
+        and, for lines, render_lines_as_tubes.
+
+    Returns
+    -------
+    Stroke
+    """
+    diameter, halo = drawing.pop("line_diameter", None), drawing.pop("halo", False)
+    share = drawing.pop("width", None)
+    if not has_lines_only(mesh):
+        return Stroke()
+    # Across a line of one pixel there is no roundness to show.
+    width = drawing.get("line_width") or pv.global_theme.line_width
+    wide = diameter is not None or width > 1
+    stroke = Stroke(diameter, bool(drawing.pop("render_lines_as_tubes", False)) and wide)
+    if share is not None:
+        check_widths(mesh, share)
+        stroke = stroke._replace(width=share)
+    if halo is None:
+        # What is behind a translucent line is meant to be seen.
+        opacity = drawing.get("opacity")
+        halo = opacity is None or (isinstance(opacity, int | float) and opacity >= 1)
+    if halo is False:
+        return stroke
+    return with_halo(stroke, mesh, width, None if halo is True else halo)
+
+
+def check_widths(mesh: pv.DataSet, name: str) -> None:
+    """Raise a ValueError unless an array holds one real number for each point."""
+    array = mesh.point_data.get(name)
+    if array is None or array.ndim > 1 or array.dtype.kind not in "biuf":
+        got = repr(name) if array is None else f"{name!r} {_check.describe(array)}"
+        expected = "the name of a point array of one number per point"
+        raise ValueError(_check.message("width", expected, got))
 
 
 def with_halo(stroke: Stroke, mesh: pv.DataSet, line_width: float, halo: float | None) -> Stroke:
@@ -62,9 +113,25 @@ def with_halo(stroke: Stroke, mesh: pv.DataSet, line_width: float, halo: float |
     return stroke._replace(halo=halo, depth=DEPTH * mesh.length) if halo > 0 else stroke
 
 
-def directions(mesh: pv.DataSet) -> Array:
-    """Return the directions of lines at their points, of the length 2 at the ends of lines."""
-    return polylines.line_tangents(mesh) * (1 + polylines.of_points(mesh, _ends))[:, np.newaxis]
+def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
+    """Return the directions of lines at their points, whose lengths say how they are drawn.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Lines.
+    width : str, optional
+        Name of the point array of widths, as of :class:`Stroke`.
+
+    Returns
+    -------
+    ndarray of float64, shape (n_points, 3)
+        Vectors of length 1, longer by 1 at the ends of lines, and by half of the width.
+    """
+    lengths = 1 + polylines.of_points(mesh, _ends)
+    if width is not None:
+        lengths += 0.5 * np.clip(np.nan_to_num(mesh.point_data[width], nan=0.0), 0.0, 1.0)
+    return polylines.line_tangents(mesh) * lengths[:, np.newaxis]
 
 
 def _ends(points: Array, ids: Indices, offsets: Indices) -> Array:
@@ -90,17 +157,32 @@ def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> 
         Further texts in place of VTK's.
     """
     actor.GetProperty().SetInterpolationToGouraud()
-    passed = VTK.passing([ALONG, END, *HALO] if stroke.halo else [ALONG])
+    ended = [END] if stroke.halo or stroke.width else []
+    passed = VTK.passing([ALONG, *ended, *(HALO if stroke.halo else ())])
     unlit = [
         Replacement("Fragment", mark, "") for mark in ("//VTK::Normal::Dec", "//VTK::Normal::Impl")
     ]
     replace(actor, [*widened(actor, [*passed, *unlit], stroke), *last])
 
 
-def put_ground(actor: vtkActor, renderer: vtkRenderer) -> None:
-    """Give the halos of an actor the colour of the background of a renderer."""
-    uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-    uniforms.SetUniform3f(GROUND, list(renderer.GetBackground()))
+def adapt(actor: vtkActor, renderer: vtkRenderer) -> None:
+    """Give the lines of an actor the background and the pixels of a renderer."""
+    shader = actor.GetShaderProperty()
+    shader.GetFragmentCustomUniforms().SetUniform3f(GROUND, list(renderer.GetBackground()))
+    samples = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
+    shader.GetGeometryCustomUniforms().SetUniformf(SAMPLES, samples)
+
+
+def has_pass(step: Foreign, kind: str) -> bool:
+    """Return whether a pass of VTK is of a class, or holds one that is: passes nest."""
+    if step is None or step.IsA(kind):
+        return step is not None
+    passes = step.GetPasses() if step.IsA("vtkSequencePass") else None
+    held = [] if passes is None else [passes.GetItemAsObject(i) for i in range(len(passes))]
+    held += [
+        getattr(step, name)() for name in ("GetDelegatePass", "GetSequence") if hasattr(step, name)
+    ]
+    return any(has_pass(inner, kind) for inner in held)
 
 
 def widened(
@@ -122,12 +204,13 @@ def widened(
     prop = actor.GetProperty()
     prop.SetRenderLinesAsTubes(True)
     prop.SetLineWidth(LEAST if stroke.diameter else max(prop.GetLineWidth(), LEAST))
-    matrices = "uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\n"
+    # VTK declares no uniforms of others in this shader.
+    uniforms = f"uniform mat4 MCDCMatrix;\nuniform mat4 MCVCMatrix;\nuniform float {SAMPLES};\n"
     texts = []
     into = "".join(f"in {v.kind} {suffixed(v.name)};\n" for v in HALO)
     for stage, mark, text in replacements:
         if mark == "//VTK::Normal::Dec" and stage == "Geometry":
-            text = matrices + text
+            text = uniforms + text
         if mark == "//VTK::Normal::Dec" and stage == "Fragment":
             if stroke.round:
                 text += "uniform mat4 MCDCMatrix;\n"
@@ -154,28 +237,42 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
     """
     lines = [
         "//VTK::PositionVC::Impl",
-        "vec4 vizHere = gl_in[i].gl_Position;",
-        "vec2 vizSpan = (gl_in[1].gl_Position.xy / gl_in[1].gl_Position.w",
-        "  - gl_in[0].gl_Position.xy / gl_in[0].gl_Position.w) / lineWidthNVC;",
+        # What is nearer than the near plane is cut: it would have a place on the wrong side.
+        "vec4 vizEnds[2] = vec4[2](gl_in[0].gl_Position, gl_in[1].gl_Position);",
+        "vec2 vizBefore = vec2(vizEnds[0].z + vizEnds[0].w, vizEnds[1].z + vizEnds[1].w);",
+        "if (max(vizBefore.x, vizBefore.y) <= 0.0) return;",
+        "float vizCut = vizBefore.x / (vizBefore.x - vizBefore.y);",
+        "if (vizBefore.x < 0.0) vizEnds[0] = mix(vizEnds[0], vizEnds[1], vizCut);",
+        "if (vizBefore.y < 0.0) vizEnds[1] = mix(vizEnds[0], vizEnds[1], vizCut);",
+        "vec4 vizHere = vizEnds[i];",
+        f"vec2 vizPen = {SAMPLES} * lineWidthNVC;",
+        "vec2 vizSpan = (vizEnds[1].xy / vizEnds[1].w - vizEnds[0].xy / vizEnds[0].w) / vizPen;",
         "vec2 vizWay = normalize(vizSpan);",
-        "float vizWide = 1.0;",
+        "vec2 vizThick = vec2(1.0), vizShare = vec2(1.0);",
+        "vec2 vizPlace = vizHere.xy;",
     ]
     if stroke.diameter is not None or stroke.halo:
         # Row 1 of the projection, free of the model and of how VTK shifts and scales points.
         lines.append(f"float vizSpread = {_ratio(1)};")
     if stroke.diameter is not None:
         lines += [
-            f"vizWide = max(1.0, {glsl.number(stroke.diameter)} * vizSpread",
-            "  / (vizHere.w * lineWidthNVC.y));",
+            f"vizThick = max(vec2(1.0), {glsl.number(stroke.diameter)} * vizSpread",
+            "  / (vec2(vizEnds[0].w, vizEnds[1].w) * vizPen.y));",
         ]
+    if stroke.width is not None:
+        lines += [
+            "vizShare = vec2(vizEndVSOutput[0], vizEndVSOutput[1]) - 1.0;",
+            f"vizShare = 2.0 * (vizShare - step({AT_END} - 1.0, vizShare));",
+        ]
+    lines.append(f"float vizWide = {'1.0' if stroke.halo else 'vizShare[i]'} * vizThick[i];")
     if stroke.halo:
-        lines += ["vec2 vizStraight = vizWay;", "float vizThick = vizWide, vizCap = 0.0;"]
+        lines += ["vec2 vizStraight = vizWay;", "float vizWhole = vizThick[i], vizCap = 0.0;"]
     # At a joint both quads take the direction of the line there, so that their corners meet; such a
     # mitre is wider by 1 over the cosine, and sharp bends have none.
     if joined:
         lines += [
             "vec4 vizD = vizDVSOutput[i];",
-            "vec2 vizBend = (vizD.xy * vizHere.w - vizHere.xy * vizD.w) / lineWidthNVC;",
+            "vec2 vizBend = (vizD.xy * vizHere.w - vizHere.xy * vizD.w) / vizPen;",
             "float vizTurn = dot(vizBend, vizWay) / max(length(vizBend), 1e-30);",
             f"if (abs(vizTurn) > {SHARPEST_HALO if stroke.halo else SHARPEST}) {{",
             "  vizWay = normalize(vizBend) * sign(vizTurn);",
@@ -184,17 +281,22 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
         ]
     if stroke.halo:
         lines += _capped(stroke, joined=joined, ended=ended)
-    lines.append("vec2 vizAcross = vizWide * vec2(-vizWay.y, vizWay.x) * lineWidthNVC;")
+    lines += [
+        "vec2 vizAcross = ((j + 1) % 2 - 0.5) * vizWide * vec2(-vizWay.y, vizWay.x);",
+        "vizPlace += vizAcross * vizPen * vizHere.w;",
+        "vec4 vizCorner = vec4(vizPlace, vizHere.zw);",
+    ]
     # The place across the line, from -1 to 1, has the side of the tangent, which may run against
     # the segment.
     if stroke.round:
-        whole = glsl.number(2 * _reach(stroke))
+        whole = glsl.number(4 * stroke.halo)
         lines += [
             "float vizSide = dot(vizPVSOutput[1] - vizPVSOutput[0], vizTVSOutput[i]);",
-            f"vizXGSOutput = (vizSide < 0.0 ? -{whole} : {whole}) * ((j + 1) % 2 - 0.5);",
+            f"float vizEdge = 2.0 + {whole} / max(vizShare[i], 0.05);",
+            "vizXGSOutput = (vizSide < 0.0 ? -vizEdge : vizEdge) * ((j + 1) % 2 - 0.5);",
         ]
-    # What VTK writes after this place.
-    lines += ["#define lineWidthNVC vizAcross", "#define normal 1.0", ""]
+    # In place of the corner that VTK makes.
+    lines += ["#define EmitVertex() gl_Position = vizCorner; EmitVertex()", ""]
     return "\n".join(lines)
 
 
@@ -206,60 +308,61 @@ def _ratio(row: int) -> str:
     return f"length({rows[0]}) / length({rows[1]})"
 
 
-def _reach(stroke: Stroke) -> float:
-    """Return the distance from the middle of a line to the border of its halo, in half widths."""
-    return 1 + 2 * stroke.halo
-
-
 def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
     """Return what lengthens a quad by a round end, and the places and depths of its corners."""
-    reach = glsl.number(_reach(stroke))
+    band = glsl.number(2 * stroke.halo)
     # Ends are round, and so is a bend that is not mitred: both of its quads end there in a disc.
     if joined:
-        is_end = f"abs(vizTurn) <= {SHARPEST_HALO}" + (" || vizEndVSOutput[i] > 1.5" * ended)
+        is_end = f"abs(vizTurn) <= {SHARPEST_HALO}" + f" || vizEndVSOutput[i] > {AT_END}" * ended
     else:
         is_end = "true"
     return [
+        f"float vizReach = vizShare[i] + {band};",
         f"if ({is_end}) {{",
-        "  vizWay = vizStraight; vizWide = vizThick;",
-        f"  vizCap = {reach};",
+        "  vizWay = vizStraight; vizWide = vizWhole;",
+        "  vizCap = vizReach;",
         "}",
         # Places in half widths: across, past the start and past the end.
-        "float vizLong = 2.0 * length(vizSpan) / vizThick + vizCap;",
-        f"float vizFar = {reach} * 2.0 * ((j + 1) % 2 - 0.5);",
+        "float vizLong = (2.0 * length(vizSpan) + vizCap * vizWhole) / vizThick[1 - i];",
+        "float vizFar = vizReach * 2.0 * ((j + 1) % 2 - 0.5);",
         "vizLineGSOutput = vizHere.w * (i == 0 ? vec3(vizFar, -vizCap, vizLong)",
         "  : vec3(vizFar, vizLong, -vizCap));",
-        "_lineVertices[i] = vizHere.xy + (i == 0 ? -0.5 : 0.5) * vizCap * vizThick * vizHere.w",
-        "  * vizStraight * lineWidthNVC;",
-        f"vizWide *= {reach};",
+        "vizPlace += (i == 0 ? -0.5 : 0.5) * vizCap * vizWhole * vizHere.w * vizStraight * vizPen;",
+        "vizWide *= vizReach;",
         # Depths of what is nearer to the eye by the width of the line, and of what is behind it.
         f"float vizSlope = -{_ratio(2)};",
         "float vizFocus = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]) == vec3(0.0)",
         "  ? 0.0 : 1.0;",
-        "float vizNearer = vizThick * lineWidthNVC.y * vizHere.w / vizSpread;",
+        "float vizNearer = vizWhole * vizPen.y * vizHere.w / vizSpread;",
         "if (vizFocus > 0.0) vizNearer = min(vizNearer, 0.5 * vizHere.w);",
         f"vec2 vizMoved = vec2(vizNearer, -{glsl.number(stroke.depth)});",
-        "vizDeepGSOutput = 0.5 * vizHere.w * ((vizHere.z + vizSlope * vizMoved)",
+        "vizDeepGSOutput.xy = 0.5 * vizHere.w * ((vizHere.z + vizSlope * vizMoved)",
         "  / (vizHere.w - vizFocus * vizMoved) - vizHere.z / vizHere.w);",
+        "vizDeepGSOutput.zw = vizHere.w * vizShare;",
     ]
 
 
 def _border(stroke: Stroke) -> str:
     """Return what a fragment is: its distance from the line, its depth, and whether it is drawn."""
-    reach = glsl.number(_reach(stroke))
+    band = glsl.number(2 * stroke.halo)
     # Corners were multiplied by their w, so that what is interpolated is linear on the screen.
     return (
         "  vec3 vizAt = vizLineVSOutput * gl_FragCoord.w;\n"
-        "  vec2 vizDepths = vizDeepVSOutput * gl_FragCoord.w;\n"
-        "  float vizAway = length(vec2(vizAt.x, max(0.0, -min(vizAt.y, vizAt.z))));\n"
+        "  vec4 vizDepths = vizDeepVSOutput * gl_FragCoord.w;\n"
+        "  float vizHalf = mix(vizDepths.z, vizDepths.w,\n"
+        "    clamp(vizAt.y / max(vizAt.y + vizAt.z, 1e-6), 0.0, 1.0));\n"
+        "  float vizAway = length(vec2(vizAt.x, max(0.0, -min(vizAt.y, vizAt.z)))) - vizHalf;\n"
         "  float vizBlur = 0.5 * fwidth(vizAway);\n"
-        "  float vizGap = smoothstep(1.0 - vizBlur, 1.0 + vizBlur, vizAway);\n"
-        f"  if (vizAway > {reach}) discard;\n"
-        # The blurred border is already deeper, so that it hides nothing of a quad that joins.
-        f"  float vizTent = clamp((vizAway - 1.0 + vizBlur) / ({reach} - 1.0), 0.0, 1.0);\n"
+        "  float vizGap = smoothstep(-vizBlur, vizBlur, vizAway);\n"
+        f"  if (vizAway > {band}) discard;\n"
+        # The blurred border is already behind, so that it hides nothing of a quad that joins, and
+        # yet before a surface on which the line lies.
+        "  float vizOut = clamp(0.5 + 0.5 * vizAway / vizBlur, 0.0, 1.0);\n"
+        "  float vizNear = vizDepths.x * (1.0 - 0.75 * vizOut);\n"
+        f"  float vizTent = clamp((vizAway - vizBlur) / {band}, 0.0, 1.0);\n"
         # Before the nearest depth, to which all that is nearer would be clamped alike.
-        "  gl_FragDepth = max(gl_FragCoord.z + vizDepths.x, 1e-3)\n"
-        "    + vizTent * (vizDepths.y - vizDepths.x);\n"
+        "  gl_FragDepth = max(gl_FragCoord.z + vizNear, 1e-3)\n"
+        "    + vizTent * (vizDepths.y - vizNear);\n"
     )
 
 

@@ -166,7 +166,10 @@ def fur(
         Default: the normals, also where a vector is zero. A vector that points into the surface is
         reversed, and a warning counts them.
     toward : str or vector of 3 components, optional
-        Direction to which fibres bend: one for all, or the name of a point array.
+        Direction to which fibres bend: one for all, or the name of a point array. It is one of
+        space, in the frame of the mesh, not of the surface: where it leans out of the surface or
+        into it, fibres that bend to it do too. Fur that lies along a surface takes an array of
+        vectors that are tangent to it.
     bend : float, default: 0.0
         Share of ``toward`` in the direction at the tip.
     curl, turns : float

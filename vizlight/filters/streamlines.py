@@ -13,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines.tracing import Tracing
-from vizlight.mesh import blocks, georeference, meaning, records, tracers
+from vizlight.mesh import blocks, georeference, meaning, records, strokes, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
@@ -35,8 +35,9 @@ if TYPE_CHECKING:
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
-#: Name of the point array of the directions that were integrated, and by which the lines are lit.
-TANGENTS = "Tangents"
+#: Names of the point arrays of the directions that were integrated, and by which the lines are
+#: lit, of the lengths along lines, and of the lengths of vectors.
+TANGENTS, AGE, SPEED = "Tangents", "age", "speed"
 #: Share of the speed of the fastest points below which a point is at rest, for seeds.
 RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
@@ -63,7 +64,9 @@ class StreamlineOptions(LightOptions):
     seed: int = 0
     spacing: float | None = None
     step: float = 0.3
+    min_length: float | None = None
     max_length: float | None = None
+    stroke_length: float | None = None
     conditioned: bool | str | None = None
 
     def __post_init__(self) -> None:
@@ -82,7 +85,8 @@ class StreamlineOptions(LightOptions):
         else:
             records.refuse_unnamed("vectors", given)
         _check.fields(self, _check.integer, "seed", low=0)
-        _check.fields(self, _check.positive, "spacing", optional=True)
+        for length in ("spacing", "min_length", "stroke_length"):
+            _check.fields(self, _check.positive, length, optional=True)
 
 
 def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
@@ -113,7 +117,9 @@ def streamlines(
     seed: int = 0,
     spacing: float | None = None,
     step: float = 0.3,
+    min_length: float | None = None,
     max_length: float | None = None,
+    stroke_length: float | None = None,
     conditioned: bool | str | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
@@ -168,9 +174,17 @@ def streamlines(
         field keep their distance where the angle between them is below 45 degrees.
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
+    min_length : float, optional
+        Least length of a line, in the unit of the mesh: shorter ones, as in a field that is noise,
+        are left out, and the field array ``left_out`` is their number. Default: none is.
     max_length : float, optional
         Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
         box. A line ends after 1,200 cell lengths in any case.
+    stroke_length : float, optional
+        Length, in the unit of the mesh, of strokes into which the lines are cut, at points of
+        theirs. They have the point array ``width``, which grows along the vectors from 0.3 at the
+        tail to 1 at the head, and so tells their sense; in a line field both ends are thin. It is
+        what ``plotter.vizlight.add_mesh(lines, width="width")`` takes. Default: lines are whole.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface, but not in the light of
@@ -188,11 +202,14 @@ def streamlines(
         a surface ``Normals``. Vectors of a line field have the sign of ``Tangents``; the two arrays
         of a cross field, which have no order, are left out. The array
         ``Tangents_valid`` marks points at which a tensor has a first eigenvector, where it is
-        isotropic at some. Confined lines have the field array ``drift``, the largest distance
-        from the surface; evenly spaced ones ``largest_gap``, the largest distance of any place
-        from a line as it is drawn, understated by at most 0.01, ``nearest``, the distance to the
-        next line that 5 % of the places on lines fall below, both in spacings, and ``closed``, the
-        number of closed lines.
+        isotropic at some. ``age`` is the length of the line from its start to the point along the
+        vectors, in the unit of the mesh, and ``speed`` the length of the vectors, in their unit,
+        where they are vectors of 3 components; where the mesh has arrays of these names, they are
+        ``vizlight age`` and ``vizlight speed``. Confined lines have the field array ``drift``, the
+        largest distance from the surface; evenly spaced ones ``largest_gap``, the largest distance
+        of any place from a line as it is drawn, understated by at most 0.01, ``nearest``, the
+        distance to the next line that 5 % of the places on lines fall below, both in spacings, and
+        ``closed``, the number of closed lines.
 
     Raises
     ------
@@ -261,6 +278,7 @@ def light_lines(
     made = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, made, report, argument)
+    lines = _as_strokes(lines, mesh, tangents, made)
     # Lines beside a surface have its self-shadow unless it is switched off (Banks 6).
     conditioned = made.surface is not None if made.conditioned is None else made.conditioned
     normals = "Normals" if conditioned is True else None
@@ -271,6 +289,40 @@ def light_lines(
     recorded = dataclasses.replace(options, vectors=made.vectors)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
+
+
+def _as_strokes(
+    lines: pv.PolyData, mesh: pv.DataSet, tangents: str, options: StreamlineOptions
+) -> pv.PolyData:
+    """Return lines with ages and speeds, without short ones, and cut as the options say."""
+    if options.min_length is not None:
+        count = lines.n_lines
+        lines = strokes.without_short(lines, options.min_length)
+        if not lines.n_lines:
+            expected = f"a length that one of the {count} lines has"
+            raise ValueError(_check.message("min_length", expected, options.min_length))
+        lines.field_data["left_out"] = [count - lines.n_lines]
+    speed = _speed(lines, options)
+    found = {AGE: strokes.ages(lines, lines.point_data[tangents])}
+    found |= {} if speed is None else {SPEED: speed}
+    for key, values in found.items():
+        lines.point_data[own_name(mesh, key)] = values
+    if options.stroke_length is None:
+        return lines
+    return strokes.cut(lines, options.stroke_length, tangents, signed=not options.line_field)
+
+
+def _speed(lines: pv.PolyData, options: StreamlineOptions) -> Array | None:
+    """Return the lengths of the vectors at the points of lines, None where they have none."""
+    if not isinstance(options.vectors, str):
+        return None
+    rows = np.asarray(lines.point_data[options.vectors], dtype=np.float64)
+    return np.linalg.norm(rows, axis=1) if rows.ndim == 2 and rows.shape[1] == 3 else None
+
+
+def own_name(mesh: pv.DataSet, name: str) -> str:
+    """Return the name of an array of lines, another one where the traced mesh has that name."""
+    return name if name not in mesh.point_data else f"vizlight {name}"
 
 
 def _tells_of_lines(scene: Scene) -> bool:

@@ -8,7 +8,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.backends import choose_backend, window_class
-from vizlight.draw.render import SUPERSAMPLED
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.strokes import SUPERSAMPLED, stroke_of
 from vizlight.filters.tint import color_table, values_of_blocks
 from vizlight.mesh import blocks
 from vizlight.mesh.polylines import backdrop
@@ -216,7 +217,9 @@ def legibility(
         if scalars is not None:
             asked |= {"scalars": scalars, "cmap": cmap, "show_scalar_bar": False}
             asked |= {} if clim is None else {"clim": _check.limits("clim", clim)}
-        pixel = SUPERSAMPLED if _of_lines(mesh) else 1.0
+        strokes = [stroke_of(block, {"halo": None} | asked) for block in blocks.all_blocks(mesh)]
+        is_plain = _of_lines(mesh) and not any(stroke != Stroke() for stroke in strokes)
+        pixel = SUPERSAMPLED if is_plain else 1.0
         asked["line_width"] = pixel * asked.get("line_width", 1.0)
         component: Foreign = plotter.vizlight
         component.add_mesh(mesh, scene=scene, render=False, **asked)

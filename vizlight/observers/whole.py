@@ -10,8 +10,9 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
 
 from vizlight import _check
-from vizlight.draw.live import Live, has_pass, items, matrix_of
-from vizlight.draw.render import SUPERSAMPLED
+from vizlight.draw.glsl import Stroke
+from vizlight.draw.live import Live, items, matrix_of
+from vizlight.draw.strokes import SUPERSAMPLED, has_pass
 from vizlight.filters.tint import values_of
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.measure import measure
@@ -136,11 +137,12 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
             continue
         live, style = live_of(actor), actor.GetProperty()
         width = max(1.0, style.GetLineWidth() / pixel)
-        part = (
-            _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
-            if live is None
-            else _lit(live, renderer, actor, width)
-        )
+        if live is None:
+            part = _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
+        else:
+            # Strokes are as wide as their property says.
+            own = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
+            part = _lit(live, renderer, actor, own)
         if part is not None:
             shown.parts.append(part)
         elif style.GetOpacity() >= HIDES:
@@ -153,7 +155,7 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Pa
     mesh, table = live.source.mesh, actor.GetMapper().GetLookupTable()
     if live.n != 3:
         # Light of n-space has no key in the picture; colours of values have.
-        return _colored(actor, renderer, width, mesh, live.given, live.line_diameter)
+        return _colored(actor, renderer, width, mesh, live.given, live.stroke.diameter)
     scene = live.scene_of(renderer, actor)
     options = live.source.named or LightOptions.of(vars(live.source.options))
     colors = _values(mesh, live.given, table)
@@ -163,7 +165,7 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Pa
         return None
     placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
     return part_on(
-        placed, scene, options, lit=lit, width=width, diameter=live.line_diameter, **colors
+        placed, scene, options, lit=lit, width=width, diameter=live.stroke.diameter, **colors
     )
 
 

@@ -222,7 +222,7 @@ class App {
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...shares(this.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const common = this.numbers(view, canvas.width / canvas.height);
+    const common = { ...this.numbers(view, canvas.width / canvas.height), ownGround: shares(this.background) };
     const draw = (mesh, sorted) => {
       const { numbers, key } = mesh.given.live ? this.lightOf(mesh, view) : { numbers: {}, key: '' };
       mesh.draw({ ...common, ...numbers }, key, view, sorted, ratio);

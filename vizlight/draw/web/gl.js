@@ -133,6 +133,37 @@ const STROKE = `
   vec2 side = dot(way, way) > 1e-12 ? vec2(-way.y, way.x) * inversesqrt(dot(way, way)) : vec2(0.0, 1.0);
   gl_Position.xy += (float(gl_VertexID % 2) * 2.0 - 1.0) * side * ownWide / ownSize * gl_Position.w;
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
+// A stroke with a halo, or with widths at its points, is a capsule: places and sizes are in pixels, times
+// the w of its corner, so that what is interpolated is linear on the screen. Depths are of what is nearer
+// to the eye by the width of the line, and of the border of its halo, which is behind it.
+const CAPSULE = `
+  vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
+  vec2 span = (b.xy / b.w - a.xy / a.w) * ownSize * 0.5;
+  vec2 way = dot(span, span) > 1e-12 ? normalize(span) : vec2(1.0, 0.0);
+  bool last = gl_VertexID > 1; float flank = float(gl_VertexID % 2) * 2.0 - 1.0; float w = gl_Position.w;
+  vec2 halves = 0.5 * ownWide * vec2(ownShareA, ownShareB);
+  float reach = (last ? halves.y : halves.x) + ownHalo + 1.0;
+  ownAt = w * vec3(flank * reach, last ? length(span) + reach : -reach, length(span));
+  ownHalves = w * halves;
+  gl_Position.xy += ((last ? reach : -reach) * way + flank * reach * vec2(-way.y, way.x)) * 2.0 / ownSize * w;
+  #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
+  float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
+  float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));
+  float focus = ROW(MCPCMatrix, 3) == vec3(0.0) ? 0.0 : 1.0;
+  float nearer = 2.0 * ownWide * w / (spread * ownSize.y);
+  vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth);
+  ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
+  if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
+const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB;';
+const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
+const CAPSULE_SHAPE = `
+  vec3 at = ownAt * gl_FragCoord.w; vec2 halves = ownHalves * gl_FragCoord.w; vec2 deep = ownDeep * gl_FragCoord.w;
+  float away = length(vec2(at.x, max(max(-at.y, at.y - at.z), 0.0))) - mix(halves.x, halves.y, clamp(at.y / max(at.z, 1e-6), 0.0, 1.0));
+  float border = 0.5 * fwidth(away);
+  if (away > ownHalo) discard;
+  float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
+  gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
+const CAPSULE_GROUND = '\n  if (ownHalo > 0.0) ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));\n}';
 const FRAGMENT = `#version 300 es
 #define varying in
 precision highp float;
@@ -153,10 +184,10 @@ const UNLIT = [
   ['Fragment', '//VTK::Normal::Dec', 'varying vec3 vizPVSOutput;'],
   ['Fragment', '//VTK::Light::Impl', 'ownOut = vec4(diffuseColor, opacity);'],
 ];
-const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8 };
+const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8, ownShare: 9 };
 
 class Program {
-  constructor(gl, text, strokes) {
+  constructor(gl, text, strokes, capsules) {
     const source = { Vertex: VERTEX, Fragment: FRAGMENT };
     // Put in by a function, as a $ in a text would stand for a part of what is replaced.
     text.forEach(([stage, mark, put]) => { source[stage] = source[stage].replace(mark, () => put); });
@@ -172,8 +203,9 @@ class Program {
       const end = strokes ? `(gl_VertexID > 1 ? ${name}B : ${name}A)` : `${name}A`;
       return `${one}in ${kind} ${name}A; ${strokes ? `in ${kind} ${name}B;` : ''}\n#define ${name} (${end}${size})\n`;
     });
-    if (strokes) more = 'in float ownGapA;\n#define ownGap ownGapA\nvoid main() {';
-    source.Vertex = source.Vertex.replace('//STROKE', strokes ? STROKE : '');
+    if (strokes) more = `${capsules ? CAPSULE_VERTEX : ''}in float ownGapA;\n#define ownGap ownGapA\nvoid main() {`;
+    source.Vertex = source.Vertex.replace('//STROKE', () => (capsules ? CAPSULE : strokes ? STROKE : ''));
+    if (capsules) source.Fragment = source.Fragment.replace('void main() {', () => `${CAPSULE_FRAGMENT}\nvoid main() {${CAPSULE_SHAPE}`).replace(/}\s*$/, () => CAPSULE_GROUND);
     if (more) source.Vertex = source.Vertex.replace('void main() {', more);
     this.gl = gl;
     this.program = gl.createProgram();
@@ -236,7 +268,7 @@ class Batch {
       gl.enableVertexAttribArray(at + end);
       // Colours in bytes become shares from 0 to 1; directions stay whole, and the program scales
       // them.
-      gl.vertexAttribPointer(at + end, width, type, whole && name === 'ownColor', stride, end * stride);
+      gl.vertexAttribPointer(at + end, width, type, whole && (name === 'ownColor' || name === 'ownShare'), stride, end * stride);
       gl.vertexAttribDivisor(at + end, this.kind === 'strokes' ? 1 : 0);
     });
     gl.bindVertexArray(null);
@@ -284,9 +316,10 @@ const MOST_SORTED = 3e5;
 class Mesh {
   static async read(gl, given, texts) {
     const mesh = Object.assign(new Mesh(), { gl, given, texts, name: given.name, programs: new Map(), batches: [], edges: [], values: Object.create(null) });
-    const keys = ['normals', 'tangents', 'colors', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
+    const keys = ['normals', 'tangents', 'colors', 'widths', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
+    mesh.capsules = Boolean(given.halo || given.widths);
     await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
     // VTK's numbers: 0 for points, 1 for wires, 2 for faces.
     const style = given.representation;
@@ -316,6 +349,8 @@ class Mesh {
     batch.put('ownPlace', gathered(this.places, from, 3), 3);
     if (found.normals) batch.put('vizNormalMC', gathered(found.normals, from, 3), 3);
     if (found.tangents) batch.put('vizTangentMC', gathered(found.tangents, from, 3), 3);
+    // All of the width where the points have none of their own.
+    if (kind === 'strokes' && this.capsules && !edge) batch.put('ownShare', gathered(found.widths || new Uint8Array(this.places.length / 3).fill(255), from, 1), 1);
     if (kind === 'strokes') batch.put('ownGap', Uint8Array.from(owners, (cell, i) => Number(cell !== owners[i + 1])), 1);
     batch.from = this.given.ofCells ? owners : from;
     if (edge) {
@@ -349,11 +384,11 @@ class Mesh {
     this.paint(colors, true);
   }
 
-  program(key, strokes) {
-    const name = `${key}${strokes}`;
+  program(key, strokes, capsules = strokes && this.capsules) {
+    const name = `${key}${strokes}${capsules}`;
     const text = key === '' ? UNLIT : this.texts[this.given.texts[key]];
     if (!text) throw new Error(`no light for ${key}`);
-    if (!this.programs.has(name)) this.programs.set(name, new Program(this.gl, text, strokes));
+    if (!this.programs.has(name)) this.programs.set(name, new Program(this.gl, text, strokes, capsules));
     return this.programs.get(name);
   }
 
@@ -367,12 +402,12 @@ class Mesh {
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
       const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
-      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide] });
+      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0] });
       if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
       batch.draw();
     });
     if (!this.edges.length) return;
-    this.program('', true).use({ ...all, ownWide: [ratio] });
+    this.program('', true, false).use({ ...all, ownWide: [ratio] });
     this.edges.forEach((batch) => batch.draw());
   }
 }

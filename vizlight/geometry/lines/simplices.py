@@ -98,12 +98,15 @@ class Simplices:
             size = np.einsum("mij,mij->m", edges, edges)
             # Relative to the size of the cell: slivers have no direction across, whatever their
             # unit.
-            volume = np.linalg.det(gram / np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis])
+            scale = np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis]
+            gram = gram / scale
+            volume = np.linalg.det(gram)
         self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
-        # A single singular matrix would be an error for all cells.
+        # A single singular matrix would be an error for all cells. Of the same matrix whose
+        # determinant is not zero no pivot is.
         gram[~self.good] = np.eye(self.k)
         # By the edges' products, so that gradients of triangles lie in the planes of these.
-        rest = np.linalg.solve(gram, edges)
+        rest = np.linalg.solve(gram, edges / scale)
         rest[~self.good] = 0
         self.gradients = np.concatenate([-rest.sum(axis=1, keepdims=True), rest], axis=1)
         self._extents = np.linalg.norm(np.ptp(corners, axis=1), axis=1)

@@ -1,13 +1,32 @@
-"""Recipes of vectors: on a surface, on a sheet, and in a volume."""
+"""Recipes of vectors: on a surface, on a sheet, and in a volume.
+
+What of a field is shown follows from how fast it turns in the picture: strokes with their sense
+where neighbours run alike, hue where strokes would be too fine, else the lengths of vectors alone.
+"""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
-from vizlight.looks.recipes.drawing import LIGHTNESS, MISSING, Drawing, Layer, titled, unlit
+from vizlight.draw.legends import data_share
+from vizlight.draw.render import KEY_SIZE
+from vizlight.filters.streamlines import own_name
+from vizlight.looks.recipes.drawing import (
+    LIGHTNESS,
+    MISSING,
+    Drawing,
+    Layer,
+    range_of,
+    titled,
+    unlit,
+)
 from vizlight.looks.steps import Step
+from vizlight.mesh import records
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -15,20 +34,57 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
-#: Share of the side of a mesh between neighbouring lines, and that of seeds of a volume.
+#: Share of the size of a mesh between neighbouring lines, at most.
 SPACING = 1 / 40
-#: Number of streamlines of a volume.
-SEEDS = 300
+#: Radians by which a field turns from one stroke to the next, at most, and within a place of one
+#: hue.
+TURN, TURN_HUE = 0.6, 0.8
+#: Least distance between strokes, and size of a place whose hue is seen, in least widths of lines.
+LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
+#: Length of a stroke in distances between strokes, and its largest width and halo.
+LONG, WIDE, HALO = 3.5, 2.4, 0.35
+#: Colour map of lengths of vectors, on which black is seen everywhere.
+SPEED = "vizlight.speed"
+#: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
+SPACING_IN_VOLUME, LONG_IN_VOLUME = 1 / 25, 1 / 10
+#: Largest width of those strokes, and their halo.
+WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
+#: Length below which streamlines of a volume are left out, in distances between them: many are cut
+#: short where the field is noise.
+SHORTEST = 4 * SPACING_IN_VOLUME
+#: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
+MOST_CELLS, SEEDS = 250_000, 300
 
 
 def vectors(case: Case) -> Drawing:
-    """Draw vectors on a surface or a sheet: light by their direction, and lines along them."""
+    """Draw vectors on a surface or a sheet: their lengths in colours under strokes, or light."""
     array = case.needed_array
     mesh = case.wishes.joined(case.surface, array)
     camera = case.camera(mesh)
+    if case.wishes.question != "auto" or has_lines_only(mesh.run()):
+        spacing = mesh.run().length * SPACING
+        return _lit(case, mesh, camera, _strokes(mesh, case.scene(camera), array, spacing))
+    pixel = _pixel(case, camera)
+    turn = _turn(records.averaged(mesh.run(), array.name), array.name) * pixel
+    # Distances over which the field turns by a radian, in least widths of lines.
+    room = 1 / max(turn * case.width, 1e-9)
+    if room * TURN < LEAST_SPACING and room * TURN_HUE < LEAST_PLACE:
+        note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
+        return replace(_speed(case, mesh, camera, None), notes=[note])
+    if room * TURN < LEAST_SPACING:
+        note = f"{array.name} turns too fast here for strokes: hue tells its course, not its sense"
+        return replace(_lit(case, mesh, camera, strokes=None), notes=[note])
+    spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
+    strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
+    if strokes is None:
+        return _lit(case, mesh, camera, strokes=None)
+    return _speed(case, mesh, camera, strokes)
+
+
+def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
+    """Draw vectors by light, with strokes along them."""
+    array = case.needed_array
     scene = case.scene(camera)
-    if case.contents.flat_axis is not None and case.wishes.question == "auto":
-        return _speed(case, mesh, camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     lit = case.lit(mesh, scene, **light)
     other = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
@@ -42,36 +98,74 @@ def vectors(case: Case) -> Drawing:
         keys = [case.bar(other, case.wishes.colors)]
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
-    lines = _lines_on(mesh, scene, array)
-    if lines is not None:
-        dark = {"color": "black", "opacity": 0.55, "line_width": case.width, "lighting": False}
-        layers.append(Layer(lines, dark, live=False))
+    if strokes is not None:
+        layers.append(_inked(case, strokes, camera, halo=False))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
 
 
-def _speed(case: Case, mesh: Step, camera: Step) -> Drawing:
-    """Draw a sheet in the colours of the lengths of its vectors, with lines along them."""
+def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
+    """Draw a mesh in the colours of the lengths of its vectors, with strokes along them."""
     array = case.needed_array
-    scene = case.wishes.scene("none", camera)
-    colors: Keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    bent = case.contents.flat_axis is None
+    scene = case.wishes.scene("value" if bent else "none", camera)
+    light = case.wishes.light_of_surface() if bent else {}
+    colors: Keywords = {"cmap": SPEED, "nan_color": MISSING} | case.wishes.colors
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    layers = [Layer(mesh, shown)]
-    lines = _lines_on(mesh, case.scene(camera), array)
-    if lines is not None:
-        white = {"color": "white", "line_width": case.width, "lighting": False}
-        layers.append(Layer(lines, white, live=False))
+    layers = [Layer(mesh, shown | case.wishes.drawn(light))]
+    if strokes is not None:
+        layers.append(_inked(case, strokes, camera, halo=HALO))
     lengths = np.linalg.norm(np.asarray(mesh.run()[array.name], dtype=np.float64), axis=1)
     finite = lengths[np.isfinite(lengths)]
-    title = f"length of {titled(mesh.run(), array.name)}"
+    sense = "" if strokes is None else "; strokes run from thin to thick"
+    title = f"length of {titled(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"], "scene": scene}
     bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
-    words = f"length of {array.name} in colours, with lines along it"
-    return Drawing(layers, camera, scene, case.lit(mesh, scene), words, [bar], kind=mesh)
+    words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
+    return Drawing(layers, camera, scene, case.lit(mesh, scene, **light), words, [bar], kind=mesh)
+
+
+def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
+    """Return the layer of strokes in black, for grounds that are light in either style."""
+    scene = case.wishes.scene("none", camera)
+    wide = round(WIDE * case.width, 1)
+    return Layer(
+        strokes,
+        {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": halo},
+    )
+
+
+def _pixel(case: Case, camera: Step) -> float:
+    """Return the size of a pixel at the focus of a camera, in the unit of the mesh."""
+    eye: pv.Camera = camera.run()
+    if eye.parallel_projection:
+        half = eye.parallel_scale
+    else:
+        half = eye.distance * math.tan(math.radians(eye.view_angle) / 2)
+    key = case.wishes.picture.get("key", True)
+    share = data_share(case.wishes.size, KEY_SIZE) if key else (1.0, 1.0)
+    return float(2 * half / (case.wishes.size[1] * share[1]))
+
+
+def _turn(mesh: pv.DataSet, name: str) -> float:
+    """Return by how much vectors turn along the edges of a mesh, in radians for each unit."""
+    edges = mesh.extract_all_edges()
+    first, last = edges.lines.reshape(-1, 3)[:, 1:].T
+    rows = np.asarray(edges.point_data[name], dtype=np.float64)
+    points = np.asarray(edges.points, dtype=np.float64)
+    ends = np.linalg.norm(rows[first], axis=1) * np.linalg.norm(rows[last], axis=1)
+    good = np.isfinite(ends) & (ends > 0)
+    first, last, ends = first[good], last[good], ends[good]
+    cosines = np.einsum("ij,ij->i", rows[first], rows[last]) / ends
+    length = np.linalg.norm(points[last] - points[first], axis=1).sum()
+    return float(np.arccos(np.clip(cosines, -1, 1)).sum() / length) if length > 0 else 0.0
 
 
 def flow(case: Case) -> Drawing:
-    """Draw streamlines of the vectors in a volume, lit by their heading, in its outline."""
+    """Draw streamlines of the vectors in a volume as strokes, in the colours of their speed.
+
+    Where a question or an isosurface is asked for, they are lit by their heading.
+    """
     array = case.needed_array
     mesh = case.wishes.joined(case.data, array)
     if array.of_cells:
@@ -80,40 +174,83 @@ def flow(case: Case) -> Drawing:
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
-    elif "spacing" not in keywords and "seeds" not in keywords:
-        keywords["seeds"] = SEEDS
     camera = case.camera(on if keywords.get("confined") else mesh)
-    scene = case.scene(camera)
-    lit = case.wishes.step("lit", "streamlines", mesh, scene, **keywords)
-    # Fewer lines than a number that nobody asked for are no concern of the reader.
-    lit.quiet = "seeds" not in case.wishes.light
-    lines = Layer(lit, {"scene": scene, "line_width": case.width})
+    by_speed = case.wishes.question == "auto" and "surface" not in keywords
+    scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
+    lit = _streamlines(case, mesh, scene, keywords)
+    keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
+    drawn: Keywords = {"width": "width", "line_width": round(WIDE_IN_VOLUME * case.width, 1)}
+    drawn["halo"] = HALO_IN_VOLUME
+    words = f"streamlines of {array.name}"
+    if by_speed:
+        speed = own_name(mesh.run(), "speed")
+        # What is fast stands out from the ground.
+        default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
+        colors = {"cmap": default} | case.wishes.colors
+        drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
+        title = f"length of {titled(mesh.run(), array.name)}; strokes run from thin to thick"
+        bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
+        bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
+        keys = [bar]
+        words += " in the colours of their speed"
+    lines = Layer(lit, {"scene": scene, **drawn})
     if "surface" in keywords:
         # The surface that conditions the light of the lines is not drawn with them.
         name = str(keywords.get("name", "luminance"))
         lines = unlit(lit, scene, name, line_width=case.width)
-    layers = [
-        lines,
-        Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False),
-    ]
-    words = f"streamlines of {array.name}"
-    key = {"scene": scene, "title": titled(mesh.run(), array.name)}
-    return Drawing(layers, camera, scene, lit, words, [key])
+    notes = []
+    if left_out := int(lit.run().field_data.get("left_out", [0])[0]):
+        least = f"{lit.keywords['min_length']:g}"
+        notes = [f"lines shorter than {least}, four times their distance, are left out: {left_out}"]
+    layers = [lines, _hull(mesh)]
+    return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
-def _lines_on(mesh: Step, scene: Step, array: Named) -> Step | None:
-    """Return the step that lays evenly spaced lines on a surface, None where there is no line."""
+def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Step:
+    """Return the step that lays strokes in a volume, without short ones where some are long."""
+    size = float(mesh.run().length)
+    own: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * size:.3g}")}
+    if "spacing" not in keywords and "seeds" not in keywords:
+        if mesh.run().n_cells <= MOST_CELLS and "surface" not in keywords:
+            own["spacing"] = float(f"{SPACING_IN_VOLUME * size:.3g}")
+        else:
+            own["seeds"] = SEEDS
+    shortest = {"min_length": float(f"{SHORTEST * size:.3g}")}
+    for least in (shortest, {}):
+        step = case.wishes.step("lit", "streamlines", mesh, scene, **(own | least | keywords))
+        # Fewer lines than a number that nobody asked for are no concern of the reader.
+        step.quiet = "seeds" not in case.wishes.light
+        try:
+            step.run()
+        except ValueError as error:
+            if least and "min_length" in str(error):
+                continue
+            raise
+        break
+    return step
+
+
+def _hull(mesh: Step) -> Layer:
+    """Return the layer of what bounds a volume: the edges of a box, or a faint hull."""
+    if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
+        return Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
+    hull = Step("hull", ".extract_surface", mesh)
+    return Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)
+
+
+def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | None:
+    """Return the step that lays evenly spaced strokes on a surface, None where there is none."""
     surface = mesh.run()
     if has_lines_only(surface) or not surface.n_cells:
         return None
-    spacing = float(f"{surface.length * SPACING:.3g}")
+    spacing = float(f"{spacing:.3g}")
     keywords: Keywords = {"vectors": array.name, "spacing": spacing, "confined": True}
-    keywords["feature_angle"] = "auto"
+    keywords |= {"stroke_length": LONG * spacing, "feature_angle": "auto"}
     triangles = Step("triangles", ".triangulate", mesh)
-    lines = Step("lines", "vizlight.streamlines", triangles, scene, **keywords)
+    strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)
     try:
-        lines.run()
+        strokes.run()
     except ValueError:
         # The light tells the direction by itself where no line can be laid.
         return None
-    return lines
+    return strokes

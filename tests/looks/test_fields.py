@@ -1,0 +1,91 @@
+"""What of a field is shown follows from how fast it turns in the picture."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.looks.recipes import fields
+
+
+def sheet(turn, count=60):
+    """Flat grid of unit cells whose vectors turn by an angle from each column to the next."""
+    grid = pv.ImageData(dimensions=(count, count // 2, 1))
+    angle = turn * grid.points[:, 0]
+    speed = 1 + grid.points[:, 1] / count
+    grid["wind"] = (speed * np.stack([np.cos(angle), np.sin(angle), 0 * angle])).T
+    return grid
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.2, 1.0])
+def test_the_turn_of_a_field_is_that_per_length_of_its_edges(turn):
+    found = fields._turn(sheet(turn), "wind")
+    # Along the columns it does not turn; there are nearly as many edges along them.
+    assert found == pytest.approx(turn / 2, rel=0.03, abs=1e-7)
+
+
+def test_a_field_at_rest_does_not_turn():
+    grid = sheet(1.0)
+    grid["wind"][:] = 0
+    grid["wind"][0] = np.nan
+    assert fields._turn(grid, "wind") == 0
+
+
+def test_a_slow_field_is_strokes_that_grow_along_it_over_its_speed():
+    look = vizlight.look(sheet(0.05))
+    assert look.drawing.words == "length of wind in colours, with strokes along it"
+    assert not look.notes
+    ground, strokes = look.drawing.layers
+    assert ground.keywords["scalars"] == "wind"
+    assert strokes.keywords["width"] == "width"
+    assert "from thin to thick" in look.drawing.keys[0]["title"]
+    assert look.drawing.keys[0]["clim"] == pytest.approx((1, 1 + 29 / 60))
+    mesh = strokes.mesh.run()
+    line = mesh.get_cell(mesh.n_cells // 2)
+    widths, age = mesh["width"][line.point_ids], mesh["age"][line.point_ids]
+    along = np.einsum("ij,ij->i", np.diff(line.points, axis=0), mesh["wind"][line.point_ids[1:]])
+    assert np.all(np.diff(widths) * along > 0)
+    assert np.all(np.diff(age) * along > 0)
+
+
+def test_strokes_are_nearer_where_the_field_turns_faster():
+    spacings = []
+    for turn in (0.05, 0.5):
+        strokes = vizlight.look(sheet(turn, 120)).drawing.layers[1].mesh
+        spacings.append(strokes.keywords["spacing"])
+    assert spacings[0] == pytest.approx(sheet(0, 120).length / 40, rel=0.01)
+    assert spacings[1] < 0.8 * spacings[0]
+
+
+def test_a_faster_field_is_hues_and_a_faster_one_yet_its_speed_alone():
+    look = vizlight.look(sheet(1.2, 300))
+    assert "hue tells its course" in look.notes[0]
+    assert look.drawing.words == "direction of wind"
+    random = np.random.default_rng(0)
+    noise = sheet(0, 300)
+    noise["wind"][:, :2] = random.normal(size=(noise.n_points, 2))
+    look = vizlight.look(noise)
+    assert "for its course to be seen" in look.notes[0]
+    assert look.drawing.words == "length of wind in colours"
+    assert len(look.drawing.layers) == 1
+
+
+def volume(noise):
+    grid = pv.ImageData(dimensions=(14, 13, 12), origin=(-6.5, -6, -5.5))
+    x, y, _ = grid.points.T
+    grid["V"] = np.stack([-y, x, 0 * x + 1], axis=1)
+    random = np.random.default_rng(1).normal(size=(grid.n_points, 3))
+    where = grid.points[:, 2] < noise
+    grid["V"][where] = random[where]
+    return grid
+
+
+def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
+    noisy = vizlight.look(volume(0), "flow", seeds=60)
+    assert noisy.drawing.words == "streamlines of V"
+    lines = noisy.drawing.lit.run()
+    assert lines.field_data["left_out"][0] > 5
+    assert noisy.notes[0].endswith(f"are left out: {lines.field_data['left_out'][0]}")
+    short = vizlight.look(volume(-9), "flow", seeds=20, max_length=1.0)
+    assert not short.notes
+    assert short.drawing.lit.run().n_lines > 0
