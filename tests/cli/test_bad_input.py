@@ -79,7 +79,7 @@ import pyvista as pv
         ("light flow.vti --view no.json", "--view: expected a JSON file"),
         ("light flow.vti --view up", "--view: expected three numbers x,y,z"),
         ("light flow.vti flow.vti", "file: expected files of different names"),
-        ("light flow.vti torus.vtp -o a.png", "output: expected a folder that exists"),
+        ("light flow.vti torus.vtp -o a.png --times all", "one time for several files"),
         ("light flow.vti -o none/a.png", "output: expected a folder that exists, got 'none'"),
         ("light flow.vti -o a.vtm", "it is one mesh, which has no blocks"),
         ("light flow.vti --tangents r,q", "tangents: expected the name of an array, one of"),

@@ -66,6 +66,7 @@ def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, done):
     assert plain != colored
 
 
+@pytest.mark.slow
 def test_script_for_paraview(volume, tmp_path, done, refused, run):
     options = ("light", volume, "--contour", "r", "--tangents", "V", "--paraview")
     assert "mesh     a.py" in done(*options, "a.py")
@@ -132,6 +133,7 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
     assert "apt-get install -y" in doctor[2]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
 @pytest.mark.parametrize("streams", ["2>&-", "<&- >&- 2>&-", ">/dev/full", "| true"])
 def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):
@@ -254,6 +256,7 @@ def ball(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @pytest.mark.parametrize("name", ["lit.vtp", "lit.png"])
 def test_a_mesh_is_read_once_and_what_draws_is_loaded_for_a_picture(name, ball):
@@ -263,6 +266,7 @@ def test_a_mesh_is_read_once_and_what_draws_is_loaded_for_a_picture(name, ball):
     assert "vizlight.pieces.run" not in modules
 
 
+@pytest.mark.slow
 def test_a_mesh_is_refined_and_the_script_does_the_same(ball, done):
     for more in ("", "--no-surface"):
         out = done("light ball.vtp -o fine.vtp --refine 1/255 --report", more)
@@ -281,6 +285,7 @@ def test_lines_are_lit_as_a_bundle(done):
     assert {"transmittance", "sky"} <= set(pv.read("lit.vtp").point_data)
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_legibility_is_printed_and_the_script_does_the_same(ball, capfd, done):
     asked = "light ball.vtp -o lit.vtp --tangents v --scalars height --legibility"

@@ -83,6 +83,7 @@ def test_the_only_vectors_are_traced_for_a_question(question, folder, done):
     assert np.ptp(pv.read("lines.vtp")["luminance"]) > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run, done):

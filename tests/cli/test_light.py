@@ -77,6 +77,7 @@ def test_processes_write_the_same_bytes(parts, tmp_path, done):
         assert one.read_bytes() == two.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer(parts, refused):
     pytest.importorskip("distributed")
     with socket.socket() as free:
@@ -87,6 +88,7 @@ def test_a_scheduler_that_does_not_answer(parts, refused):
     assert "127.0.0.1" in err
 
 
+@pytest.mark.slow
 def test_the_script_does_the_same(parts, done):
     exec(done("light", *parts, "--contour r -o a.pvtp --script"), {})
     out = done("light", *parts, "-o a.pvtp --workers 3 --script")

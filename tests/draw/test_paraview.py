@@ -96,7 +96,8 @@ def drawn(mesh, scene, options, camera):
     plotter = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
     plotter.background_color = "black"
     plotter.disable_anti_aliasing()
-    plotter.vizlight.add_mesh(mesh, scene=scene, light="fragments", **options)
+    # ParaView draws no halos.
+    plotter.vizlight.add_mesh(mesh, scene=scene, light="fragments", halo=False, **options)
     plotter.camera.position, plotter.camera.focal_point, parallel = camera
     plotter.camera.up, plotter.camera.view_angle = (0, 0, 1), 30
     plotter.camera.parallel_projection, plotter.camera.parallel_scale = bool(parallel), 1.6

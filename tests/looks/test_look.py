@@ -86,6 +86,7 @@ def test_the_data_choose(kind):
     assert all(other.array != look.array for other in look.others)
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_look_saves_itself_and_its_script_draws_the_same(kind, tmp_path, monkeypatch):
