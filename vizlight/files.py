@@ -260,8 +260,9 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     size = getattr(mesh, "dimensions", (1,))
     if min(size) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {tuple(size)}")
-    ends = np.abs(mesh.bounds)
-    if mesh.n_points and np.any(np.isfinite(ends) & (ends > _check.FARTHEST)):
+    low, high = np.reshape(mesh.bounds, (3, 2)).T
+    # Points that are not finite have no bounds: the lower one is then above the upper one.
+    if np.any((low <= high) & (np.maximum(-low, high) > _check.FARTHEST)):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
     odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]
