@@ -234,7 +234,7 @@ def _hull(mesh: Step) -> Layer:
     """Return the layer of what bounds a volume: the edges of a box, or a faint hull."""
     if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
         return Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
-    hull = Step("hull", ".extract_surface", mesh)
+    hull = Step("hull", ".extract_surface", mesh, algorithm="dataset_surface")
     return Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)
 
 
