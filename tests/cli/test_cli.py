@@ -207,13 +207,16 @@ def test_what_is_shown_is_told(volume, done, run):
     cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
     cells.save("cells.vti")
     for words, told in (
-        ("flow.vti", "streamlines of V (heading: streamlines)"),
+        ("flow.vti", "streamlines of V in the colours of their speed (heading: streamlines)"),
         ("flow.vti --array r", "three slices of r"),
         ("flat.vti", "relief of height (relief: sheet)"),
         ("flat.vti --for value", "height in colours (none: sheet)"),
         ("colors.vti", "rgb in colours (none: sheet)"),
         ("cells.vti --array temperature", "temperature in colours (none: sheet)"),
-        ("flow.vti --contour r", "direction of V (direction: surface)"),
+        (
+            "flow.vti --contour r",
+            "length of V in colours, with strokes along it (direction: surface)",
+        ),
         ("flat.vti --warp height", "heights are taken 0.1 times"),
         ("bare.vti", "surface (shape: sheet)"),
     ):

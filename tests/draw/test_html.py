@@ -410,8 +410,8 @@ def test_a_page_starts_at_the_view_of_its_scene(tmp_path):
     mesh = torus()
     for view in (View(direction=(0, -1, 0.4)), View(position=(3.0, 2.0, 1.5))):
         scene = Scene(lights=FAR, view=view)
-        for given in ((mesh, scene), (vizlight.illuminate(mesh, scene), None)):
-            path = vizlight.live_html(*given, tmp_path / "a.html")
+        for shown, light in ((mesh, scene), (vizlight.illuminate(mesh, scene), None)):
+            path = vizlight.live_html(shown, tmp_path / "a.html", scene=light)
             camera = scene_in(path)[2]["camera"]
             toward = np.subtract(camera["position"], camera["focal"])
             expected = view.direction or np.subtract(view.position, mesh.center)

@@ -326,7 +326,7 @@ test_bad_input = refusals(
     (pv.Sphere(), {"tangents": "V"}, "tangents: expected"),
     (Sphere(), {"tangents": "V"}, "tangents: expected None for a solid"),
     (Sphere() | Block(), {"tolerance": 1}, "tolerance: expected"),
-    (Sphere(), {"scene": "bright"}, "scene: expected", TypeError),
+    (Sphere(), {"scene": "bright"}, "scene: expected", ValueError),
     (pv.Cube(), {"feature_angle": 200}, "feature_angle: expected"),
 )
 

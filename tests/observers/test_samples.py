@@ -8,7 +8,7 @@ from vectors import unit
 from vizlight import Light, Scene, View
 from vizlight.draw.cameras import camera_on
 from vizlight.observers import samples
-from vizlight.observers.pixels import Pixels
+from vizlight.observers.pixels import Pixels, footprint
 from vizlight.shading.options import LightOptions
 
 
@@ -28,7 +28,7 @@ def places_of(line_field, vectors):
     at = Pixels(row, column, none, np.arange(2), (300, 300))
     found = samples.sample(part, at, camera)
     np.testing.assert_allclose(found.points, middles, atol=2e-3)
-    np.testing.assert_allclose(samples.footprint(camera, found.points, 300), 1 / 300)
+    np.testing.assert_allclose(footprint(camera, found.points, 300), 1 / 300)
     return part.cells, found
 
 
@@ -53,5 +53,5 @@ def test_the_length_of_vectors_is_kept_beside_their_direction():
 
 def test_a_pixel_far_away_is_larger():
     camera = camera_on((-1, 1, -1, 1, -1, 1), (0, 0, 1))
-    near, far = samples.footprint(camera, np.array([[0, 0, 1.0], [0, 0, -1.0]]), 100)
+    near, far = footprint(camera, np.array([[0, 0, 1.0], [0, 0, -1.0]]), 100)
     assert 0 < near < far

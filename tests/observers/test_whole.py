@@ -28,7 +28,7 @@ def test_a_moved_actor_is_read_like_a_moved_mesh(question, how):
         plotter, actor = plotter_of(shown, **how)
         if shown is mesh:
             actor.user_matrix = MATRIX
-        plotter.camera = camera_on(there, (0.3, 0.2, 1), aspect=1.5)
+        plotter.camera = camera_on(there, (0.1, 0.05, 1), up=(0, 1, 0), aspect=1.5)
         figures.append(getattr(plotter.vizlight.legibility(**HOW), question))
         plotter.close()
     assert figures[0].bits > 1

@@ -315,9 +315,10 @@ class Page:
             lit, seen = fixed_colors(placed, scene, colors, ids)
             why = "" if live.reason == "asked for" else f", because {live.reason}"
             said = f"; {seen} as from the first view" if seen else ""
-            self.notices.append(
-                f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
-            )
+            if scene.lights:  # ambient light alone follows no eye
+                self.notices.append(
+                    f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
+                )
         return {"live": False, "colors": _packed(lit, "u1"), "color": [1.0, 1.0, 1.0]}
 
     def _lights_of(self, live: Live, scene: Scene) -> list[dict[str, object]]:

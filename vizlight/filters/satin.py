@@ -30,7 +30,9 @@ class SatinOptions(StreamlineOptions):
     The fields are keywords of :func:`vizlight.satin`.
     """
 
-    DECIDED: ClassVar = frozenset({"conditioned", "vectors", "surface", "confined"})
+    DECIDED: ClassVar = frozenset(
+        {"conditioned", "vectors", "surface", "confined", "stroke_length", "min_length"}
+    )
     seeds: int | ArrayLike | pv.DataSet = 300
 
 

@@ -55,6 +55,11 @@ class Step:
         """Return the result; the call is made once."""
         return self._result
 
+    @property
+    def made(self) -> bool:
+        """Whether the call was made."""
+        return "_result" in vars(self)
+
     @functools.cached_property
     def _result(self) -> Foreign:
         with warnings.catch_warnings():
@@ -108,7 +113,12 @@ def _run(value: object) -> object:
 
 def written(steps: Sequence[Step]) -> Path:
     """Run the steps that write a file, and return its path, the first of a sequence's."""
-    result: str | Path | list[Path] = [step.run() for step in steps][-1]
+    try:
+        result: str | Path | list[Path] = [step.run() for step in steps][-1]
+    finally:
+        for step in in_order(steps):
+            if step.path == "render.canvas" and step.made:
+                step.run().close()
     return result[0] if isinstance(result, list) else Path(result)
 
 

@@ -48,16 +48,21 @@ class Layer:
         Keywords of ``add_mesh``.
     live : bool
         Whether the plotter's component for light adds it, or PyVista itself.
+    quiet : bool
+        Whether what cannot be lit is said elsewhere.
     """
 
     mesh: Step
     keywords: Keywords = dataclasses.field(default_factory=dict)
     live: bool = True
+    quiet: bool = False
 
     def added(self, plotter: Step) -> Step:
         """Return the step that adds the layer to a plotter."""
         way = ".vizlight.add_mesh" if self.live else ".add_mesh"
-        return Step("", way, plotter, self.mesh, **self.keywords)
+        step = Step("", way, plotter, self.mesh, **self.keywords)
+        step.quiet = self.quiet
+        return step
 
 
 @dataclass(frozen=True)
@@ -225,3 +230,9 @@ def unlit(lit: Step, scene: Step, name: str, **drawing: object) -> Layer:
     if scene.run().colored:
         return Layer(lit, {"scalars": part_name(name, "rgb"), "rgb": True, **drawn}, live=False)
     return Layer(lit, {"scalars": name, "cmap": "gray", "clim": (0.0, 1.0), **drawn}, live=False)
+
+
+def colors_of(array: Named, colors: Keywords) -> Keywords:
+    """Return the array and the colour map of a mesh, as a glTF file takes them."""
+    names = ("cmap", "clim")
+    return {"scalars": array.name} | {name: colors[name] for name in names if name in colors}

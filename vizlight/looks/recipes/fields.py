@@ -26,6 +26,7 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.steps import Step
+from vizlight.looks.wishes import plain_scene
 from vizlight.mesh import records
 from vizlight.vtk.polylines import has_lines_only
 
@@ -127,7 +128,8 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
 
 def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
-    scene = case.wishes.scene("none", camera)
+    # The lamps of a user are for the ground.
+    scene = plain_scene("none", Step("", "vizlight.View.from_camera", camera), camera)
     wide = round(WIDE * case.width, 1)
     return Layer(
         strokes,

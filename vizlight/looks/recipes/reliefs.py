@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.looks.framing import Eye
-from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of
 from vizlight.looks.steps import Step
 from vizlight.vtk.polylines import has_lines_only
 
@@ -49,10 +49,11 @@ def relief(case: Case) -> Drawing:
         colors = {"cmap": Step("", "vizlight.maps.heights", *ends)}
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     keys = [case.bar(array, colors)]
-    layer = Layer(shown, {"show_scalar_bar": False})
+    # The filter has said how many points have no height.
+    layer = Layer(shown, {"show_scalar_bar": False}, quiet=True)
     return Drawing(
         [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=data, name="t",
-        colors=_colors_of(array, colors),
+        colors=colors_of(array, colors),
     )  # fmt: skip
 
 
@@ -116,9 +117,3 @@ def _raised(case: Case, array: Named) -> tuple[Keywords, str]:
     keywords: Keywords = {"elevation": array.name} | dict(case.wishes.light)
     factor, note = case.wishes.heightened(case.data.run(), array.name)
     return (keywords | {"exaggeration": factor} if factor != 1 else keywords), note
-
-
-def _colors_of(array: Named, colors: Keywords) -> Keywords:
-    """Return the array and the colour map of a mesh, as a glTF file takes them."""
-    names = ("cmap", "clim")
-    return {"scalars": array.name} | {name: colors[name] for name in names if name in colors}

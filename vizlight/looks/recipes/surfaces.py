@@ -11,6 +11,7 @@ from vizlight.looks.recipes.drawing import (
     MISSING,
     Drawing,
     Layer,
+    colors_of,
     colors_of_kinds,
     unlit,
 )
@@ -46,7 +47,10 @@ def values(case: Case) -> Drawing:
     shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
-    return Drawing([Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys)
+    return Drawing(
+        [Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys,
+        colors=colors_of(array, keywords),
+    )  # fmt: skip
 
 
 def surface(case: Case) -> Drawing:
