@@ -20,6 +20,7 @@ from vizlight.looks.recipes import fields, reliefs, strokes, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
+from vizlight.looks.wishes import plain_scene
 from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 
 if TYPE_CHECKING:
@@ -234,7 +235,13 @@ class Look:
         near = any(light.position is not None for light in self.scene.lights)
         if wishes.picture.get("key", True):
             # The key of a lamp that stands somewhere differs from place to place.
-            keys = [key for key in drawing.keys if not near or key.get("question") == "value"]
+            keys = list(drawing.keys)
+            if near:
+                # A bar has the colours of the map, in even light.
+                view = Step("", "vizlight.View.from_camera", drawing.camera)
+                even = plain_scene("none", view, drawing.camera)
+                bars = [key for key in keys if key.get("question") == "value"]
+                keys = [bar | {"scene": even} for bar in bars]
             steps += [_key_step(plotter, key) for key in keys]
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps

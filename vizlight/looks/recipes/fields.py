@@ -120,7 +120,8 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     finite = lengths[np.isfinite(lengths)]
     sense = "" if strokes is None else "; strokes run from thin to thick"
     title = f"length of {titled(mesh.run(), array.name)}{sense}"
-    bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"], "scene": scene}
+    bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
+    bar |= {} if bent else {"scene": scene}
     bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
     return Drawing(layers, camera, scene, case.lit(mesh, scene, **light), words, [bar], kind=mesh)
