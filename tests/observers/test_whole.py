@@ -69,3 +69,13 @@ def test_values_of_a_mesh_in_4_space_are_read():
     plotter.close()
     assert found.value.median < 0.04
     assert found.direction is None
+
+
+def test_a_direction_up_near_the_line_of_sight_turns_no_answer():
+    medians = []
+    for up in ((0, 1, 0), (0, 0, 1)):
+        plotter, _ = plotter_of(sheet(), **DIRECTION)
+        plotter.camera = camera_on(sheet(), (0.1, 0.05, 1), up=up, aspect=1.5)
+        medians.append(plotter.vizlight.legibility(**HOW).direction.median)
+        plotter.close()
+    assert max(medians) < 6

@@ -133,7 +133,9 @@ def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
     places = Places(np.arange(m * s).reshape(m, s), share)
     points = interpolated(corners.reshape(-1, 3), places)
     toward = toward_eye(camera, points)
-    right = unit_rows(np.cross(np.asarray(camera.GetViewUp()), toward))
+    # To the right is one direction for all of a picture, also where up is nearly toward the eye.
+    side = np.cross(camera.GetDirectionOfProjection(), camera.GetViewUp())
+    right = unit_rows(side - (toward @ side)[:, np.newaxis] * toward)
     tangents = _tangents(part, ids, places)
     normals = _normals(part, ids, places, points)
     valid = np.ones(m, dtype=np.bool_)
