@@ -107,10 +107,12 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     table = pv.LookupTable(n_values=256)
     # The middles of the 256 steps.
     values = low + (high - low) * (np.arange(256) + 0.5) / 256
-    colors = _GROUND((values - max(low, 0.0)) / (high - max(low, 0.0)) if high > 0 else values)
-    if low < 0:
-        deep = _SEA((values - low) / (min(high, 0.0) - low))
-        colors = np.where((values < 0)[:, np.newaxis], deep, colors)
+    coast, sea = max(low, 0.0), values < 0
+    colors = np.empty((256, 4))
+    if sea.any():
+        colors[sea] = _SEA((values[sea] - low) / (min(high, 0.0) - low))
+    if not sea.all():
+        colors[~sea] = _GROUND((values[~sea] - coast) / (high - coast))
     table.values = np.round(255 * colors).astype(np.uint8)
     table.scalar_range = (low, high)
     return table

@@ -8,6 +8,7 @@ import pytest
 import pyvista as pv
 from refusals import refusals
 from shapes import straws
+from sheets import sheet
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
@@ -20,18 +21,6 @@ MATTE = Material(ambient=0.08, diffuse=0.9, specular=0)
 FEW = {"size_mm": 40, "samples": 1024}
 HEAD = Scene(lights=Light.headlight(), material=MATTE)
 ABOVE = View(direction=(0, 0, 1))
-
-
-def bumps(n=60):
-    """Return a curved sheet with a swirl and heights."""
-    x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n))
-    z = 0.2 * np.sin(3 * x) * np.cos(2 * y)
-    mesh = pv.StructuredGrid(x, y, z).extract_surface(algorithm="dataset_surface").triangulate()
-    x, y, z = np.asarray(mesh.points, np.float64).T
-    slopes = 0.6 * np.cos(3 * x) * np.cos(2 * y), -0.4 * np.sin(3 * x) * np.sin(2 * y)
-    mesh["swirl"] = np.stack([-y, x, -y * slopes[0] + x * slopes[1]], axis=1)
-    mesh["height"] = z
-    return mesh
 
 
 def read(mesh, scene, **how):
@@ -87,10 +76,10 @@ def test_thin_lines_are_read_worse_than_wide_ones():
 
 
 def test_a_good_light_is_read_and_a_headlight_is_not():
-    good = read(bumps(), presets.direction(), tangents="swirl", exponent=2)
+    good = read(sheet(), presets.direction(), tangents="swirl", exponent=2)
     assert good.direction.within_10 > 0.6
     assert good.direction.legend_median == good.direction.median < 8
-    bad = read(bumps(), HEAD, tangents="swirl")
+    bad = read(sheet(), HEAD, tangents="swirl")
     assert bad.direction.median == 45
     assert bad.direction.unreadable
     assert good.slope is None
@@ -98,7 +87,7 @@ def test_a_good_light_is_read_and_a_headlight_is_not():
 
 
 def test_hues_that_show_values_tell_no_direction():
-    found = read(bumps(), presets.direction(), tangents="swirl", scalars="height")
+    found = read(sheet(), presets.direction(), tangents="swirl", scalars="height")
     assert found.direction.unreadable
     assert found.value.median < 0.05
 
@@ -143,7 +132,7 @@ def shot(mesh, **how):
 
 
 def test_any_picture_is_read_by_its_key(tmp_path):
-    mesh = bumps()
+    mesh = sheet()
     picture, camera = shot(mesh, scalars="height", cmap="coolwarm", lighting=False)
     ends = float(mesh["height"].min()), float(mesh["height"].max())
     how = {"scalars": "height", "key": ("coolwarm", ends), "camera": camera, "samples": 1024}
@@ -166,7 +155,7 @@ def test_any_picture_is_read_by_its_key(tmp_path):
 
 
 def test_a_whole_plotter_is_read():
-    mesh = bumps()
+    mesh = sheet()
     plotter = pv.Plotter(off_screen=True, window_size=(480, 320))
     plotter.vizlight.add_mesh(mesh, scene=presets.direction(), tangents="swirl", exponent=2)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
@@ -180,7 +169,7 @@ def test_a_whole_plotter_is_read():
 
 
 def test_plain_colors_of_pyvista_in_a_plotter_are_read():
-    mesh = bumps()
+    mesh = sheet()
     plotter = pv.Plotter(off_screen=True, window_size=(480, 320))
     plotter.add_mesh(mesh, scalars="height", cmap="viridis", lighting=False)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
@@ -191,7 +180,7 @@ def test_plain_colors_of_pyvista_in_a_plotter_are_read():
 
 
 def test_speed_is_ranked_by_lightness():
-    mesh = bumps()
+    mesh = sheet()
     mesh["speed"] = np.linalg.norm(mesh["swirl"], axis=1)
     flat = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
     how = {"tangents": "swirl", "scalars": "speed"}
@@ -209,13 +198,13 @@ def test_a_smaller_picture_is_read_worse_and_a_screen_is_a_size():
         read(eddies(20), presets.direction(), size_mm=mm, **how).direction for mm in (20, 85)
     )
     assert small.bits < large.bits
-    screen = vizlight.legibility(bumps(), HEAD, screen=96, samples=256)
+    screen = vizlight.legibility(sheet(), HEAD, screen=96, samples=256)
     assert screen.size == (1200, 800)
     assert screen.distance_mm == 600
 
 
 def test_a_seed_repeats_and_another_one_does_not():
-    runs = [read(bumps(), presets.shape(), seed=seed) for seed in (3, 3, 4)]
+    runs = [read(sheet(), presets.shape(), seed=seed) for seed in (3, 3, 4)]
     assert runs[0] == runs[1]
     assert runs[0].shape != runs[2].shape
 
@@ -223,7 +212,7 @@ def test_a_seed_repeats_and_another_one_does_not():
 def test_more_noise_is_read_worse():
     how = {"tangents": "swirl", "exponent": 2}
     bits = [
-        read(bumps(), presets.direction(), noise=n, **how).direction.bits for n in (0.5, 2.3, 10)
+        read(sheet(), presets.direction(), noise=n, **how).direction.bits for n in (0.5, 2.3, 10)
     ]
     assert bits == sorted(bits, reverse=True)
 
@@ -239,12 +228,12 @@ def test_more_noise_is_read_worse():
 )
 def test_views_and_lamps(change):
     how = {"scene": presets.direction(), "tangents": "swirl", "exponent": 2} | change
-    found = read(bumps(), how.pop("scene"), **how)
+    found = read(sheet(), how.pop("scene"), **how)
     assert found.direction.median < 15
 
 
 def test_records_print_and_become_dicts():
-    found = read(bumps(), presets.shape(), scalars="height")
+    found = read(sheet(), presets.shape(), scalars="height")
     text = str(found)
     assert "nearest colour of the bar" in text
     assert "seen from 400 mm" in text
@@ -255,7 +244,7 @@ def test_records_print_and_become_dicts():
 
 
 def test_what_has_no_answer_is_noted():
-    mesh = bumps()
+    mesh = sheet()
     mesh["one"] = np.full(mesh.n_points, 3.0)
     found = read(mesh, HEAD, scalars="one")
     assert found.value is None
@@ -267,7 +256,7 @@ def test_what_has_no_answer_is_noted():
 
 
 def bad_input(change):
-    how = {"mesh": bumps(12), "scene": HEAD, **FEW} | change
+    how = {"mesh": sheet(12), "scene": HEAD, **FEW} | change
     mesh, scene = how.pop("mesh"), how.pop("scene")
     vizlight.legibility(mesh, scene, **how)
 

@@ -54,10 +54,10 @@ def sources_of(
         return relight.from_record(mesh, scene)
     given: Keywords = {"feature_angle": angle}
     asked = LightOptions(**(given | options))
+    _refuse_without_tangents(mesh, scene, asked)
     mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
-    _refuse_without_tangents(mesh, scene, asked)
     # The points are split by now, and must not be once more.
     asked = dataclasses.replace(asked, feature_angle=None)
     spaces = {

@@ -16,11 +16,11 @@ from vizlight.draw.render import IMAGES
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
-from vizlight.looks.recipes import fields, reliefs, strokes, surfaces
+from vizlight.looks.recipes import fields, lines, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
-from vizlight.looks.wishes import plain_scene
+from vizlight.looks.wishes import even_light
 from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 
 if TYPE_CHECKING:
@@ -238,8 +238,7 @@ class Look:
             keys = list(drawing.keys)
             if near:
                 # A bar has the colours of the map, in even light.
-                view = Step("", "vizlight.View.from_camera", drawing.camera)
-                even = plain_scene("none", view, drawing.camera)
+                even = even_light(drawing.camera)
                 bars = [key for key in keys if key.get("question") == "value"]
                 keys = [bar | {"scene": even} for bar in bars]
             steps += [_key_step(plotter, key) for key in keys]
@@ -370,15 +369,19 @@ def decide(data: object, wishes: Wishes) -> Look:
         for part, (step, _, _) in zip(parts, ready, strict=True):
             look_options.check_flow(part, step.run(), wishes.light.get("vectors"))
     if len(ready) == 1:
-        return _decided(*ready[0], wishes)
+        ((step, contents, notes),) = ready
+        return _decided(*_chosen(step, contents, wishes), notes)
     own = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
     if wishes.array is not None and not any(one.array for one in own):
         own[0] = wishes  # whose error says what is there
-    cases = [
-        _chosen(step, contents, one)[1] for (step, contents, _), one in zip(ready, own, strict=True)
+    chosen = [
+        _chosen(step, contents, mine) for (step, contents, _), mine in zip(ready, own, strict=True)
     ]
-    shared = together.shared(cases, wishes)
-    looks = [_decided(*one, mine) for one, mine in zip(ready, shared, strict=True)]
+    shared = together.shared([case for _, case in chosen], wishes)
+    looks = [
+        _decided(rule, replace(case, wishes=mine), notes)
+        for (rule, case), mine, (_, _, notes) in zip(chosen, shared, ready, strict=True)
+    ]
     drawing = together.joined([look.drawing for look in looks])
     reasons = "; ".join(dict.fromkeys(look.reason for look in looks))
     seen = drawing.camera.note
@@ -386,17 +389,16 @@ def decide(data: object, wishes: Wishes) -> Look:
     return replace(looks[0], reason=reason, others=(), wishes=wishes, drawing=drawing)
 
 
-def _decided(step: Step, contents: Contents, notes: Sequence[str], wishes: Wishes) -> Look:
+def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
     """Return the look of one mesh."""
-    rule, case = _chosen(step, contents, wishes)
     drawing = rule.recipe(case)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
-    seen = "" if wishes.frame else drawing.camera.note
+    seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
     shown = drawing.words.split(" ", 1)[0] if rule.shown == "isosurface" else rule.shown
-    others = _others(contents, case)
-    return Look(case.question, shown, array, reason, others, wishes, drawing)
+    others = _others(case.contents, case)
+    return Look(case.question, shown, array, reason, others, case.wishes, drawing)
 
 
 def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
@@ -531,7 +533,7 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     named_by = [
         (option, value)
         for option, value in options.items()
-        if isinstance(value, str) and value != strokes.DIRECTION
+        if isinstance(value, str) and value != lines.DIRECTION
     ]
     if not named_by:
         return None

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vizlight.looks.recipes import fields, reliefs, strokes, surfaces, volumes
+from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,10 +80,10 @@ def _is_volume(contents: Contents) -> bool:
 
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
-    Rule("lines", _is_lines, "heading", (), strokes.lines, "lines"),
-    Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), strokes.points,
+    Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
+    Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,
          "points with values"),
-    Rule("points", _is_points, "shape", (), strokes.points, "points without values"),
+    Rule("points", _is_points, "shape", (), lines.points, "points without values"),
     Rule("sheet", _is_flat, "direction", ("vectors",), fields.vectors, "a map with vectors"),
     Rule("sheet", _is_map, "relief", ("heights",), reliefs.relief, "a map of heights"),
     Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), surfaces.values,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pyvista as pv
 
 from vizlight.filters.key import preset_of
+from vizlight.looks.contents import Contents
 from vizlight.looks.recipes.drawing import range_of
 from vizlight.looks.steps import Step
 from vizlight.mesh import blocks
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Keywords
-    from vizlight.looks.contents import Contents
     from vizlight.looks.recipes.drawing import Case, Drawing
     from vizlight.looks.wishes import Wishes
 
@@ -29,15 +29,18 @@ def parts_of(mesh: pv.MultiBlock) -> list[pv.DataSet]:
 
     Surfaces beside volumes are mostly their walls, which would hide them, and are left out.
     """
-    by_size: dict[int, pv.MultiBlock] = {}
+    parts: dict[int, pv.MultiBlock] = {}
     for block, path in blocks.named_blocks(mesh):
         if not block.n_points:
             continue
-        size = int(block.max_cell_dimensionality) if block.n_cells else 0
-        by_size.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
-    if 3 in by_size:
-        by_size.pop(2, None)
-    return [blocks.one_grid(by_size[size]) for size in sorted(by_size, reverse=True)]
+        size = Contents(block).dimension
+        parts.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
+    if 3 in parts:
+        parts.pop(2, None)
+    for part in parts.values():
+        for name in mesh.field_data:  # such as the time of a step
+            part.field_data[name] = mesh.field_data[name]
+    return [blocks.one_grid(parts[size]) for size in sorted(parts, reverse=True)]
 
 
 def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:

@@ -73,6 +73,11 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     return Step("scene", "vizlight.Scene", view=view)
 
 
+def even_light(camera: Step) -> Step:
+    """Return the step of a scene of ambient light alone, in which colours are as they are."""
+    return plain_scene("none", Step("", "vizlight.View.from_camera", camera), camera)
+
+
 def scene_step(scene: Scene) -> Step:
     """Return the step that makes a scene which was passed as a value."""
     return Step("scene", "vizlight.Scene.from_dict", scene.to_dict())

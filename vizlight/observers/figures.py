@@ -170,8 +170,8 @@ class Speed(Figure):
 class TwoSided(Figure):
     """Which of two sides is right, told at some places, told wrongly at others, or not at all.
 
-    ``readable`` is the share that is told less that which is told wrongly, and ``bits`` are those
-    of a yes or no, 1 at most.
+    ``readable`` is the share of right answers minus the share of wrong ones. ``bits`` is the
+    information per place, at most 1, as for a yes or no.
 
     Attributes
     ----------

@@ -112,9 +112,8 @@ class Strokes(NamedTuple):
     Attributes
     ----------
     ink, light : ndarray, shape (N,)
-        How much more of a stroke there is at its end ahead than at the other, as a difference from
-        what is around it in CIELAB, the mean of a window of 8 arc minutes, and how much lighter
-        than what is around it is.
+        Contrast with the surroundings and lightness above them, in CIELAB: the end of a stroke
+        that is ahead less the other end, each as the mean of a window of 8 arc minutes.
     """
 
     ink: Array

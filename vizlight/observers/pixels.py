@@ -185,7 +185,7 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
     return unit_rows(np.array(camera.GetPosition()) - points)
 
 
-def footprint(camera: pv.Camera, points: Array, height: int) -> Array:
+def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
     """Return the size of a pixel at points, in the unit of the mesh."""
     if camera.GetParallelProjection():
         return np.full(len(points), 2 * camera.GetParallelScale() / height)

@@ -153,6 +153,14 @@ def of_truth(logarithms: Array, truth: Indices) -> Array:
     return np.stack([posterior(logarithms, sharp)[rows, truth] for sharp in SHARPNESS])
 
 
+def _compared(
+    error: Array, other_error: Array, logarithms: Array, right: Indices, other: Indices
+) -> Reading:
+    """Return answers compared with what is right at their places, and at the other places."""
+    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
+    return Reading(error, truth, logarithms.shape[1], other_error, other_truth)
+
+
 def information(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of candidates that are equally likely before.
 
@@ -211,8 +219,7 @@ def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) 
     off = start + _drawn(logarithms) - np.stack([angle, angle[other]])
     # Lines have no sign, so that directions repeat after 180 degrees.
     error, other_error = np.abs((off + 90) % 180 - 90)
-    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
-    return Reading(error, truth, ANGLES, other_error, other_truth)
+    return _compared(error, other_error, logarithms, right, other)
 
 
 def _drawn(logarithms: Array) -> Indices:
@@ -294,8 +301,7 @@ def read_heading(sample: Sample, middle: Array, colors: Colors) -> Reading:
     other = elsewhere(len(toward))
     off = np.abs(answer - np.stack([toward, toward[other]]))
     error, other_error = np.minimum(off, 180 - off)
-    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
-    return Reading(error, truth, SLOPES, other_error, other_truth)
+    return _compared(error, other_error, logarithms, right, other)
 
 
 def _light_in_frame(sample: Sample, middle: Array, ways: Array) -> Array:
@@ -418,8 +424,7 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     other = elsewhere(len(positions))
     answer = (_drawn(logarithms) + 0.5) / count
     error, other_error = np.abs(answer - np.stack([positions, positions[other]]))
-    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
-    return Reading(error, truth, count, other_error, other_truth)
+    return _compared(error, other_error, logarithms, right, other)
 
 
 def light_of(colors: Colors, table: pv.LookupTable) -> Colors:

@@ -6,7 +6,6 @@ where neighbours run alike, hue where strokes would be too fine, else the length
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,8 +25,9 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.steps import Step
-from vizlight.looks.wishes import plain_scene
+from vizlight.looks.wishes import even_light
 from vizlight.mesh import records
+from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
 def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
-    scene = plain_scene("none", Step("", "vizlight.View.from_camera", camera), camera)
+    scene = even_light(camera)
     wide = round(WIDE * case.width, 1)
     return Layer(
         strokes,
@@ -141,13 +141,9 @@ def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> La
 def _pixel(case: Case, camera: Step) -> float:
     """Return the size of a pixel at the focus of a camera, in the unit of the mesh."""
     eye: pv.Camera = camera.run()
-    if eye.parallel_projection:
-        half = eye.parallel_scale
-    else:
-        half = eye.distance * math.tan(math.radians(eye.view_angle) / 2)
     key = case.wishes.picture.get("key", True)
     share = data_share(case.wishes.size, KEY_SIZE) if key else (1.0, 1.0)
-    return float(2 * half / (case.wishes.size[1] * share[1]))
+    return float(footprint(eye, np.array([eye.focal_point]), case.wishes.size[1] * share[1])[0])
 
 
 def _turn(mesh: pv.DataSet, name: str) -> float:
