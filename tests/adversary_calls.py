@@ -218,6 +218,7 @@ OWN = {
     "Processes": {"count": 1},
     "Slabs": {"arrays": {"a": np.zeros((3, 4, 5))}},
     "files.read": {"path": saved},
+    "files.read_parts": {"path": saved},
     "surface_of": {"mesh": flow, "contour": None},
     "stretched": {"mesh": hills},
     "warped": {"mesh": hills, "name": "h"},

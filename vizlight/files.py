@@ -57,11 +57,12 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from vizlight._types import Foreign, Keywords, Raw
+    from vizlight._types import Foreign, Raw
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "read", "stretched", "surface_of", "warped", "with_vectors", "write_mesh",
+    "FileError", "read", "read_parts", "stretched", "surface_of", "warped", "with_vectors",
+    "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -179,15 +180,57 @@ def read(
     """
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
+    return _read(path, time, overlay, at, nodata, whole=True)[0]
+
+
+def read_parts(
+    path: str | Path,
+    /,
+    *,
+    time: float | str | None = None,
+    overlay: str | Path | Sequence[str | Path] = (),
+) -> list[pv.DataSet]:
+    """Read a file of blocks as one mesh for each dimension of their cells, the highest first.
+
+    Surfaces beside volumes are left out: most are walls, which would hide them.
+
+    Parameters
+    ----------
+    path, time, overlay
+        As for :func:`vizlight.read`.
+
+    Returns
+    -------
+    list of pyvista.DataSet
+        One mesh if the file has no blocks.
+
+    Raises
+    ------
+    FileError
+        As for :func:`vizlight.read`.
+    """
+    return _read(path, time, overlay, whole=False)
+
+
+def _read(
+    path: str | Path | Foreign,
+    time: float | str | None,
+    overlay: str | Path | Sequence[str | Path],
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
+    *,
+    whole: bool,
+) -> list[pv.DataSet]:
+    """Return the meshes of a file, or the one whose cells have the highest dimension."""
     path = _path("file", path)
     given = overlay if isinstance(overlay, list | tuple) else [overlay]
     overlays = [_path("overlay", one) for one in given]
     _check_there(path, overlays)
     inner = Path(path.stem).suffix.lower()
     if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
-        options = {"time": time, "overlay": overlays, "at": at, "nodata": nodata}
-        return _unpacked(path, options)
-    reason, mesh, notes = "no points", None, list[str]()
+        return _unpacked(path, lambda file: _read(file, time, overlays, at, nodata, whole=whole))
+    reason, notes = "no points", list[str]()
+    meshes: list[Foreign] = []
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
@@ -200,19 +243,23 @@ def read(
             for block in blocks.all_blocks(found):
                 # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
-            mesh = _whole(found, path.suffix.lower(), overlays, time, notes)
+            several = isinstance(found, pv.MultiBlock) and not whole
+            for part in blocks.by_dimension(found) if several else [found]:
+                meshes.append(_whole(part, path.suffix.lower(), overlays, time, notes))
+                overlays = []
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
             reason = f"{kind}{_first_line(error)}"
+            meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
     # A directive that VTK does not know costs a field of an OpenFOAM case, and not the case.
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
     harmless = _DIRECTIVE.search, _HARMLESS.search
     errors = [error for error in errors if not any(search(error) for search in harmless)]
-    if not isinstance(mesh, pv.DataSet) or mesh.n_points == 0:
+    if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
@@ -221,10 +268,10 @@ def read(
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
     if isinstance(found, pv.MultiBlock):
-        notes += _left_out(found, mesh)
+        notes += _left_out(found, meshes)
     if notes:
-        _check.warn(f"file: '{path}': {'; '.join(notes)}")
-    return mesh
+        _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
+    return meshes
 
 
 def _check_there(path: Path, overlays: Sequence[Path]) -> None:
@@ -339,8 +386,8 @@ MOST_UNPACKED = 1 << 33
 _MESHERS = (".mesh", ".meshb", ".msh")
 
 
-def _unpacked(path: Path, options: Keywords) -> pv.DataSet:
-    """Return the mesh of a packed file, from a temporary file of what is in it."""
+def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:
+    """Return the meshes of a packed file, from a temporary file of what is in it."""
     with tempfile.TemporaryDirectory() as folder:
         inner = Path(folder) / path.stem
         try:
@@ -352,7 +399,7 @@ def _unpacked(path: Path, options: Keywords) -> pv.DataSet:
         except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
             raise _damaged(path, _first_line(error)) from error
         try:
-            return read(inner, **options)
+            return read(inner)
         except FileError as error:
             # The name of the temporary file says nothing to anyone.
             raise FileError(str(error).replace(str(inner), str(path))) from error
@@ -431,9 +478,10 @@ def _by_vtk(path: Path) -> pv.DataObject:
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
-def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> list[str]:
-    """Return a note on blocks that are not in a grid, or on the arrays that only they have."""
-    kept = grid.distinct_cell_types
+def _left_out(found: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
+    """Return a note on blocks that are not in the meshes, or on the arrays that only they have."""
+    grid = meshes[0]
+    kept = {kind for mesh in meshes for kind in mesh.distinct_cell_types}
     lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
     # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
@@ -446,7 +494,8 @@ def _left_out(found: pv.MultiBlock, grid: pv.DataSet) -> list[str]:
         said = "blocks whose cells are of a lower dimension than other blocks', "
         way = "light pyvista.read(...) to keep all blocks"
         return [f"{said}which are left out: {names}; {way}"]
-    lost = {name for block, _ in lower for name in _arrays(block)} - _arrays(grid)
+    lost = {name for block, _ in lower for name in _arrays(block)}
+    lost -= {name for mesh in meshes for name in _arrays(mesh)}
     return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
 
 

@@ -5,7 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.looks import together
+from vizlight.mesh import blocks
 
 SIZE = (120, 80)
 
@@ -37,13 +37,13 @@ def test_each_mesh_is_drawn_by_its_rule_and_all_share_the_camera_and_the_range()
 
 def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
     mixed = pv.MultiBlock({"ball": ball(0), "lines": lines()})
-    assert [part.max_cell_dimensionality for part in together.parts_of(mixed)] == [2, 1]
+    assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(mixed)] == [2, 1]
     assert len(vizlight.look(mixed, size=SIZE).drawing.layers) == 2
     volume = pv.ImageData(dimensions=(3, 3, 3))
     walls = pv.MultiBlock(
         {"air": volume, "wall": volume.extract_surface(algorithm="dataset_surface")}
     )
-    assert [part.max_cell_dimensionality for part in together.parts_of(walls)] == [3]
+    assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(walls)] == [3]
 
 
 def test_an_array_that_one_of_several_has_is_enough():
@@ -68,3 +68,22 @@ def test_files_of_one_command_are_one_picture(tmp_path, capsys):
     assert "shown    2 meshes: T in colours" in capsys.readouterr().out
     assert main([*files, "-o", str(page), "--times", "all"]) == 2
     assert "one time for several files in one picture" in capsys.readouterr().err
+
+
+def test_blocks_of_a_file_are_drawn_each_by_its_rule(tmp_path):
+    cloud = pv.PolyData(np.random.default_rng(3).uniform(-1, 1, (40, 3)))
+    cloud["q"] = np.arange(40.0)
+    path = tmp_path / "mixed.vtm"
+    pv.MultiBlock({"ball": ball(0), "lines": lines(), "cloud": cloud}).save(path)
+    look = vizlight.look(path, size=SIZE)
+    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", None, "q"]
+    assert look.mesh.n_blocks == 3
+    script = look.script(tmp_path / "a.png")
+    assert "parts = files.read_parts(" in script
+    exec(script, {})
+    with pytest.warns(UserWarning, match="highest dimension; a .vtm file has all blocks"):
+        look.save(tmp_path / "ball.vtp")
+    assert pv.read(tmp_path / "ball.vtp").n_cells > 0
+    # One part is read as any file is.
+    pv.MultiBlock({"ball": ball(0)}).save(path)
+    assert "vizlight.read(" in vizlight.look(path, size=SIZE).script("a.png")

@@ -189,6 +189,11 @@ class Look:
             return [[*steps, Step("", way, plotter, path)]]
         if suffix in PAGES:
             return [self._page(path)]
+        if drawing.alone is not None and suffix in files.SUFFIXES and suffix not in TOGETHER:
+            _check.warn(
+                f"'{path}' has the cells of the highest dimension; a .vtm file has all blocks"
+            )
+            return [[self._written(drawing.alone, path)]]
         if not drawing.parts or suffix in TOGETHER:
             return [[self._written(drawing.lit, path)]]
         return [
@@ -360,11 +365,16 @@ def decide(data: object, wishes: Wishes) -> Look:
     """Return the look of data, by options that are sorted out."""
     if isinstance(data, pv.MultiBlock):
         blocks.check(data)
-        data = together.parts_of(data) or data
-    parts = list(data) if isinstance(data, list | tuple) else [data]
-    if not parts:
+        data = [blocks.one_grid(part) for part in blocks.by_dimension(data)] or data
+    several = list(data) if isinstance(data, list | tuple) else [data]
+    if not several:
         raise ValueError(message("data", "a mesh, a file, or several", "none"))
-    ready = [prepared(part, wishes) for part in parts]
+    parts, steps = [], []
+    for one in several:
+        for step in read_steps(one, wishes):
+            parts.append(one)
+            steps.append(step)
+    ready = [prepared(part, step, wishes) for part, step in zip(parts, steps, strict=True)]
     if wishes.question == "flow":
         for part, (step, _, _) in zip(parts, ready, strict=True):
             look_options.check_flow(part, step.run(), wishes.light.get("vectors"))
@@ -383,6 +393,8 @@ def decide(data: object, wishes: Wishes) -> Look:
         for (rule, case), mine, (_, _, notes) in zip(chosen, shared, ready, strict=True)
     ]
     drawing = together.joined([look.drawing for look in looks])
+    if len(several) == 1:
+        drawing = replace(drawing, alone=looks[0].drawing.lit)
     reasons = "; ".join(dict.fromkeys(look.reason for look in looks))
     seen = drawing.camera.note
     reason = f"{reasons}; seen {seen}" if seen else reasons
@@ -401,27 +413,38 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
     return Look(case.question, shown, array, reason, others, case.wishes, drawing)
 
 
-def prepared(data: object, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
-    """Return the step that reads data and takes a part of them, what they hold, and notes."""
-    part, notes, raster = wishes.part, [], False
+def read_steps(data: object, wishes: Wishes) -> list[Step]:
+    """Return the steps that read data: one for each dimension of the cells of a file of blocks."""
+    part = wishes.part
     if cf_grids.is_grid(data):
         keywords = {"time": part["time"]} if part.get("time") is not None else {}
-        step = Step("data", "vizlight.read", Step("ds", "-", data), **keywords)
-    elif isinstance(data, str | Path):
+        return [Step("data", "vizlight.read", Step("ds", "-", data), **keywords)]
+    if isinstance(data, str | Path):
         keywords = {name: part[name] for name in ("time", "overlay") if name in part}
+        every = Step("parts", "files.read_parts", data, **keywords)
+        meshes = every.run()
+        if len(meshes) > 1:
+            return [Step("data", "[]", every, i) for i in range(len(meshes))]
         step = Step("data", "vizlight.read", data, **keywords)
+        step.hold(meshes[0])
+        return [step]
+    mesh = data
+    if isinstance(mesh, pv.MultiBlock):
+        blocks.check(mesh)
+        mesh = blocks.one_grid(mesh)
+    if not isinstance(mesh, pv.DataSet):
+        expected = "a PyVista mesh, a path or an xarray object"
+        raise TypeError(message("data", expected, _check.describe(data)))
+    return [Step("mesh", "-", mesh)]
+
+
+def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
+    """Return the step that takes a part of the data that a step reads, what it holds, and notes."""
+    part, notes, raster = wishes.part, [], False
+    if isinstance(data, str | Path):
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
             notes.append(note)
-    else:
-        mesh = data
-        if isinstance(mesh, pv.MultiBlock):
-            blocks.check(mesh)
-            mesh = blocks.one_grid(mesh)
-        if not isinstance(mesh, pv.DataSet):
-            expected = "a PyVista mesh, a path or an xarray object"
-            raise TypeError(message("data", expected, _check.describe(data)))
-        step = Step("mesh", "-", mesh)
     mesh = step.run()
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:

@@ -55,6 +55,10 @@ class Step:
         """Return the result; the call is made once."""
         return self._result
 
+    def hold(self, result: object) -> None:
+        """Take a result that is known, so that no call is made."""
+        vars(self)["_result"] = result
+
     @property
     def made(self) -> bool:
         """Whether the call was made."""

@@ -5,42 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import pyvista as pv
-
 from vizlight.filters.key import preset_of
-from vizlight.looks.contents import Contents
 from vizlight.looks.recipes.drawing import range_of
 from vizlight.looks.steps import Step
-from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Keywords
+    from vizlight.looks.contents import Contents
     from vizlight.looks.recipes.drawing import Case, Drawing
     from vizlight.looks.wishes import Wishes
 
 #: Options of a look that name an array, which not all parts need to have.
 _NAMING = ("tangents", "vectors", "elevation")
-
-
-def parts_of(mesh: pv.MultiBlock) -> list[pv.DataSet]:
-    """Return one mesh for each dimension of the cells of some blocks, the highest first.
-
-    Surfaces beside volumes are mostly their walls, which would hide them, and are left out.
-    """
-    parts: dict[int, pv.MultiBlock] = {}
-    for block, path in blocks.named_blocks(mesh):
-        if not block.n_points:
-            continue
-        size = Contents(block).dimension
-        parts.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
-    if 3 in parts:
-        parts.pop(2, None)
-    for part in parts.values():
-        for name in mesh.field_data:  # such as the time of a step
-            part.field_data[name] = mesh.field_data[name]
-    return [blocks.one_grid(parts[size]) for size in sorted(parts, reverse=True)]
 
 
 def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:

@@ -105,6 +105,24 @@ def _keep_fields(mesh: pv.MultiBlock, grid: pv.UnstructuredGrid) -> None:
         grid.field_data[key] = np.array(mesh.field_data[key])
 
 
+def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
+    """Return the blocks of each dimension of cells, the highest first.
+
+    Surfaces beside volumes are mostly their walls, which would hide them, and are left out.
+    """
+    parts: dict[int, pv.MultiBlock] = {}
+    for block, path in named_blocks(mesh):
+        if block.n_points:
+            size = int(block.max_cell_dimensionality) if block.n_cells else 0
+            parts.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
+    if 3 in parts:
+        parts.pop(2, None)
+    for part in parts.values():
+        for name in mesh.field_data:  # such as the time of a step
+            part.field_data[name] = mesh.field_data[name]
+    return [parts[size] for size in sorted(parts, reverse=True)]
+
+
 def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
     """Yield the datasets of a MultiBlock at every depth, or the dataset itself."""
     for block, _ in named_blocks(mesh):

@@ -522,8 +522,12 @@ def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
 
 def is_scan(mesh: Dataset) -> bool:
     """Return whether a mesh is a scan: points in space that no cells join."""
-    bare = isinstance(mesh, vtkPolyData) and mesh.GetNumberOfVerts() == mesh.GetNumberOfCells()
-    return mesh.GetNumberOfPoints() >= NEIGHBOURS and (bare or not mesh.GetNumberOfCells())
+    bare = not mesh.GetNumberOfCells()
+    if isinstance(mesh, vtkPolyData):
+        bare = mesh.GetNumberOfVerts() == mesh.GetNumberOfCells()
+    elif isinstance(mesh, vtkUnstructuredGrid):
+        bare = hull.dimension(mesh) == 0
+    return mesh.GetNumberOfPoints() >= NEIGHBOURS and bare
 
 
 def _of_cloud(mesh: Dataset, view: View | None) -> Sided:

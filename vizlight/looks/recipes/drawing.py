@@ -89,6 +89,8 @@ class Drawing:
         Step whose mesh is of the type of the lit mesh. Default: the surface of a mesh.
     parts : sequence of str
         Names of the blocks of the lit mesh that are written to files of their own.
+    alone : Step, optional
+        Lit mesh for files that hold one mesh, where the lit mesh has blocks.
     name : str
         Name of the array of light.
     colors : dict
@@ -106,6 +108,7 @@ class Drawing:
     notes: Sequence[str] = ()
     kind: Step | None = None
     parts: Sequence[str] = ()
+    alone: Step | None = None
     name: str = "luminance"
     colors: Keywords = dataclasses.field(default_factory=dict)
     background: str | None = None
