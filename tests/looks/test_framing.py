@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from vizlight.looks import framing
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_of
 
@@ -47,3 +48,21 @@ def test_a_hollow_is_looked_into():
     pipe = pv.Cylinder(direction=(0, 0, 1), height=4, resolution=60, capping=False).triangulate()
     half = pipe.subdivide(2).clip((0, 1, 0), invert=True)
     assert eye(half).toward[1] != 0
+
+
+def test_the_side_that_shows_most_of_the_values_is_seen():
+    box = pv.Box(bounds=(0, 1, 0, 1, 0, 1), level=8).triangulate()
+    box.clear_data()
+    points = np.asarray(box.points)
+    for axis, sign in ((0, 1), (0, -1), (1, 1), (1, -1)):
+        # Values on one side alone, which alternate along it.
+        on = points[:, axis] == (sign > 0)
+        box["v"] = np.where(on, np.sin(9 * points[:, 1 - axis]), 0.0)
+        toward = framing.eye_of(box, Contents(box), "v").toward
+        assert toward[axis] * sign > 0.3
+    # A few large faces hide what is behind them too.
+    coarse = pv.Cube().triangulate()
+    _, corners = framing._triangles(coarse)
+    way = np.array([0.8, 0.5, 0.33])
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.array_equal(framing._in_front(corners, way / np.linalg.norm(way)), normals @ way > 0)

@@ -156,3 +156,19 @@ def test_every_rule_can_be_reached():
     shown = {(look[1], look[2]) for look in KINDS.values()} | {("shape", "isosurface")}
     for rule in RULES:
         assert any(rule.shown == what for _, what in shown) or rule.shown == "hull"
+
+
+def test_a_part_with_most_points_on_its_surface_shows_values_there():
+    beam = pv.examples.load_hexbeam()
+    beam.clear_data()
+    z = np.asarray(beam.points)[:, 2]
+    beam["displacement"] = np.c_[z**2, 0 * z, 0 * z]
+    look = vizlight.look(beam, size=SIZE)
+    assert (look.shown, look.array, look.question) == ("hull", "displacement", "value")
+    beam["stress"] = z
+    look = vizlight.look(beam, size=SIZE)
+    assert (look.shown, look.array) == ("hull", "stress")
+    # What flows is drawn as streamlines.
+    beam["velocity"] = beam["displacement"] + 1.0
+    del beam.point_data["displacement"]
+    assert vizlight.look(beam, size=SIZE).shown == "streamlines"

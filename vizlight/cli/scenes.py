@@ -177,12 +177,14 @@ def known(**values: object) -> Keywords:
 
 def _scene_maker(
     lights: Lights, finish: Finish, base: Scene | None, material: dict[str, float]
-) -> SceneMaker:
-    """Return the function that makes the step of the scene of the options."""
+) -> SceneMaker | None:
+    """Return the function that makes the step of the scene of the options, None without any."""
     from vizlight.looks.wishes import plain_scene
 
     changes = known(**vars(finish))
     explicit = bool(lights.light or lights.light_position or lights.headlight)
+    if base is None and not (changes or explicit or material or lights.depth_cue):
+        return None
 
     def make(question: str, view: Step, camera: Step, n: int) -> Step:
         cue = Step("", "vizlight.DepthCue", back_scale=0.5) if lights.depth_cue else None

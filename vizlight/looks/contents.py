@@ -8,14 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+import pyvista as pv
 
-from vizlight.mesh import meaning, records
+from vizlight.mesh import blocks, meaning, records
 from vizlight.vtk.arrays import are_colors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import pyvista as pv
 
     from vizlight._types import Array, Raw
 
@@ -43,6 +42,14 @@ _KIND_WORDS = {
     "mat", "material", "materials", "part", "parts", "phase", "region", "regions", "segment",
     "zone",
 }  # fmt: skip
+#: Words in the names of vectors that are no flow: what moves or loads a solid.
+_LOAD_WORDS = {
+    "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
+    "load", "loads", "moment", "moments", "reaction", "rotation", "rotations", "traction",
+}  # fmt: skip
+#: Most points of a solid whose surface is looked at, and the share of its points on its surface
+#: from which that shows what is inside as well.
+MOST_ON_SURFACE, OUTSIDE = 300_000, 0.3
 #: Words of a name: runs of letters, of which a capital begins another.
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
@@ -76,6 +83,11 @@ class Named:
     distinct: int = 0
     low: float = 0.0
     high: float = 0.0
+
+    @property
+    def is_load(self) -> bool:
+        """Whether its name says that it moves or loads a solid."""
+        return not _LOAD_WORDS.isdisjoint(_words(self.name))
 
 
 @dataclass(frozen=True)
@@ -113,6 +125,21 @@ class Contents:
         share = {2: FLAT, 3: SLAB}.get(self.dimension, -1.0)
         thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
         return int(thin[-1]) if len(thin) else None
+
+    @cached_property
+    def is_part(self) -> bool:
+        """Whether a solid has most of what it holds on its surface: a part that is no box of air.
+
+        Its vectors, if any, are displacements or loads.
+        """
+        vectors = self.first("vectors")
+        if self.dimension != 3 or not (vectors is None or vectors.is_load):
+            return False
+        if isinstance(self.mesh, pv.ImageData | pv.RectilinearGrid):
+            return False
+        if self.mesh.n_points > MOST_ON_SURFACE:
+            return False
+        return len(blocks.outer_surface(self.mesh)[1]) >= OUTSIDE * self.mesh.n_points
 
     @cached_property
     def arrays(self) -> tuple[Named, ...]:
@@ -188,7 +215,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
 
     Constants are none, nor are arrays of text.
     """
-    words = [word.lower() for word in _WORDS.findall(name)] or [""]
+    words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
     if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
@@ -215,6 +242,10 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     else:
         role = "heights" if _HEIGHTS.search(lower) else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _words(name: str) -> list[str]:
+    return [word.lower() for word in _WORDS.findall(name)] or [""]
 
 
 def _are_labels(values: Raw) -> bool:

@@ -16,7 +16,7 @@ import pyvista as pv
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Vector
+    from vizlight._types import Array, Bools, Indices, Vector
     from vizlight.looks.contents import Contents
 
 #: Most points or cells that are looked at.
@@ -28,6 +28,12 @@ OPEN = 0.6
 AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 #: Pixels along each side of the picture in which self-occlusion is counted.
 PIXELS = 64
+#: Width over height of the place for data in a picture.
+ASPECT = 1.2
+#: Places of triangles that hide others, where there are few triangles.
+SPLATS = 8000
+#: Number of triangles by which the light of what is seen is measured.
+SEEN = 1000
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -46,7 +52,7 @@ class Eye:
 ISOMETRIC = Eye((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
 
 
-def eye_of(mesh: pv.DataSet, contents: Contents) -> Eye:
+def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Eye:
     """Return from where a mesh is seen best.
 
     Parameters
@@ -55,11 +61,13 @@ def eye_of(mesh: pv.DataSet, contents: Contents) -> Eye:
         Mesh that is drawn.
     contents : Contents
         What the data hold, of which it is drawn.
+    shown : str, optional
+        Name of an array of one component, much of whose range should be seen.
     """
     if contents.flat_axis is not None:
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
-        return _of_surface(mesh)
+        return _of_surface(mesh, shown)
     return _of_points(_some(np.asarray(mesh.points, dtype=np.float64)))
 
 
@@ -82,8 +90,8 @@ def _above(mesh: pv.DataSet, axis: int) -> Eye:
     return Eye(toward, up, True, words)
 
 
-def _of_surface(surface: pv.PolyData) -> Eye:
-    corners = _triangles(surface)
+def _of_surface(surface: pv.PolyData, shown: str | None) -> Eye:
+    faces, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -95,7 +103,15 @@ def _of_surface(surface: pv.PolyData) -> Eye:
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Eye(_vector(toward), up, False, "along its mean normal")
-    return _around(corners, normals, areas)
+    return _around(corners, normals, areas, _values(surface, shown, faces))
+
+
+def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:
+    """Return the values of an array at the first corners of faces, None where there are none."""
+    if shown is None or shown not in surface.point_data:
+        return None
+    rows: Array = np.asarray(surface.point_data[shown], dtype=np.float64)
+    return rows[faces[:, 0]] if rows.ndim == 1 else None
 
 
 def eye_around(surface: pv.PolyData) -> Eye:
@@ -106,17 +122,16 @@ def eye_around(surface: pv.PolyData) -> Eye:
     surface : pyvista.PolyData
         Surface of a volume, such as an isosurface.
     """
-    corners = _triangles(surface)
+    _, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return _around(corners, normals, np.linalg.norm(normals, axis=1))
 
 
-def _around(corners: Array, normals: Array, areas: Array) -> Eye:
-    """Return the eye from which most of some triangles is seen."""
-    middles = corners.mean(axis=1)
-    scores = [(_seen(middles, normals, areas, way), way) for way in _ways()]
+def _around(corners: Array, normals: Array, areas: Array, values: Array | None = None) -> Eye:
+    """Return the eye from which most of some triangles is seen, and most of their values."""
+    scores = [(_seen(corners, normals, areas, way, values), way) for way in _ways()]
     best = max(scores, key=lambda pair: pair[0])[1]
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
@@ -136,22 +151,77 @@ def _of_points(points: Array) -> Eye:
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
 
 
-def _seen(middles: Array, normals: Array, areas: Array, way: Array) -> float:
-    """Return the area that an eye at infinity sees, wide pictures before tall ones."""
+def _seen(corners: Array, normals: Array, areas: Array, way: Array, values: Array | None) -> float:
+    """Return the area that an eye at infinity sees, by how much of a picture it fills.
+
+    Of values, the area counts up to twice where their spread in the picture is that of all.
+    """
     right, up = _plane(way)
-    x, y, z = middles @ right, middles @ up, middles @ way
-    size = max(np.ptp(x), np.ptp(y)) or 1.0
-    at = np.stack([(x - x.min()) / size, (y - y.min()) / size]) * (PIXELS - 1)
-    pixels = np.round(at).astype(np.int64)
-    flat = pixels[0] * PIXELS + pixels[1]
-    nearest = np.full(PIXELS * PIXELS, -np.inf)
-    np.maximum.at(nearest, flat, z)
-    # Cells in one pixel differ by a slope of up to two.
-    front = z >= nearest[flat] - 3 * size / PIXELS
     # Open surfaces are seen from both sides.
     cosines = np.abs(normals @ way) / np.where(areas > 0, areas, 1)
-    seen = float((areas * front * (cosines > 0.15)).sum())
-    return seen * (1 + 0.2 * min(float(np.ptp(x) / max(np.ptp(y), 1e-12 * size)), 2.0))
+    front = areas * _in_front(corners, way) * (cosines > 0.15)
+    seen = float(front.sum())
+    if values is not None:
+        seen *= 1 + min(_spread(values, front * cosines) / (_spread(values, areas) or 1.0), 1.0)
+    tall = max(np.ptp(corners @ up), np.ptp(corners @ right) / ASPECT)
+    return seen * math.sqrt((front * cosines).sum()) / (float(tall) or 1.0)
+
+
+def _spread(values: Array, weights: Array) -> float:
+    """Return the standard deviation of the finite ones of some values."""
+    kept = np.isfinite(values)
+    values, weights = values[kept], weights[kept]
+    total = weights.sum()
+    if not total > 0:
+        return 0.0
+    mean = (weights * values).sum() / total
+    return float(np.sqrt((weights * (values - mean) ** 2).sum() / total))
+
+
+def _in_front(corners: Array, way: Array) -> Bools:
+    """Return whether an eye at infinity sees the middle of each triangle."""
+    right, up = _plane(way)
+    middles = corners.mean(axis=1)
+    # Large triangles hide what is behind more than their middles.
+    count = math.ceil(SPLATS / max(len(corners), 1))
+    shares = np.random.default_rng(0).dirichlet(np.ones(3), count)
+    places = np.concatenate([middles, np.einsum("sk,nkx->nsx", shares, corners).reshape(-1, 3)])
+    flat = np.stack([places @ right, places @ up], axis=1)
+    size = max(np.ptp(flat, axis=0)) or 1.0
+    x, y = np.round((flat - flat.min(axis=0)) / size * (PIXELS - 1)).astype(np.int64).T
+    pixels, depth = x * PIXELS + y, places @ way
+    nearest = np.full(PIXELS * PIXELS, -np.inf)
+    np.maximum.at(nearest, pixels, depth)
+    # Cells in one pixel differ by a slope of up to two.
+    front: Bools = depth >= nearest[pixels] - 3 * size / PIXELS
+    return front[: len(corners)]
+
+
+def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
+    """Return the corners of some triangles that an eye sees, each by its share of the picture.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Surface.
+    toward : sequence of 3 float
+        Direction toward the eye.
+
+    Returns
+    -------
+    ndarray of int, shape (SEEN, 3), or (0, 3) where nothing is seen
+    """
+    faces, corners = _triangles(surface)
+    way = np.asarray(toward, dtype=np.float64) / np.linalg.norm(toward)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    if not len(faces):
+        return faces
+    share = np.abs(normals @ way) * _in_front(corners, way)
+    total = share.sum()
+    if not total > 0:
+        return faces[:0]
+    chosen: Indices = np.random.default_rng(0).choice(len(faces), SEEN, p=share / total)
+    return faces[chosen]
 
 
 def _ways() -> list[Array]:
@@ -165,12 +235,14 @@ def _ways() -> list[Array]:
 
 def _plane(way: Array) -> tuple[Array, Array]:
     right = np.cross((0.0, 0.0, 1.0), way)
+    if not right.any():
+        right = np.array([1.0, 0.0, 0.0])
     right /= np.linalg.norm(right)
     return right, np.cross(way, right)
 
 
-def _triangles(surface: pv.PolyData) -> Array:
-    """Return three corners of some faces, as (count, 3, 3)."""
+def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
+    """Return three corners of some faces: their numbers, (count, 3), and places, (count, 3, 3)."""
     ids, ends = connectivity(surface.GetPolys())
     sizes = np.diff(ends)
     faces = np.flatnonzero(sizes >= 3)
@@ -178,7 +250,8 @@ def _triangles(surface: pv.PolyData) -> Array:
     places = ids[ends[faces][:, np.newaxis] + np.arange(3)] if len(faces) else np.empty((0, 3), int)
     corners: Array = np.asarray(surface.points, dtype=np.float64)[places]
     # A corner that is not finite takes its face with it.
-    return corners[np.isfinite(corners).all(axis=(1, 2))]
+    kept = np.isfinite(corners).all(axis=(1, 2))
+    return places[kept], corners[kept]
 
 
 def _some(points: Array) -> Array:

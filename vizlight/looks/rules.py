@@ -78,6 +78,15 @@ def _is_volume(contents: Contents) -> bool:
     return contents.dimension == 3
 
 
+def _is_part(contents: Contents) -> bool:
+    return contents.is_part
+
+
+def _is_loaded(contents: Contents) -> bool:
+    vectors = contents.first("vectors")
+    return _is_volume(contents) and vectors is not None and vectors.is_load
+
+
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
@@ -94,6 +103,9 @@ RULES = (
     Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a surface with values"),
     Rule("surface", _is_surface, "shape", (), surfaces.surface, "a surface without data"),
+    Rule("hull", _is_part, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
+         "a solid part with values"),
+    Rule("hull", _is_loaded, "value", ("vectors",), fields.lengths, "a solid under loads"),
     Rule("streamlines", _is_volume, "heading", ("vectors",), fields.flow, "a volume with vectors"),
     Rule("isosurface", _is_volume, "shape", ("values", "heights"), volumes.isosurface,
          "a volume of values"),

@@ -14,6 +14,7 @@ from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.files import FORMATS
 from vizlight.looks.contents import kinds_of
+from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning
@@ -155,7 +156,9 @@ class Case:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
-        return eye_of(mesh.run(), self.contents)
+        array = self.array
+        shown = array.name if array is not None and array.role in ("values", "heights") else None
+        return eye_of(mesh.run(), self.contents, shown)
 
     def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
         """Return the step that sets the camera on a mesh, by the options or by what suits it."""
@@ -164,6 +167,17 @@ class Case:
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""
         return self.wishes.scene(self.question, camera)
+
+    def exposed(self, mesh: Step, camera: Step, question: str = "", **light: object) -> Step:
+        """Return the step that makes the scene of a question, exposed for what is seen of a mesh.
+
+        A scene that was given is not exposed.
+        """
+        scene = self.wishes.scene(question or self.question, camera)
+        if self.wishes.make_scene is not None:
+            return scene
+        exposure = exposure_seen(mesh.run(), scene.run(), camera.run(), light)
+        return scene if exposure == 1 else Step("scene", ".replace", scene, exposure=exposure)
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""

@@ -82,16 +82,22 @@ def vectors(case: Case) -> Drawing:
     return _speed(case, mesh, camera, strokes)
 
 
+def lengths(case: Case) -> Drawing:
+    """Draw the surface of a solid in the colours of the lengths of its vectors."""
+    mesh = case.wishes.joined(case.surface, case.needed_array)
+    return _speed(case, mesh, case.camera(mesh), None)
+
+
 def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
     """Draw vectors by light, with strokes along them."""
     array = case.needed_array
-    scene = case.scene(camera)
     light = {"tangents": array.name} | case.wishes.light_of_surface()
+    scene = case.exposed(mesh, camera, **light)
     lit = case.lit(mesh, scene, **light)
     other = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
     if other is not None and other.name != array.name:
         # Colours of data take the place of the hues of the light.
-        scene = case.wishes.scene("value", camera)
+        scene = case.exposed(mesh, camera, "value", **light)
         lit = case.lit(mesh, scene, **light)
         drawn = {"scalars": other.name, "show_scalar_bar": False, **case.wishes.colors}
         layer = Layer(mesh, {"scene": scene, **drawn, **case.wishes.drawn(light)})
@@ -109,8 +115,10 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     """Draw a mesh in the colours of the lengths of its vectors, with strokes along them."""
     array = case.needed_array
     bent = case.contents.flat_axis is None
-    scene = case.wishes.scene("value" if bent else "none", camera)
     light = case.wishes.light_of_surface() if bent else {}
+    scene = case.wishes.scene("none", camera)
+    if bent:
+        scene = case.exposed(mesh, camera, "value", **light)
     colors: Keywords = {"cmap": SPEED, "nan_color": MISSING} | case.wishes.colors
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     layers = [Layer(mesh, shown | case.wishes.drawn(light))]

@@ -32,9 +32,11 @@ def values(case: Case) -> Drawing:
     array = case.needed_array
     mesh = case.surface
     camera = case.camera(mesh)
-    scene = case.scene(camera)
+    light = case.wishes.light_of_surface()
+    bent = case.question != "none"
+    scene = case.exposed(mesh, camera, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
-    if case.question == "none":
+    if not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
     if array.role == "kinds":
@@ -42,7 +44,6 @@ def values(case: Case) -> Drawing:
         keywords = colors_of_kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":
         keywords = {"rgb": True}
-    light = case.wishes.light_of_surface()
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
     shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
@@ -57,8 +58,8 @@ def surface(case: Case) -> Drawing:
     """Draw a surface in the light of a question about its shape."""
     mesh = case.surface
     camera = case.camera(mesh)
-    scene = case.scene(camera)
     light = case.wishes.light_of_surface()
+    scene = case.exposed(mesh, camera, **light)
     lit = case.lit(mesh, scene, **light)
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"

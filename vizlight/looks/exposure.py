@@ -1,0 +1,73 @@
+"""How bright a surface is in a picture: the exposure of the light that a camera sees on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.filters.illuminate import illuminate
+from vizlight.looks.framing import seen_triangles
+from vizlight.mesh import blocks, records
+from vizlight.shading.display import exposure_of
+from vizlight.shading.results import part_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from vizlight._types import Foreign, Indices, Keywords
+    from vizlight.scene import Scene
+
+#: Name of the light of the triangles that are measured.
+LIGHT = "seen"
+
+
+def exposure_seen(
+    mesh: pv.DataSet, scene: Scene, camera: pv.Camera, light: Mapping[str, object]
+) -> float:
+    """Return the exposure at which the 70th percentile of the light that is seen becomes 1.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Surface; other meshes are not exposed.
+    scene : Scene
+        Lights, material and view.
+    camera : pyvista.Camera
+        Camera of the picture.
+    light : mapping
+        Options of :func:`vizlight.illuminate` by which it is lit.
+
+    Returns
+    -------
+    float
+        Factor in two digits, by the light of a thousand triangles; 1 where none is seen.
+    """
+    if not isinstance(mesh, pv.PolyData):
+        return 1.0
+    toward = np.subtract(camera.position, camera.focal_point)
+    corners = seen_triangles(mesh, tuple(toward.tolist())).ravel()
+    if not len(corners):
+        return 1.0
+    # No corner is shared: each triangle has the light of its own plane.
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    seen = blocks.polydata(np.asarray(mesh.points)[corners], faces)
+    options: Keywords = {}
+    for name, value in light.items():
+        options[name] = _of_corners(mesh, value, corners)
+        if isinstance(value, str) and value in mesh.array_names:
+            seen.point_data[value] = options[name]
+            options[name] = value
+    options.pop("feature_angle", None)
+    lit = illuminate(seen, scene, **options, name=LIGHT)
+    rgb = part_name(LIGHT, "rgb")
+    return float(f"{exposure_of(lit[rgb if rgb in lit.point_data else LIGHT]):.2g}")
+
+
+def _of_corners(mesh: pv.DataSet, value: Foreign, corners: Indices) -> Foreign:
+    """Return the rows of an array, or of an array of the mesh by its name, at some points."""
+    if isinstance(value, str) and value in mesh.array_names:
+        value = records.averaged(mesh, value).point_data[value]
+    rows = np.asarray(value)
+    return rows[corners] if rows.ndim and len(rows) == mesh.n_points else value
