@@ -188,13 +188,16 @@ def _in_front(corners: Array, way: Array) -> Bools:
     places = np.concatenate([middles, np.einsum("sk,nkx->nsx", shares, corners).reshape(-1, 3)])
     flat = np.stack([places @ right, places @ up], axis=1)
     size = max(np.ptp(flat, axis=0)) or 1.0
-    x, y = np.round((flat - flat.min(axis=0)) / size * (PIXELS - 1)).astype(np.int64).T
-    pixels, depth = x * PIXELS + y, places @ way
-    nearest = np.full(PIXELS * PIXELS, -np.inf)
-    np.maximum.at(nearest, pixels, depth)
-    # Cells in one pixel differ by a slope of up to two.
-    front: Bools = depth >= nearest[pixels] - 3 * size / PIXELS
-    return front[: len(corners)]
+    x, y = np.round((flat - flat.min(axis=0)) / size * (PIXELS - 1)).astype(np.int64).T + 1
+    nearest = np.full((PIXELS + 2, PIXELS + 2), -np.inf)
+    np.maximum.at(nearest, (x, y), places @ way)
+    # Pixels that no place fell into are covered by their neighbours.
+    nearest[1:-1] = np.maximum(np.maximum(nearest[:-2], nearest[2:]), nearest[1:-1])
+    nearest[:, 1:-1] = np.maximum(np.maximum(nearest[:, :-2], nearest[:, 2:]), nearest[:, 1:-1])
+    # Cells in neighbouring pixels differ by a slope of up to two.
+    count = len(corners)
+    front: Bools = middles @ way >= nearest[x[:count], y[:count]] - 4 * size / PIXELS
+    return front
 
 
 def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
