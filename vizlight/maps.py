@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, to_rgba
 
@@ -53,15 +54,13 @@ _EVEN = (
 #: Blue over rose to yellow; once this module is loaded, PyVista and Matplotlib know it by the name
 #: ``"vizlight.even"`` too. It is the map of data where none is named.
 even = ListedColormap(
-    [f"#{_EVEN[i : i + 6]}" for i in range(0, len(_EVEN), 6)], name="vizlight.even"
+    np.frombuffer(bytes.fromhex(_EVEN), np.uint8).reshape(-1, 3) / 255, name="vizlight.even"
 )
 colormaps.register(even, force=True)
 #: Pale yellow over green to blue, no darker than a CIELAB lightness of 45, so that black strokes
 #: are seen on all of it: the lighter part of Cynthia Brewer's YlGnBu, named ``"vizlight.speed"``.
 #: It is the map of the lengths of vectors in a look.
-speed = ListedColormap(
-    [colormaps["YlGnBu"](0.7 * i / 255) for i in range(256)], name="vizlight.speed"
-)
+speed = ListedColormap(colormaps["YlGnBu"](0.7 * np.arange(256) / 255), name="vizlight.speed")
 colormaps.register(speed, force=True)
 
 
