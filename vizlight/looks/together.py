@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Options of a look that name an array, which not all parts need to have.
-_NAMING = ("tangents", "vectors", "elevation")
+_NAMING = ("tangents", "elevation")
 
 
 def parts_of(mesh: pv.MultiBlock) -> list[pv.DataSet]:
