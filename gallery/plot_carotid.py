@@ -17,7 +17,7 @@ from vizlight import Scene, legibility, load_example, render, streamlines
 scan = load_example("carotid.vti")
 scan["speed"] = np.linalg.norm(scan["velocity"], axis=1)
 seeds = scan.points[(scan["brightness"] > 200) & (scan["speed"] > 2)][::7]
-blood = streamlines(scan, vectors="velocity", seeds=seeds, max_length=40)
+blood = streamlines(scan, tangents="velocity", seeds=seeds, max_length=40)
 blood = blood.clip_scalar(scalars="brightness", value=150, invert=False)
 vessel = scan.contour([145], scalars="brightness").connectivity("specified", region_ids=[0, 1])
 vessel = vessel.smooth_taubin(n_iter=40, pass_band=0.05).subdivide(2, "loop").compute_normals()

@@ -16,7 +16,7 @@ from vizlight import Scene, load_example, presets, render, streamlines
 
 wind = load_example("winds_of_july.vtp")
 arrows = wind.glyph(orient="wind", scale=False, factor=0.09, tolerance=0.045)
-lines = streamlines(wind, vectors="wind", spacing=0.06).scale(1.005)
+lines = streamlines(wind, tangents="wind", spacing=0.06).scale(1.005)
 lic = vtkSurfaceLICMapper(input_data_object=wind, scalar_visibility=False)
 hue, field = presets.direction(), {"tangents": "wind", "exponent": 2}
 

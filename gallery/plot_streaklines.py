@@ -42,7 +42,7 @@ scene = Scene(
     material=Material(ambient=0.45, diffuse=0.9, specular=0.4, shininess=25),
 )
 frames = vizlight.pathlines(
-    steps, scene, times=times, vectors="velocity", kind="streaklines", seeds=seeds,
+    steps, scene, times=times, tangents="velocity", kind="streaklines", seeds=seeds,
     model="cylinder", step=0.6,
 )  # fmt: skip
 

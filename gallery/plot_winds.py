@@ -20,7 +20,7 @@ coast = vizlight.load_example("earth_relief.vti").contour([0.5], scalars="elevat
 east, north = np.radians(np.asarray(coast.points, dtype=float)[:, :2].T)
 ball = np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)
 coast.points = 1.003 * np.stack(ball, axis=1)
-lines = vizlight.streamlines(air, vectors="wind", spacing=0.05).scale(1.005)
+lines = vizlight.streamlines(air, tangents="wind", spacing=0.05).scale(1.005)
 scene, even = presets.direction(), Scene(material=Material(ambient=1, diffuse=0, specular=0))
 
 plotter = pv.Plotter(off_screen=True, window_size=(1600, 1200))

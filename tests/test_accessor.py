@@ -47,7 +47,7 @@ def test_warnings_point_at_the_caller():
         ("isoluminance", {"levels": 3}),
         ("refine", {"max_points": 1000}),
         ("satin", {"tangents": "V", "seeds": 2}),
-        ("streamlines", {"vectors": "V", "seeds": 2}),
+        ("streamlines", {"tangents": "V", "seeds": 2}),
     ],
 )
 def test_without_a_scene_there_is_the_default_one(name, options):

@@ -110,7 +110,7 @@ def flow_lines(**options):
     light, material = options.pop("light", (1, 0.9, 0.5)), options.pop("material", SHINY)
     scene = far(light, camera, material).replace(depth_cue=options.pop("depth_cue", None))
     seeds = flow.points[:: flow.n_points // 60]
-    return vizlight.streamlines(flow, scene, vectors="V", seeds=seeds, **options), camera
+    return vizlight.streamlines(flow, scene, tangents="V", seeds=seeds, **options), camera
 
 
 def streamlines():
@@ -136,7 +136,7 @@ def confined_streamlines():
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3), zoom=1.9)
     scene = far((1, 0.9, 0.5), camera)
     lines = vizlight.streamlines(
-        flow, scene, vectors="V", surface=surface, confined=True, seeds=80, max_length=20
+        flow, scene, tangents="V", surface=surface, confined=True, seeds=80, max_length=20
     )
     return plot(lines, camera, line_width=0.9)
 

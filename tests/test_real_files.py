@@ -44,7 +44,7 @@ FILES = [
         for name in ("standard.trk", "standard.LPS.trk", "standard.tck")
     ),
     Real("nibabel", "gifti/tests/data/ascii.gii"),
-    Real("data", "Data/carotid.vtk", "streamlines FILE --vectors vectors"),
+    Real("data", "Data/carotid.vtk", "streamlines FILE --tangents vectors"),
     Real("data", "Data/SainteHelens.dem", "relief FILE --light 315,20"),
     Real("made", "int16.tif", "relief FILE"),
     Real("made", "tiled.tif", "relief FILE"),

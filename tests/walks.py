@@ -123,7 +123,7 @@ TAKEN = {
     "tint": lambda mesh, random: vizlight.tint(mesh, str(random.choice(["height", "V", "none"]))),
     "sky": lambda mesh, random: vizlight.sky(mesh, error=0.1),
     "streamlines": lambda mesh, random: vizlight.streamlines(
-        mesh, scene(random), vectors="V", seeds=20
+        mesh, scene(random), tangents="V", seeds=20
     ),
     "project": lambda mesh, random: vizlight.project(mesh),
     "file": through_a_file,

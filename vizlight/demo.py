@@ -83,7 +83,7 @@ def light_winds() -> Demo:
         read = legibility(globe, scene, tangents="wind", exponent=2, view=camera).direction
         assert read is not None
         rows.append((title, terms, milliseconds, checked.error, read))
-    lines = streamlines(globe, scene, vectors="wind", spacing=SPACING)
+    lines = streamlines(globe, scene, tangents="wind", spacing=SPACING)
     lines.points = ABOVE * np.asarray(lines.points)
     return Demo(globe, lines, scene, camera, rows, plan.explain())
 

@@ -165,7 +165,7 @@ def drawn(seeds=300, repeats=5):
     flow = load_example()
     camera = render.camera_on(flow.bounds, (1, 0.5, 0.3))
     scene = Scene(lights=Light(direction=(1, 0.9, 0.5)), view=View.from_camera(camera))
-    bare = streamlines(flow, scene, vectors="V", seeds=seeds)
+    bare = streamlines(flow, scene, tangents="V", seeds=seeds)
     bare.clear_data()
     tubes = bare.tube(radius=flow.length / 800, n_sides=20)
     rows = []

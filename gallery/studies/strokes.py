@@ -105,7 +105,7 @@ def seeded(count, plotter):
 
 def spaced(spacing, plotter):
     """Draw evenly spaced lines."""
-    made = vizlight.streamlines(winds()[0], vectors="wind", spacing=spacing)
+    made = vizlight.streamlines(winds()[0], tangents="wind", spacing=spacing)
     plotter.add_mesh(made.scale(1.005), color="black", line_width=4)
 
 

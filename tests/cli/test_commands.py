@@ -44,15 +44,16 @@ COMMANDS = {
     "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
     "view of a scene": "light flow.vti --contour r --scene view.json",
     "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
-    "streamlines": "streamlines flow.vti --vectors V --seeds 9 --model cylinder --scalars r "
+    "streamlines": "streamlines flow.vti --tangents V --seeds 9 --model cylinder --scalars r "
     "--cmap plasma",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
     "lines by direction": "light tract.vtp --scalars direction --line-width 3",
     "lines by their bundle": "light tract.vtp --scalars bundle",
-    "streamlines on a surface": "streamlines flow.vti --vectors V --contour r --confined --seeds 9",
-    "evenly spaced": "streamlines flow.vti --vectors V --contour r --confined --spacing 1.5",
-    "a cross field": "streamlines flow.vti --vectors V,W --line-field --seeds 9",
-    "lines without sign": "streamlines flow.vti --vectors V --line-field --seeds 9",
+    "streamlines on a surface": "streamlines flow.vti --tangents V --contour r --confined "
+    "--seeds 9",
+    "evenly spaced": "streamlines flow.vti --tangents V --contour r --confined --spacing 1.5",
+    "a cross field": "streamlines flow.vti --tangents V,W --line-field --seeds 9",
+    "lines without sign": "streamlines flow.vti --tangents V --line-field --seeds 9",
     "relief": "relief terrain.vti --light 315,20 --depth 0.5 --border wall",
     "relief, lit": "relief terrain.vti --color white --exaggeration 2 --elevation height",
     "relief of a surface": "relief flow.vti --contour r --level 3 --depth 0.5",
@@ -65,7 +66,7 @@ COMMANDS = {
     "--light 0.7,0.6,0.38,0",
     "project, lit after": "project torus.vtp --when after --view 0,-1,0.5 --color red",
     "for shape": "light flow.vti --contour r --tangents V --for shape",
-    "for slope": "streamlines flow.vti --vectors V --seeds 9 --for slope --diffuse 0.5 --no-key",
+    "for slope": "streamlines flow.vti --tangents V --seeds 9 --for slope --diffuse 0.5 --no-key",
     "colours of cells": "light tract.vtp --scalars bundle --cmap viridis",
     "relief for a question": "relief terrain.vti --for shape --elevation height",
     "for values": "light flow.vti --slice z:4 --scalars r --for value",
@@ -175,7 +176,7 @@ def test_report_stands_in_the_script_too(folder, capfd, run, done):
     assert "or less at 95 of 100 points, as estimated, horizons" in out
 
 
-def test_components_of_vectors_are_joined(folder, done):
+def test_components_of_vectors_are_joined(folder, run, done):
     mesh = pv.read("flow.vti")
     x, y, z = mesh["V"].T
     mesh["u"], mesh["v"] = x, y
@@ -188,8 +189,13 @@ def test_components_of_vectors_are_joined(folder, done):
     np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
     joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v,u")
     np.testing.assert_array_equal(joined["v,u"][:, [1, 0, 2]], pv.read("whole.vti")["V"])
-    done("streamlines parts.vti --vectors u,v -o lines.vtp")
+    done("streamlines parts.vti --tangents u,v -o lines.vtp")
     assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
+    for file, name in (("parts", "u,v"), ("whole", "V")):
+        # Most of them point into the isosurface, and a warning says so.
+        assert run(f"fur {file}.vti --contour r --tangents {name} --fibres 9 -o {file}.vtp")[0] == 0
+    parts, whole = pv.read("parts-fibres.vtp"), pv.read("whole-fibres.vtp")
+    np.testing.assert_array_equal(parts.points, whole.points)
 
 
 @pytest.mark.opengl
@@ -232,7 +238,7 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, done, refused):
         return {"U": time * np.tile([1.0, 0.5, 0.2], (len(middles), 1))}
 
     foam.write(folder / "case", [0, 0.5, 2], fields)
-    arguments = ("streamlines", "case/case.foam", "--vectors", "U", "--seeds", "5")
+    arguments = ("streamlines", "case/case.foam", "--tangents", "U", "--seeds", "5")
     assert "note     time 2, the last of 3 steps; --time takes" in done(*arguments, "-o", "a.vtp")
     err = refused(*arguments, "--time", "0", "-o", "a.vtp")
     assert "'U' is not zero everywhere, got 0; pass --time with one of 0.5, 2" in err
@@ -343,7 +349,7 @@ TURNED = "project torus.vtp --rotation xw:0.5 --rotation yz:-1/4 --distance 4 --
     [
         (
             COMMANDS["streamlines on a surface"], "lit.vtp", "luminance",
-            {"vectors": "V", "confined": True, "seeds": 9, "seed": 0},
+            {"tangents": "V", "confined": True, "seeds": 9, "seed": 0},
         ),
         (
             "relief terrain.vti --depth 0.5 --border wall --angular-diameter 0.01 --name shade",

@@ -145,10 +145,10 @@ VIEWED = Scene(lights=LAMP, view=View(direction=(1, 1, 1)), material=SHINY)
 LIT = {
     "illuminate": lambda: vizlight.illuminate(ball(), VIEWED, tangents="around", conditioned=True),
     "streamlines": lambda: vizlight.streamlines(
-        vizlight.load_example(), VIEWED, vectors="V", seeds=20
+        vizlight.load_example(), VIEWED, tangents="V", seeds=20
     ),
     "confined": lambda: vizlight.streamlines(
-        ball(), VIEWED, vectors="around", seeds=20, conditioned=True
+        ball(), VIEWED, tangents="around", seeds=20, conditioned=True
     ),
     "after": lambda: vizlight.manifold(
         manifolds.clifford_torus(resolution=24), scene=VIEWED, distance=2.0, light="after"

@@ -246,7 +246,7 @@ def test_frames_of_pathlines_become_pictures(tmp_path):
         mesh = pv.ImageData(dimensions=(5, 5, 5))
         mesh["V"] = np.tile([1.0, np.cos(time), 0.0], (mesh.n_points, 1))
         steps.append(mesh)
-    frames = list(vizlight.pathlines(steps, scene, times=times, vectors="V", seeds=9))
+    frames = list(vizlight.pathlines(steps, scene, times=times, tangents="V", seeds=9))
     files = movie.save(iter(frames), tmp_path / "flow.png", picture={"size": (64, 48)})
     assert [file.name for file in files] == [f"flow_000{i}.png" for i in range(3)]
     ink = [np.asarray(pv.read(file).active_scalars, dtype=float).sum() for file in files]

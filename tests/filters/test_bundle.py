@@ -161,7 +161,7 @@ def test_a_surface_is_dimmed_by_the_lines_above_it():
 
 def test_streamlines_and_segments_of_a_grid():
     flow = vizlight.load_example()
-    lit = vizlight.streamlines(flow, SCENE, vectors="V", seeds=20, bundle=QUICK)
+    lit = vizlight.streamlines(flow, SCENE, tangents="V", seeds=20, bundle=QUICK)
     assert lit["transmittance"].shape == (lit.n_points, 2)
     mesh = lines(60)
     grid = mesh.cast_to_unstructured_grid()

@@ -114,7 +114,7 @@ def test_bald_and_downy_skin_is_lit_like_long_hair(length):
     """A direction is not what is left of the difference of two points."""
     mesh = torus()
     mesh["way"] = np.asarray(mesh["Normals"]) + np.array([0, 0, 0.3], np.float32)
-    for shape in ({}, {"vectors": "way"}, {"vectors": "way", "toward": (0, 0, -1), "bend": 0.5}):
+    for shape in ({}, {"tangents": "way"}, {"tangents": "way", "toward": (0, 0, -1), "bend": 0.5}):
         options = {"absorption": 0, "fibres": 400, **shape}
         coat = fur(mesh, SCENE, length=length, **options)
         long = fur(mesh, SCENE, length=0.3, **options)
@@ -159,7 +159,7 @@ def test_bent_and_curled_fibres_lean_where_they_are_told():
 def test_vectors_that_point_inward_are_reversed_and_counted():
     mesh = torus()
     mesh["up"] = np.tile([0, 0, 1.0], (mesh.n_points, 1))
-    options = {"density": 0.02, "fibres": 1000, "vectors": "up", "length": 0.2}
+    options = {"density": 0.02, "fibres": 1000, "tangents": "up", "length": 0.2}
     with pytest.warns(UserWarning, match=r"\d+ of 1000 fibres point into .* reversed") as caught:
         coat = fur(mesh, SCENE, **options)
     count = int(str(caught[0].message).split()[0])
@@ -215,9 +215,9 @@ def test_vectors_of_any_size(scale, random):
         scale = 10.0 ** random.uniform(-150, 150, (mesh.n_points, 1))
     mesh["way"] = unit(np.add(mesh["Normals"], (0, 0, 0.3)))
     options = {"density": 0.5, "fibres": 300, "bend": 1.0}
-    expected = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
+    expected = fur(mesh, SCENE, tangents="way", toward="way", **options)["fibres"]
     mesh["way"] = mesh["way"] * scale
-    found = fur(mesh, SCENE, vectors="way", toward="way", **options)["fibres"]
+    found = fur(mesh, SCENE, tangents="way", toward="way", **options)["fibres"]
     np.testing.assert_allclose(found.points, expected.points, atol=1e-6)
     np.testing.assert_allclose(found["luminance"], expected["luminance"], atol=1e-5)
 
@@ -227,13 +227,13 @@ def test_vectors_that_are_not_finite_are_told_of():
     mesh["way"] = np.array(mesh["Normals"])
     mesh["way"][:50] = np.nan
     with pytest.warns(UserWarning, match="50 of 2304 of the vectors are not finite"):
-        fur(mesh, SCENE, density=0.5, fibres=10, vectors="way")
+        fur(mesh, SCENE, density=0.5, fibres=10, tangents="way")
 
 
 def test_zero_vectors_follow_the_normals():
     mesh = torus()
     mesh["none"] = np.zeros((mesh.n_points, 3))
-    by_vectors = fur(mesh, SCENE, density=0.02, fibres=100, vectors="none")
+    by_vectors = fur(mesh, SCENE, density=0.02, fibres=100, tangents="none")
     by_normals = fur(mesh, SCENE, density=0.02, fibres=100)
     np.testing.assert_array_equal(by_vectors["fibres"].points, by_normals["fibres"].points)
 
@@ -277,7 +277,7 @@ def test_an_array_called_normals_that_is_none():
     mesh.point_data["Normals"] = np.tile([0.0, 0, 1], (mesh.n_points, 1))
     mesh.point_data["n"] = normals
     mesh.point_data.active_normals_name = "n"
-    options = {"vectors": "Normals", "length": 0.1}
+    options = {"tangents": "Normals", "length": 0.1}
     with pytest.warns(UserWarning, match="fibres point into the surface and were reversed"):
         coat = fur(mesh, SCENE, density=0.02, fibres=100, **options)
     up = np.where(ways(coat)[:, 2:] > 0, 0.1, -0.1) * np.array([0, 0, 1])
@@ -315,12 +315,12 @@ test_bad_input = refusals(
     ({"density": None, "absorption": 1.1}, "absorption: expected a number from 0 to 1"),
     ({"fibres": -1}, "fibres: expected an integer of at least 0"),
     ({"segments": 0}, "segments: expected an integer of at least 1"),
-    ({"vectors": "U"}, "vectors: expected the name of a point array"),
+    ({"tangents": "U"}, "tangents: expected the name of a point array"),
     ({"bend": 1.0}, "toward: expected the direction of the bend"),
     ({"bend": 1.0, "toward": (0, 0, 0)}, "toward: expected a direction of non-zero"),
     ({"bend": 1.0, "toward": (0, 1)}, "toward: expected 3 components"),
     ({"seed": -1}, "seed: expected an integer of at least 0"),
-    ({"vectors": np.ones((2304, 3))}, "vectors: expected the name of a point", TypeError),
+    ({"tangents": np.ones((2304, 3))}, "tangents: expected the name of a point", TypeError),
     ({"curl": np.nan}, "curl: expected a number from"),
 )
 

@@ -60,12 +60,12 @@ FILTERS = {
         vizlight.illuminate, {"scene": SCENE},
     ),
     "refine": (ball, vizlight.refine, {"scene": SCENE, "error": 0.01}),
-    "streamlines": (ball, vizlight.streamlines, {"scene": SCENE, "vectors": "V", "seeds": 5}),
+    "streamlines": (ball, vizlight.streamlines, {"scene": SCENE, "tangents": "V", "seeds": 5}),
     "line field": (
         ball, vizlight.streamlines,
-        {"scene": SCENE, "vectors": "V", "seeds": 5, "line_field": True},
+        {"scene": SCENE, "tangents": "V", "seeds": 5, "line_field": True},
     ),
-    "even": (ball, vizlight.streamlines, {"scene": SCENE, "vectors": "V", "spacing": 0.3}),
+    "even": (ball, vizlight.streamlines, {"scene": SCENE, "tangents": "V", "spacing": 0.3}),
     "project": (torus, vizlight.project, {}),
     "project lit": (
         torus, vizlight.project,
@@ -111,7 +111,7 @@ def test_flags_of_the_mesh_stay_flags():
     mesh["V"] = np.tile(np.float32([1, 0.2, 0.1]), (64, 1))
     seen = vizlight.sky(mesh, error=0.1)
     assert seen["sky_valid"].dtype == np.bool_
-    vizlight.streamlines(seen, SCENE, vectors="V", seeds=3)
+    vizlight.streamlines(seen, SCENE, tangents="V", seeds=3)
     assert seen["sky_valid"].dtype == np.bool_
     mesh["V"][:3] = np.nan
     lit = vizlight.illuminate(mesh, SCENE, tangents="V")

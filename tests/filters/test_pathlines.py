@@ -36,7 +36,7 @@ def last(velocity, count, seeds, *, mesh="image", **options):
     times = np.linspace(0, END, count)
     series = steps(velocity, times, kind=mesh)
     frames = list(
-        vizlight.pathlines(series, SCENE, times=times, vectors="V", seeds=seeds, **options)
+        vizlight.pathlines(series, SCENE, times=times, tangents="V", seeds=seeds, **options)
     )
     assert len(frames) == count - 1
     assert [frame.field_data["TimeValue"][0] for frame in frames] == pytest.approx(times[1:])
@@ -100,7 +100,7 @@ def test_a_reader_gives_what_the_list_gives(tmp_path):
         rows += f'<DataSet timestep="{time}" file="{i}.vti"/>'
     file = tmp_path / "flow.pvd"
     file.write_text(f'<VTKFile type="Collection"><Collection>{rows}</Collection></VTKFile>')
-    options = {"vectors": "V", "seeds": [[-2.0, 0, 0]]}
+    options = {"tangents": "V", "seeds": [[-2.0, 0, 0]]}
     expected = list(vizlight.pathlines(series, SCENE, times=times, **options))[-1]
     for source in (file, pv.get_reader(file)):
         found = list(vizlight.pathlines(source, SCENE, **options))[-1]
@@ -111,7 +111,7 @@ def test_bundles_and_data_stay():
     times = np.linspace(0, 1, 3)
     series = steps(rotation, times)
     before = [mesh.copy() for mesh in series]
-    frames = list(vizlight.pathlines(series, SCENE, times=times, vectors="V", bundle=True))
+    frames = list(vizlight.pathlines(series, SCENE, times=times, tangents="V", bundle=True))
     assert "transmittance" in frames[-1].point_data
     assert frames[-1].n_lines > 150
     assert all(a == b for a, b in zip(series, before, strict=True))
@@ -138,7 +138,7 @@ def series():
 
 test_bad_input = refusals(
     lambda make, options: list(
-        vizlight.pathlines(make(), SCENE, **{"times": TIMES, "vectors": "V", **options})
+        vizlight.pathlines(make(), SCENE, **{"times": TIMES, "tangents": "V", **options})
     ),
     (series, {"times": [0, 2, 1]}, "times: .*rise.*2 before"),
     (series, {"times": [0, 1]}, "times: expected 3 times"),
@@ -181,7 +181,7 @@ def test_particles_on_a_map_go_metres_of_the_place(tmp_path):
     }  # fmt: skip
     xr.Dataset(wind, axes).to_netcdf(tmp_path / "w.nc")
     seeds = [[0.0, 60, 0]]
-    *_, last = vizlight.pathlines(tmp_path / "w.nc", seeds=seeds, vectors=("u", "v"))
+    *_, last = vizlight.pathlines(tmp_path / "w.nc", seeds=seeds, tangents=("u", "v"))
     end = np.asarray(last.points)[np.argmax(last["Time"])]
     degree = 6_371_008.8 * np.pi / 180
     north = 5 * 43_200 / degree

@@ -303,7 +303,7 @@ def test_points_that_are_not_finite(torus):
 
 def test_vectors_turn_and_are_pushed_forward(torus):
     torus["V"] = torus["frame"][:, :4]
-    out = project(torus, rotation=TURN, distance=3.0, vectors="V")
+    out = project(torus, rotation=TURN, distance=3.0, turned="V")
     np.testing.assert_allclose(out["V"], np.asarray(torus["V"]) @ TURN.T, atol=1e-14)
     expected = projection.push_forward(
         np.asarray(out["V"])[:, None], np.asarray(out["position"]), distance=3.0
@@ -422,8 +422,8 @@ def test_empty_mesh():
         ({"frame": "odd"}, ValueError, "frame: expected a point array of 4 k components"),
         ({"frame": "full"}, ValueError, "frame: expected a point array of 4 k components"),
         ({"frame": 3}, TypeError, "frame: expected the name of a point array"),
-        ({"vectors": "odd"}, ValueError, "vectors: expected a point array of 4 k components"),
-        ({"vectors": ("V",)}, ValueError, "vectors: expected the name of a point array"),
+        ({"turned": "odd"}, ValueError, "turned: expected a point array of 4 k components"),
+        ({"turned": ("V",)}, ValueError, "turned: expected the name of a point array"),
         ({"rotation": np.eye(3)}, ValueError, "rotation: expected a matrix of shape"),
         ({"rotation": ("xw", np.nan)}, ValueError, "angle: expected a finite number"),
         ({"rotation": 2 * np.eye(4)}, ValueError, "rotation: expected an orthogonal matrix"),
@@ -436,7 +436,7 @@ def test_empty_mesh():
         ({"light": "during"}, ValueError, "light: expected 'before' or 'after'"),
         ({"scene": "sun"}, ValueError, "scene: expected a vizlight.Scene, or 'direction'"),
         ({"positions": "cells"}, ValueError, "the cell array 'cells'; call mesh.cell_data_to_po"),
-        ({"vectors": 3}, TypeError, "vectors: expected the name of a point array, or a list"),
+        ({"turned": 3}, TypeError, "turned: expected the name of a point array, or a list"),
         ({"scene": SCENE4, "rotate": 1}, TypeError, "rotate: expected an option of project"),
         ({"rotate": 1}, TypeError, "rotate: .* did you mean rotation="),
         ({"exponent": 1}, TypeError, "exponent: expected an option of project, or"),

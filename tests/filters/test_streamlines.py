@@ -41,7 +41,7 @@ def vortex():
 
 def test_free_lines_follow_the_field():
     lines = streamlines(
-        vortex(), SCENE, vectors="V", seeds=[[0.5, 0, 0.2], [0, 0.3, 0.2]], max_length=3.0
+        vortex(), SCENE, tangents="V", seeds=[[0.5, 0, 0.2], [0, 0.3, 0.2]], max_length=3.0
     )
     radius = np.hypot(*np.asarray(lines.points[:, :2]).T)
     assert np.min([abs(radius - 0.5), abs(radius - 0.3)], axis=0).max() < 1e-3
@@ -53,7 +53,7 @@ def test_free_lines_follow_the_field():
 def test_confined_lines_stay_on_the_surface_and_follow_meridians():
     sphere = ball()
     before = sphere.copy()
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
+    lines = streamlines(sphere, SCENE, tangents="V", seeds=20)
     assert lines.field_data["drift"][0] < 1e-6
     distance = np.abs(lines.compute_implicit_distance(sphere)["implicit_distance"])
     assert distance.max() < 1e-6
@@ -68,8 +68,8 @@ def test_confined_lines_stay_on_the_surface_and_follow_meridians():
 def test_a_surface_conditions_the_lines():
     sphere = ball()
     dark = SCENE.replace(material=Material(ambient=0.1))
-    free = streamlines(sphere, dark, vectors="V", conditioned=False, seeds=20)
-    shadowed = streamlines(sphere, dark, vectors="V", seeds=20)
+    free = streamlines(sphere, dark, tangents="V", conditioned=False, seeds=20)
+    shadowed = streamlines(sphere, dark, tangents="V", seeds=20)
     np.testing.assert_allclose(free.points, shadowed.points)
     outward = np.asarray(shadowed.points) / 0.5
     cosine = outward @ unit([1, -1, 0.8])
@@ -85,7 +85,7 @@ def test_light_that_tells_how_lines_run_has_no_self_shadow_unless_asked(question
     """The record says so too, by which the light is computed anew."""
     sphere, scene = ball(24), getattr(vizlight.presets, question)(SCENE.view)
     lines, free, shadowed = (
-        streamlines(sphere, scene, vectors="V", seeds=20, conditioned=conditioned)
+        streamlines(sphere, scene, tangents="V", seeds=20, conditioned=conditioned)
         for conditioned in (None, False, True)
     )
     np.testing.assert_array_equal(lines["luminance"], free["luminance"])
@@ -97,7 +97,7 @@ def test_lines_of_a_volume_on_an_isosurface():
     flow = vizlight.load_example()
     iso = flow.contour([400.0], scalars="Temp")
     lines = streamlines(
-        flow, SCENE, vectors="V", surface=iso, confined=True, seeds=40, max_length=10.0
+        flow, SCENE, tangents="V", surface=iso, confined=True, seeds=40, max_length=10.0
     )
     assert lines.field_data["drift"][0] < 1e-5
 
@@ -105,7 +105,7 @@ def test_lines_of_a_volume_on_an_isosurface():
 def test_free_lines_near_a_surface_get_its_nearest_normals():
     flow = vortex()
     sphere = ball(40, radius=0.7).translate((0, 0, 0.2), inplace=False)
-    lines = streamlines(flow, SCENE, vectors="V", surface=sphere, seeds=30, max_length=1.0)
+    lines = streamlines(flow, SCENE, tangents="V", surface=sphere, seeds=30, max_length=1.0)
     outward = np.asarray(lines.points) - [0, 0, 0.2]
     size = np.linalg.norm(outward, axis=1)
     far = size > 0.1
@@ -117,8 +117,8 @@ def test_embedded_flow_is_lit_with_the_active_vectors():
     flow = vizlight.load_example()
     flow.set_active_vectors("V")
     lines = streamlines(flow, SCENE, seeds=30, seed=3)
-    same = streamlines(flow, SCENE, vectors="V", seeds=30, seed=3)
-    other = streamlines(flow, SCENE, vectors="V", seeds=30, seed=4)
+    same = streamlines(flow, SCENE, tangents="V", seeds=30, seed=3)
+    other = streamlines(flow, SCENE, tangents="V", seeds=30, seed=4)
     np.testing.assert_array_equal(lines["luminance"], same["luminance"])
     assert lines.n_points != other.n_points
     assert np.ptp(lines["luminance"]) > 0.3
@@ -126,7 +126,7 @@ def test_embedded_flow_is_lit_with_the_active_vectors():
 
 def test_options_reach_the_light():
     lines = streamlines(
-        vortex(), SCENE, vectors="V", seeds=9, name="x", components=True, precision="float64"
+        vortex(), SCENE, tangents="V", seeds=9, name="x", components=True, precision="float64"
     )
     assert {"x", "x_diffuse"} <= set(lines.point_data)
     assert lines["x"].dtype == np.float64
@@ -134,22 +134,22 @@ def test_options_reach_the_light():
 
 test_bad_input = refusals(
     lambda make, options: streamlines(make(), SCENE, **options),
-    (vortex, {"vectors": "U"}, "vectors: expected the name of an array"),
-    (pv.ImageData, {}, "vectors: expected a mesh with an array of 3 components"),
-    (vortex, {"vectors": "V", "confined": True}, "surface: expected a surface for confined"),
-    (vortex, {"vectors": "V", "conditioned": True}, "surface: .* conditioned lines"),
-    (vortex, {"vectors": "V", "surface": pv.Line()}, "surface: expected a surface with faces"),
-    (vortex, {"vectors": "V", "seeds": 0}, "seeds: expected an integer of at least 1"),
-    (vortex, {"vectors": "V", "seeds": [1.0, 2.0]}, "seeds: expected"),
-    (vortex, {"vectors": "V", "seeds": [[99.0, 0, 0]]}, "seeds: expected points inside"),
-    (vortex, {"vectors": "V", "seeds": [[np.nan, 0, 0]]}, "seeds: expected finite"),
-    (vortex, {"vectors": "V", "seeds": [[1, 2, 3], [1, 2]]}, "seeds: expected num", TypeError),
-    (vortex, {"vectors": "V", "seed": -1}, "seed: expected an integer of at"),
-    (vortex, {"vectors": np.ones((2205, 3))}, "vectors: expected the name of a", TypeError),
-    (vortex, {"vectors": "V", "inplace": True}, "inplace: expected an option of", TypeError),
-    (vortex, {"vectors": "V", "step": 0}, "step: expected"),
-    (vortex, {"vectors": "V", "max_length": -1}, "max_length: expected"),
-    (lambda: np.ones(3), {"vectors": "V"}, "mesh: expected a PyVista dataset", TypeError),
+    (vortex, {"tangents": "U"}, "tangents: expected the name of an array"),
+    (pv.ImageData, {}, "tangents: expected a mesh with an array of 3 components"),
+    (vortex, {"tangents": "V", "confined": True}, "surface: expected a surface for confined"),
+    (vortex, {"tangents": "V", "conditioned": True}, "surface: .* conditioned lines"),
+    (vortex, {"tangents": "V", "surface": pv.Line()}, "surface: expected a surface with faces"),
+    (vortex, {"tangents": "V", "seeds": 0}, "seeds: expected an integer of at least 1"),
+    (vortex, {"tangents": "V", "seeds": [1.0, 2.0]}, "seeds: expected"),
+    (vortex, {"tangents": "V", "seeds": [[99.0, 0, 0]]}, "seeds: expected points inside"),
+    (vortex, {"tangents": "V", "seeds": [[np.nan, 0, 0]]}, "seeds: expected finite"),
+    (vortex, {"tangents": "V", "seeds": [[1, 2, 3], [1, 2]]}, "seeds: expected num", TypeError),
+    (vortex, {"tangents": "V", "seed": -1}, "seed: expected an integer of at"),
+    (vortex, {"tangents": np.ones((2205, 3))}, "tangents: expected the name of a", TypeError),
+    (vortex, {"tangents": "V", "inplace": True}, "inplace: expected an option of", TypeError),
+    (vortex, {"tangents": "V", "step": 0}, "step: expected"),
+    (vortex, {"tangents": "V", "max_length": -1}, "max_length: expected"),
+    (lambda: np.ones(3), {"tangents": "V"}, "mesh: expected a PyVista dataset", TypeError),
 )
 
 
@@ -157,10 +157,10 @@ def test_far_from_the_origin():
     """Metres north of the equator: lines are traced near the mesh, not at 5e6 in float32."""
     offset = np.array([4e5, 5e6, 1e3])
     seeds = np.array([[0.5, 0, 0.2], [0, 0.3, 0.2]])
-    near = streamlines(vortex(), SCENE, vectors="V", seeds=seeds)
+    near = streamlines(vortex(), SCENE, tangents="V", seeds=seeds)
     flow = vortex()
     flow.origin = tuple(np.array(flow.origin) + offset)
-    far = streamlines(flow, SCENE, vectors="V", seeds=seeds + offset)
+    far = streamlines(flow, SCENE, tangents="V", seeds=seeds + offset)
     assert far.points.dtype == np.float64
     np.testing.assert_allclose(far.points - offset, near.points, atol=1e-6)
     np.testing.assert_allclose(far["luminance"], near["luminance"], atol=1e-4)
@@ -170,11 +170,11 @@ def test_far_from_the_origin():
     moved.points = np.asarray(sphere.points, float) + offset
     # Within triangles: on an edge rounding decides in which one a line begins.
     seeds = np.asarray(sphere.cell_centers().points, float)[1000:1006]
-    here = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
-    there = streamlines(moved, SCENE, vectors="V", seeds=seeds + offset)
+    here = streamlines(sphere, SCENE, tangents="V", seeds=seeds)
+    there = streamlines(moved, SCENE, tangents="V", seeds=seeds + offset)
     assert there.field_data["drift"][0] < 1e-6
-    drawn = streamlines(moved, SCENE, vectors="V", seeds=15)
-    assert drawn.n_lines == streamlines(sphere, SCENE, vectors="V", seeds=15).n_lines
+    drawn = streamlines(moved, SCENE, tangents="V", seeds=15)
+    assert drawn.n_lines == streamlines(sphere, SCENE, tangents="V", seeds=15).n_lines
     assert drawn.field_data["drift"][0] < 1e-6
     np.testing.assert_allclose(there.points - offset, here.points, atol=1e-5)
     np.testing.assert_allclose(there["luminance"], here["luminance"], atol=1e-3)
@@ -183,7 +183,7 @@ def test_far_from_the_origin():
 def test_vectors_that_are_not_finite_stop_a_line():
     sphere = ball()
     sphere["V"][np.asarray(sphere.points)[:, 2] > 0.2] = np.nan
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=40)
+    lines = streamlines(sphere, SCENE, tangents="V", seeds=40)
     assert np.all(np.isfinite(lines["luminance"]))
     assert np.asarray(lines.points)[:, 2].max() < 0.25
 
@@ -194,11 +194,11 @@ def test_lines_do_not_depend_on_the_unit(scale):
     sphere = ball(30)
     places = np.asarray(sphere.points, float)
     places = places[np.abs(places[:, 2]) < 0.1][:20]
-    expected = streamlines(sphere, SCENE, vectors="V", seeds=places, max_length=0.3)
+    expected = streamlines(sphere, SCENE, tangents="V", seeds=places, max_length=0.3)
     other = sphere.copy()
     other.points = np.asarray(sphere.points, float) * scale
     other["V"] = sphere["V"] / scale**5
-    found = streamlines(other, SCENE, vectors="V", seeds=places * scale, max_length=0.3 * scale)
+    found = streamlines(other, SCENE, tangents="V", seeds=places * scale, max_length=0.3 * scale)
     assert found.n_lines == expected.n_lines
     np.testing.assert_allclose(lengths(found) / scale, lengths(expected), atol=1e-3)
     np.testing.assert_allclose(found.field_data["drift"] / scale, 0, atol=1e-6)
@@ -206,9 +206,9 @@ def test_lines_do_not_depend_on_the_unit(scale):
 
 def test_one_large_vector_does_not_stop_the_lines():
     flow = vortex()
-    few = streamlines(flow, SCENE, vectors="V", seeds=20, max_length=1.0)
+    few = streamlines(flow, SCENE, tangents="V", seeds=20, max_length=1.0)
     flow["V"][0] = 1e20
-    assert streamlines(flow, SCENE, vectors="V", seeds=20, max_length=1.0).n_lines == few.n_lines
+    assert streamlines(flow, SCENE, tangents="V", seeds=20, max_length=1.0).n_lines == few.n_lines
 
 
 def test_a_line_ends_where_it_turns_back():
@@ -216,7 +216,7 @@ def test_a_line_ends_where_it_turns_back():
     grid = channel()
     x = grid.points[:, 0]
     grid["V"] = np.stack([-np.sign(x), 0 * x, 0 * x], axis=1)
-    lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.52, 0.2, 0.2], [-0.71, 0.2, 0.2]])
+    lines = streamlines(grid, SCENE, tangents="V", seeds=[[0.52, 0.2, 0.2], [-0.71, 0.2, 0.2]])
     assert lines.n_points < 200
     for points in parts(lines):
         along = np.diff(points[:, 0])
@@ -225,7 +225,7 @@ def test_a_line_ends_where_it_turns_back():
 
 def test_a_mesh_that_was_lit_before():
     sphere = vizlight.illuminate(ball(30), SCENE, components=True)
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
+    lines = streamlines(sphere, SCENE, tangents="V", seeds=20)
     assert "luminance" in lines.point_data
     assert "diffuse" not in lines.point_data
 
@@ -235,11 +235,11 @@ def test_carotid_artery():
     if not Path(os.environ.get("PYVISTA_DATA", "")).is_dir() or "PYVISTA_DATA" not in os.environ:
         pytest.skip("PYVISTA_DATA names no folder with carotid.vtk")
     flow = pv.examples.download_carotid()
-    lines = streamlines(flow, SCENE, vectors="vectors", seeds=60)
+    lines = streamlines(flow, SCENE, tangents="vectors", seeds=60)
     assert lines.n_lines == 60
     assert "luminance_valid" not in lines.point_data
     wall = flow.contour([150.0], scalars="scalars")
-    lines = streamlines(flow, SCENE, vectors="vectors", surface=wall, confined=True, seeds=30)
+    lines = streamlines(flow, SCENE, tangents="vectors", surface=wall, confined=True, seeds=30)
     assert lines.field_data["drift"][0] < 1e-2 * wall.length
     assert np.all(np.isfinite(lines["luminance"]))
 
@@ -249,7 +249,7 @@ def test_arrays_of_words_and_active_arrays_stay_as_they_are():
     flow["words"] = np.array(["a"] * flow.n_points)
     flow["s"] = np.arange(flow.n_points, dtype=float)
     flow.set_active_scalars("s")
-    lines = streamlines(flow, SCENE, vectors="V", seeds=9)
+    lines = streamlines(flow, SCENE, tangents="V", seeds=9)
     assert lines.n_points
     assert flow.active_scalars_name == "s"
     assert "words" in flow.point_data
@@ -261,7 +261,7 @@ def test_loose_cells_of_a_surface_do_not_matter():
     mixed["Normals"] = np.vstack([sphere["Normals"], np.zeros((2, 3), np.float32)])
     mixed.point_data.active_normals_name = "Normals"
     mixed["V"] = np.vstack([sphere["V"], np.zeros((2, 3))])
-    lines = streamlines(mixed, SCENE, vectors="V", seeds=np.asarray(sphere.points)[100:110])
+    lines = streamlines(mixed, SCENE, tangents="V", seeds=np.asarray(sphere.points)[100:110])
     outward = np.asarray(lines.points) / 0.5
     assert np.sum(lines["Normals"] * outward, axis=1).min() > 0.97
 
@@ -270,18 +270,18 @@ def test_no_line_at_all():
     flow = vortex()
     flow["V"] = np.zeros((flow.n_points, 3))
     with pytest.raises(ValueError, match="seeds: expected points inside the mesh"):
-        streamlines(flow, SCENE, vectors="V", seeds=9)
+        streamlines(flow, SCENE, tangents="V", seeds=9)
 
 
 def test_errors_name_the_arrays_that_could_be_traced():
     grid = pv.ImageData(dimensions=(3, 3, 3))
     grid.cell_data["wind"] = np.ones((8, 3))
-    with pytest.raises(ValueError, match=r"\('wind'\), got 'wnid'; pass vectors='wind'"):
-        streamlines(grid, SCENE, vectors="wnid")
+    with pytest.raises(ValueError, match=r"\('wind'\), got 'wnid'; pass tangents='wind'"):
+        streamlines(grid, SCENE, tangents="wnid")
     for name in ("U", "W"):
         grid.point_data[name] = np.ones((27, 3))
     grid.point_data.active_vectors_name = None
-    with pytest.raises(ValueError, match="got None; pass vectors='U' or vectors='W' or"):
+    with pytest.raises(ValueError, match="got None; pass tangents='U' or tangents='W' or"):
         streamlines(grid, SCENE)
 
 
@@ -290,9 +290,9 @@ def test_what_points_out_of_a_surface_does_not_count():
     sphere = ball(30)
     normals = np.asarray(sphere["Normals"], dtype=float)
     seeds = np.asarray(sphere.points)[100:106]
-    along = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    along = streamlines(sphere, SCENE, tangents="V", seeds=seeds)
     sphere["V"] = sphere["V"] + normals * np.linspace(-3, 3, sphere.n_points)[:, np.newaxis]
-    tilted = streamlines(sphere, SCENE, vectors="V", seeds=seeds)
+    tilted = streamlines(sphere, SCENE, tangents="V", seeds=seeds)
     np.testing.assert_allclose(tilted.points, along.points, atol=1e-6)
     np.testing.assert_allclose(tilted["luminance"], along["luminance"], atol=1e-5)
 
@@ -300,7 +300,7 @@ def test_what_points_out_of_a_surface_does_not_count():
 def test_lines_run_from_their_seeds_both_ways():
     grid = channel()
     grid["V"] = np.tile([2.0, 0, 0], (grid.n_points, 1))
-    lines = streamlines(grid, SCENE, vectors="V", seeds=[[0.3, 0.2, 0.2]], max_length=0.5)
+    lines = streamlines(grid, SCENE, tangents="V", seeds=[[0.3, 0.2, 0.2]], max_length=0.5)
     x = np.asarray(lines.points)[:, 0]
     assert x.min() == pytest.approx(0.3 - 0.5, abs=0.1)
     assert x.max() == pytest.approx(0.3 + 0.5, abs=0.1)
@@ -310,7 +310,7 @@ def test_seeds_on_a_surface_are_uniform_in_its_area():
     """A square of two triangles; lines so short that each shows where its seed is."""
     square = pv.Plane(i_resolution=1, j_resolution=1).triangulate()
     square["V"] = np.tile([1.0, 0, 0], (4, 1))
-    lines = streamlines(square, SCENE, vectors="V", seeds=640, max_length=0.02, step=0.01)
+    lines = streamlines(square, SCENE, tangents="V", seeds=640, max_length=0.02, step=0.01)
     seeds = np.array([line.mean(axis=0) for line in parts(lines)])
     assert len(seeds) > 600
     number, _, _ = np.histogram2d(*seeds[:, :2].T, bins=4, range=[[-0.5, 0.5]] * 2)
@@ -322,7 +322,7 @@ def test_the_array_of_vectors_stays_as_it_was_on_confined_lines():
     sphere = ball()
     normals = np.asarray(sphere["Normals"], dtype=float)
     sphere["V"] = sphere["V"] + 2 * normals
-    lines = streamlines(sphere, SCENE, vectors="V", seeds=20)
+    lines = streamlines(sphere, SCENE, tangents="V", seeds=20)
     outward = np.asarray(lines.points) / 0.5
     along = np.array([0, 0, 1.0]) - outward[:, 2:] * outward
     np.testing.assert_allclose(lines["V"], along + 2 * outward, atol=0.02)
@@ -333,7 +333,7 @@ def test_confined_lines_are_lit_by_the_field_and_not_by_their_chords():
     """Light of the exact field on a sphere: order 2 in the size of triangles."""
     errors = []
     for n in (20, 40, 80):
-        lines = streamlines(ball(n), SCENE, vectors="V", seeds=30, conditioned=False)
+        lines = streamlines(ball(n), SCENE, tangents="V", seeds=30, conditioned=False)
         outward = unit(np.asarray(lines.points, float))
         lines["exact"] = np.array([0, 0, 1.0]) - outward[:, 2:] * outward
         exact = vizlight.illuminate(lines, SCENE, tangents="exact", name="by_field")["by_field"]
@@ -350,16 +350,16 @@ def test_as_many_lines_as_seeds():
     flow = vortex()
     still = np.hypot(*flow.points[:, :2].T) > 0.8
     flow["V"][still] = 0
-    lines = streamlines(flow, SCENE, vectors="V", seeds=150, max_length=0.5)
+    lines = streamlines(flow, SCENE, tangents="V", seeds=150, max_length=0.5)
     assert lines.n_lines == 150
     sphere = ball(30)
     sphere["V"][np.asarray(sphere.points)[:, 2] > 0] = 0
-    assert streamlines(sphere, SCENE, vectors="V", seeds=40).n_lines == 40
+    assert streamlines(sphere, SCENE, tangents="V", seeds=40).n_lines == 40
     grid = pv.ImageData(dimensions=(4, 4, 4))
     grid["V"] = np.zeros((64, 3))
     grid["V"][21] = 1
     with pytest.warns(UserWarning, match=r"of 64 lines could be traced"):
-        few = streamlines(grid, SCENE, vectors="V", seeds=100)
+        few = streamlines(grid, SCENE, tangents="V", seeds=100)
     assert few.n_lines < 64
 
 
@@ -371,8 +371,8 @@ def test_a_grid_that_is_a_surface_is_taken_as_one(kind):
     surface = mesh.extract_surface(algorithm="geometry")
     if kind == "unstructured":
         mesh = mesh.cast_to_unstructured_grid()
-    lines = streamlines(mesh, SCENE, vectors="V", seeds=9)
-    expected = streamlines(surface, SCENE, vectors="V", seeds=9)
+    lines = streamlines(mesh, SCENE, tangents="V", seeds=9)
+    expected = streamlines(surface, SCENE, tangents="V", seeds=9)
     assert lines.n_lines == 9
     assert "Normals" in lines.point_data
     # Seeds are drawn in float32, and the order of corners can differ.
@@ -383,8 +383,8 @@ def test_a_grid_that_is_a_surface_is_taken_as_one(kind):
 def test_four_components_on_a_surface_are_refused():
     surface = ball(12)
     surface["V"] = np.ones((surface.n_points, 4), np.float32)
-    with pytest.raises(ValueError, match="vectors: expected 3 components, got 'V' with 4"):
-        streamlines(vortex(), vectors="V", surface=surface, confined=True, seeds=3)
+    with pytest.raises(ValueError, match="tangents: expected 3 components, got 'V' with 4"):
+        streamlines(vortex(), tangents="V", surface=surface, confined=True, seeds=3)
 
 
 @pytest.mark.parametrize("on_surface", [False, True])
@@ -406,7 +406,7 @@ def test_tensors_give_their_first_eigenvector(on_surface):
         # At the poles of the ball the vectors are zero, and the tensors isotropic.
         told = on_surface and name != "e"
         with pytest.warns(UserWarning, match="^2 of 842 tensors") if told else nullcontext():
-            found.append(streamlines(mesh, SCENE, vectors=name, line_field=name == "e", **options))
+            found.append(streamlines(mesh, SCENE, tangents=name, line_field=name == "e", **options))
     for measure in (lambda lines: lines["luminance"].mean(), lambda lines: lines.length):
         np.testing.assert_allclose([*map(measure, found)], measure(found[0]), rtol=1e-3)
     assert found[0].n_points > 40
@@ -418,7 +418,7 @@ def test_lines_end_where_a_tensor_is_isotropic():
     tensors[grid.points[:, 0] < 1.05, 0] = 4.0
     grid["D"] = tensors
     with pytest.warns(UserWarning, match="^250 of 525 tensors have no first eigenvector"):
-        lines = streamlines(grid, SCENE, vectors="D", seeds=[[0.5, 0.22, 0.21]])
+        lines = streamlines(grid, SCENE, tangents="D", seeds=[[0.5, 0.22, 0.21]])
     x = np.asarray(lines.points)[:, 0]
     assert x.min() < 0.01
     assert 1.0 <= x.max() <= 1.1
@@ -429,11 +429,11 @@ def test_points_where_a_tensor_is_isotropic_are_marked():
     grid = pv.ImageData(dimensions=(3, 3, 3), spacing=(0.1, 0.1, 0.1))
     tensors = np.tile(np.diag([2.0, 1, 0]).ravel(), (grid.n_points, 1))
     grid["D"] = tensors
-    free = streamlines(grid, SCENE, vectors="D", seeds=[[0.1, 0.1, 0.1]])
+    free = streamlines(grid, SCENE, tangents="D", seeds=[[0.1, 0.1, 0.1]])
     assert "Tangents_valid" not in free.point_data
     tensors[np.isclose(grid.points[:, 0], 0.2)] = np.diag([1.0, 2, 0]).ravel()
     grid["D"] = tensors
-    lines = streamlines(grid, SCENE, vectors="D", seeds=[[0.05, 0.1, 0.1]])
+    lines = streamlines(grid, SCENE, tangents="D", seeds=[[0.05, 0.1, 0.1]])
     isotropic = np.isclose(np.asarray(lines["D"])[:, 0], np.asarray(lines["D"])[:, 4], rtol=1e-7)
     marked = ~np.asarray(lines.point_data.get("Tangents_valid", ~isotropic))
     np.testing.assert_array_equal(marked, isotropic)
@@ -451,7 +451,7 @@ def test_the_own_array_of_a_line_field_does_not_depend_on_signs(kind, on_surface
         mesh["e"] = given
         seeds = np.asarray(mesh.points, float)[[200, 333, 470]] * 0.97
         options = {"line_field": True, "seeds": seeds, "max_length": 0.5}
-        found.append(streamlines(mesh, SCENE, vectors="e", **options))
+        found.append(streamlines(mesh, SCENE, tangents="e", **options))
     assert found[0].n_points == found[1].n_points > 20
     for lines in found:
         along = np.einsum("ij,ij->i", np.asarray(lines["e"]), np.asarray(lines["Tangents"]))
@@ -475,7 +475,7 @@ def test_vectors_sampled_on_a_surface_keep_their_length(line_field):
     grid["e"] = signs * np.array([[0, 0, 3.0]])
     surface = pv.Sphere(radius=0.7)
     lines = streamlines(
-        grid, SCENE, vectors="e", line_field=line_field, surface=surface, confined=True, seeds=9
+        grid, SCENE, tangents="e", line_field=line_field, surface=surface, confined=True, seeds=9
     )
     np.testing.assert_allclose(np.abs(np.asarray(lines["e"])[:, 2]), 3.0, rtol=1e-5)
 
@@ -485,8 +485,8 @@ def test_the_surface_of_lines_is_split_at_sharp_edges():
     box.clear_data()
     box["V"] = np.cross(box.points, (0.1, 0.2, 1))
     with pytest.warns(UserWarning, match="8% of the edges are sharper than 30 degrees"):
-        round_ = streamlines(box, SCENE, vectors="V", seeds=20)
-    lines = streamlines(box, SCENE, vectors="V", seeds=20, feature_angle="auto")
+        round_ = streamlines(box, SCENE, tangents="V", seeds=20)
+    lines = streamlines(box, SCENE, tangents="V", seeds=20, feature_angle="auto")
     np.testing.assert_allclose(np.abs(lines["Normals"]).max(axis=1), 1, atol=1e-6)
     assert np.abs(round_["Normals"]).max(axis=1).min() < 0.9
     np.testing.assert_allclose(lines.length, round_.length, rtol=1e-2)
@@ -524,7 +524,7 @@ def families(lines):
 def test_both_families_of_a_cross_field_are_evenly_spaced():
     mesh = wheel()
     before = mesh.copy()
-    lines = streamlines(mesh, SCENE, vectors=("u", "v"), line_field=True, spacing=0.2)
+    lines = streamlines(mesh, SCENE, tangents=("u", "v"), line_field=True, spacing=0.2)
     assert mesh == before
     length, parallel, error = families(lines)
     assert error.max() < 0.01
@@ -536,12 +536,12 @@ def test_both_families_of_a_cross_field_are_evenly_spaced():
     assert lines.field_data["closed"][0] > 10
     assert not {"u", "v"} & set(lines.point_data)
     told = vizlight.provenance(lines)["options"]
-    assert (told["vectors"], told["line_field"]) == (["u", "v"], True)
+    assert (told["tangents"], told["line_field"]) == (["u", "v"], True)
 
 
 def test_two_lines_of_a_cross_field_start_at_a_point():
     seeds = np.array([[1.39, 0, 0.1], [0, 0.98, 0.4]])
-    cross = {"vectors": ["u", "v"], "line_field": True, "max_length": 1.0}
+    cross = {"tangents": ["u", "v"], "line_field": True, "max_length": 1.0}
     lines = streamlines(wheel(), SCENE, seeds=seeds, **cross)
     _, parallel, error = families(lines)
     assert error.max() < 0.01
@@ -556,7 +556,7 @@ def test_a_cross_field_in_a_volume():
     x, y = np.array([1.0, 0, 0]), np.array([0.3, 2.0, 0])
     grid["u"], grid["v"] = np.where(swap, x, -y), np.where(swap, y, -x)
     seeds = [[0.3, 0.4, 0.52]]
-    lines = streamlines(grid, SCENE, vectors=("u", "v"), line_field=True, seeds=seeds)
+    lines = streamlines(grid, SCENE, tangents=("u", "v"), line_field=True, seeds=seeds)
     ends = np.sort([np.abs(p[-1] - p[0]) for p in parts(lines)], axis=0)
     np.testing.assert_allclose(ends, [[0.15, 0, 0], [1, 1, 0]], atol=1e-5)
 
@@ -564,21 +564,21 @@ def test_a_cross_field_in_a_volume():
 def bad_cross_fields(vectors, options):
     mesh = wheel(9)
     mesh["D"] = np.ones((mesh.n_points, 6))
-    streamlines(mesh, SCENE, vectors=vectors, **{"line_field": True} | options)
+    streamlines(mesh, SCENE, tangents=vectors, **{"line_field": True} | options)
 
 
 test_bad_cross_fields = refusals(
     bad_cross_fields,
     (("u", "v"), {"line_field": False}, "line_field: expected True .* pass line_field=True"),
-    (("u", "v", "u"), {}, "vectors: expected one name .*, got 3 names"),
-    (("u", "w"), {}, "vectors: expected the name .*'u', 'v'.*got 'w'"),
-    (("u", "u"), {}, "vectors: expected different arrays, got 'u'"),
-    (("u", 3), {}, "vectors: expected the names of two point arrays", TypeError),
-    (("u", "D"), {}, "vectors: expected .*3 components"),
+    (("u", "v", "u"), {}, "tangents: expected one name .*, got 3 names"),
+    (("u", "w"), {}, "tangents: expected the name .*'u', 'v'.*got 'w'"),
+    (("u", "u"), {}, "tangents: expected different arrays, got 'u'"),
+    (("u", 3), {}, "tangents: expected the names of two point arrays", TypeError),
+    (("u", "D"), {}, "tangents: expected .*3 components"),
     (
         ("u", "v"),
         {"surface": pv.Sphere(), "confined": True},
-        "vectors: expected two point arrays of the surface, got 'u'; attach both",
+        "tangents: expected two point arrays of the surface, got 'u'; attach both",
     ),
 )
 
@@ -586,7 +586,7 @@ test_bad_cross_fields = refusals(
 def test_two_components_have_no_third():
     mesh = pv.Plane(i_resolution=20, j_resolution=20)
     mesh["U"] = np.asarray(mesh.points)[:, :2] @ [[0, 1], [-1, 0]]
-    lines = streamlines(mesh, SCENE, vectors="U", seeds=[[0.3, 0, 0]])
+    lines = streamlines(mesh, SCENE, tangents="U", seeds=[[0.3, 0, 0]])
     np.testing.assert_allclose(np.linalg.norm(lines.points, axis=1), 0.3, atol=1e-2)
     assert mesh["U"].shape[1] == 2
 
@@ -595,7 +595,7 @@ def test_a_cloud_has_no_cells():
     cloud = pv.PolyData(np.random.default_rng(0).random((20, 3)))
     cloud["U"] = np.asarray(cloud.points)
     with pytest.raises(ValueError, match="mesh: expected a mesh with cells, got vertices alone"):
-        streamlines(cloud, SCENE, vectors="U", seeds=5)
+        streamlines(cloud, SCENE, tangents="U", seeds=5)
 
 
 @pytest.mark.parametrize("kind", ["image", "rectilinear"])
@@ -604,7 +604,7 @@ def test_flat_grids_are_surfaces(kind):
     grid = grid if kind == "image" else grid.cast_to_rectilinear_grid()
     x, y = np.asarray(grid.points)[:, :2].T
     grid["V"] = np.stack([0.5 - y, x - 0.5, 0 * x], axis=1)
-    lines = streamlines(grid, SCENE, vectors="V", spacing=0.1)
+    lines = streamlines(grid, SCENE, tangents="V", spacing=0.1)
     assert lines.field_data["largest_gap"][0] < 1.5
     # Vectors are no heights: such a grid is flat below the sky.
     np.testing.assert_allclose(vizlight.sky(grid)["sky"], 1, atol=0.02)

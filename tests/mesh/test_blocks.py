@@ -19,7 +19,7 @@ FILTERS = {
     "relief_shadow": lambda mesh: vizlight.relief_shadow(mesh, SCENE),
     "relief_day": lambda mesh: vizlight.relief_day(mesh, sun=[(0, 40)]),
     "bas_relief": lambda mesh: vizlight.bas_relief(mesh, resolution=20),
-    "streamlines": lambda mesh: vizlight.streamlines(mesh, SCENE, vectors="U", seeds=5),
+    "streamlines": lambda mesh: vizlight.streamlines(mesh, SCENE, tangents="U", seeds=5),
     "tint": lambda mesh: vizlight.tint(vizlight.illuminate(mesh, SCENE), "p"),
     "surface_of": files.surface_of,
 }
@@ -73,8 +73,8 @@ def test_every_filter_takes_every_mesh(filter_, mesh):
 
 
 def test_lines_in_a_case_are_those_in_its_cells():
-    one = vizlight.streamlines(volume(), SCENE, vectors="U", seeds=9)
-    other = vizlight.streamlines(case(), SCENE, vectors="U", seeds=9)
+    one = vizlight.streamlines(volume(), SCENE, tangents="U", seeds=9)
+    other = vizlight.streamlines(case(), SCENE, tangents="U", seeds=9)
     np.testing.assert_allclose(one.points, other.points)
 
 

@@ -112,7 +112,7 @@ def test_lines_on_an_open_surface_are_lit_on_the_side_that_is_seen():
     sheet["V"] = np.tile([1.0, 0.3, 0], (sheet.n_points, 1))
     for side in (1, -1):
         scene = HEAD.replace(view=View(position=(0.1, 0.2, 3 * side)))
-        lines = vizlight.streamlines(sheet, scene, vectors="V", seeds=5, facing="eye")
+        lines = vizlight.streamlines(sheet, scene, tangents="V", seeds=5, facing="eye")
         assert lines["luminance"].min() > 0.3
 
 

@@ -162,7 +162,7 @@ def test_reading_notes_once_what_was_filled(tmp_path):
 
 def test_lines_stay_in_the_block_that_has_the_flow():
     flow = volume(U=lambda p: np.tile([1.0, 0, 0], (len(p), 1)))
-    lines = vizlight.streamlines(pv.MultiBlock([flow, volume(10)]), SCENE, vectors="U", seeds=5)
+    lines = vizlight.streamlines(pv.MultiBlock([flow, volume(10)]), SCENE, tangents="U", seeds=5)
     assert lines.n_lines == 5
     assert lines.bounds[1] <= 3.001
 

@@ -62,7 +62,7 @@ def test_components_become_vectors():
     assert name == "u,v"
     assert name not in mesh.point_data
     assert np.isnan(out[name]).all(axis=1).tolist() == [False, False, True, False]
-    with pytest.raises(ValueError, match="vectors: expected the name .*u,v or u10,v10"):
+    with pytest.raises(ValueError, match="tangents: expected the name .*u,v or u10,v10"):
         meaning.with_named(mesh_with("u", "v", "u10", "v10"), None)
     with pytest.raises(ValueError, match="names of two or three arrays .*got 'u,w'; there are u,v"):
         meaning.with_named(mesh, "u,w")

@@ -352,7 +352,7 @@ def test_a_jump_of_the_light_is_confined():
 
 def test_results_of_filters_and_blocks_are_refined():
     fine = refine(ball(), SCENE)
-    rough = streamlines(vizlight.load_example(), SCENE, vectors="V", seeds=5)
+    rough = streamlines(vizlight.load_example(), SCENE, tangents="V", seeds=5)
     smooth = refine(rough, SCENE)
     assert rough.n_lines == smooth.n_lines
     assert smooth.n_points > rough.n_points

@@ -161,7 +161,7 @@ def test_thin_lines_on_a_surface_leave_it_readable(question):
         how = {"scene": FLAT, "tangents": "swirl", "scalars": "speed", "cmap": "viridis"}
     plotter, _ = plotter_of(mesh, show_scalar_bar=False, **how)
     bare = getattr(plotter.vizlight.legibility(**HOW), question)
-    lines = vizlight.streamlines(mesh, vectors="swirl", spacing=0.12)
+    lines = vizlight.streamlines(mesh, tangents="swirl", spacing=0.12)
     lines.points[:, 2] += 0.02
     plotter.vizlight.add_mesh(lines, color="black", line_width=1, halo=False)
     found = getattr(plotter.vizlight.legibility(**HOW), question)

@@ -400,7 +400,7 @@ def test_partitions_of_a_file_and_indices_are_pieces(tmp_path, light):
 
 
 def test_streamlines_of_each_piece(stored, light):
-    lit = light(stored, PLAIN, filter="streamlines", vectors="V", seeds=5, slab=0.1)
+    lit = light(stored, PLAIN, filter="streamlines", tangents="V", seeds=5, slab=0.1)
     assert lit.ranges["luminance"][1] > lit.ranges["luminance"][0]
 
 

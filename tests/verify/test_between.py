@@ -100,7 +100,7 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
         warnings.simplefilter("ignore", UserWarning)
         runs = report_of(
             lambda: [
-                vizlight.streamlines(flow, SCENE, vectors="V", seeds=5),
+                vizlight.streamlines(flow, SCENE, tangents="V", seeds=5),
                 illuminate(flow.contour([600.0], scalars="Temp"), SCENE, tangents="V"),
                 illuminate(flow, SCENE),
                 illuminate(pv.PolyData(np.eye(3)), SCENE, tangents=np.eye(3)),

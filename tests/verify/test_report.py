@@ -64,7 +64,7 @@ FILTERS = {
     "conditioned": lambda s: illuminate(s, SCENE, tangents="V", conditioned=True, components=True),
     "uncompensated": lambda s: illuminate(s, SCENE, tangents="V", exponent=1),
     "cylinder": lambda s: illuminate(s, SCENE, tangents="V", model="cylinder"),
-    "streamlines": lambda _: streamlines(vizlight.load_example(), SCENE, vectors="V", seeds=9),
+    "streamlines": lambda _: streamlines(vizlight.load_example(), SCENE, tangents="V", seeds=9),
     "satin": lambda s: satin(s, SCENE, tangents="V", seeds=5),
     "fur": lambda _: fur(pv.Sphere().compute_normals(), PLAIN, density=0.3, fibres=300),
     "4-space": lambda _: illuminate(torus(), SCENE_4, tangents="frame", positions="position"),

@@ -92,7 +92,7 @@ def test_lines_as_thin_cylinders():
     """The exact line light through every filter of lines; refused where there are no lines."""
     flow = vizlight.load_example()
     scene = far((1, 0.9, 0.5), (0.2, 1, 0.3))
-    lines = vizlight.streamlines(flow, scene, vectors="V", seeds=10, model="cylinder")
+    lines = vizlight.streamlines(flow, scene, tangents="V", seeds=10, model="cylinder")
     assert vizlight.provenance(lines)["options"]["model"] == "cylinder"
     again = vizlight.illuminate(lines, scene, tangents="Tangents", model="cylinder", name="again")
     np.testing.assert_array_equal(again["again"], lines["luminance"])

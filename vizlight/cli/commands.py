@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 HTML = ".html"
 
 
-@takes("streamlines", "Streamlines", example="flow.vtu --vectors V --model cylinder --diffuse 0.8")
+@takes("streamlines", "Streamlines", example="flow.vtu --tangents V --model cylinder --diffuse 0.8")
 def streamlines(
     files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
 ) -> int:
@@ -59,8 +59,8 @@ def streamlines(
         Mesh with vectors; of several each is lit by itself.
     """
     given = keywords(how)
-    if given.get("line_field") and "," in given.get("vectors", ""):
-        given["vectors"] = tuple(given["vectors"].split(","))
+    if given.get("line_field") and "," in given.get("tangents", ""):
+        given["tangents"] = tuple(given["tangents"].split(","))
     return _shown("flow", "streamlines", files, part, given, common, color)
 
 

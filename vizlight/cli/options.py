@@ -430,6 +430,11 @@ def _name_or_vector(_: str, text: str) -> object:
 
 #: Options whose text is read in a way of its own: type, reader, and description.
 READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
+    "tangents": (
+        str | None,
+        lambda _, text: text,
+        "Name of the vectors, or U,V for components.",
+    ),
     "levels": (
         str | None,
         _levels,

@@ -52,7 +52,7 @@ class FurOptions(Options):
     fibres: int = 50_000
     length: float | str | Sequence[float] | Array | None = None
     segments: int = 3
-    vectors: str | None = None
+    tangents: str | None = None
     toward: str | VectorLike | None = None
     bend: float = 0.0
     curl: float = 0.0
@@ -82,7 +82,7 @@ class FurOptions(Options):
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
             _check.number(option, value, low=-_check.LARGEST, high=_check.LARGEST)
-        records.refuse_unnamed("vectors", self.vectors)
+        records.refuse_unnamed("tangents", self.tangents)
         if isinstance(self.toward, str):
             records.refuse_unnamed("toward", self.toward)
         if self.bend and self.toward is None:
@@ -123,7 +123,7 @@ def fur(
     fibres: int = 50000,
     length: float | str | Sequence[float] | Array | None = None,
     segments: int = 3,
-    vectors: str | None = None,
+    tangents: str | None = None,
     toward: str | VectorLike | None = None,
     bend: float = 0.0,
     curl: float = 0.0,
@@ -161,7 +161,7 @@ def fur(
         one component, interpolated. Default: 0.03 of the diagonal of the mesh.
     segments : int, default: 3
         Number of segments of a fibre, of equal lengths.
-    vectors : str, optional
+    tangents : str, optional
         Name of a point array of 3 components along which fibres grow, whatever their length.
         Default: the normals, also where a vector is zero. A vector that points into the surface is
         reversed, and a warning counts them.
@@ -305,8 +305,8 @@ class _Coat:
         self.faces = faces.take(order, axis=0)
         self.normals = np.asarray(skin.point_data[NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
-        if options.vectors is not None:
-            given = vectors_of(surface, "vectors", options.vectors, 3)
+        if options.tangents is not None:
+            given = vectors_of(surface, "tangents", options.tangents, 3)
             lost = len(given) - int(np.count_nonzero(np.all(np.isfinite(given), axis=1)))
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"

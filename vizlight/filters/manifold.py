@@ -36,7 +36,7 @@ def manifold(
     distance: float | None = None,
     positions: str | None = "position",
     frame: str | None = "frame",
-    vectors: str | Sequence[str] | None = None,
+    turned: str | Sequence[str] | None = None,
     cut: bool = False,
     light: LightWhen = "before",
     tangents: str | ArrayLike | None = None,
@@ -60,7 +60,7 @@ def manifold(
         Manifold, such as one of :mod:`vizlight.geometry.nspace.manifolds`.
     scene, progress_bar
         As for :func:`project`.
-    rotation, hyperplane, distance, positions, frame, vectors, cut, light
+    rotation, hyperplane, distance, positions, frame, turned, cut, light
         As for :func:`vizlight.project`.
     tangents, normals, facing, conditioned, line_field, occlusion, name, exponent, model, components
         As for :func:`vizlight.illuminate`.

@@ -45,10 +45,10 @@ class PathlineOptions(LightOptions):
     The fields are keywords of :func:`vizlight.pathlines`.
     """
 
-    DECIDED: ClassVar = frozenset({"tangents", "positions", "feature_angle"})
+    DECIDED: ClassVar = frozenset({"positions", "feature_angle"})
     kind: Kind = "pathlines"
     times: ArrayLike | None = None
-    vectors: str | None = None
+    tangents: str | None = None
     seeds: int | ArrayLike | pv.DataSet = 200
     seed: int = 0
     tail: float | None = None
@@ -59,10 +59,10 @@ class PathlineOptions(LightOptions):
         _check.choice("kind", self.kind, get_args(Kind))
         _check.fields(self, _check.number, "step", low=1e-3)
         _check.fields(self, _check.integer, "seed", low=0)
-        names: object = self.vectors
+        names: object = self.tangents
         if isinstance(names, list | tuple):
-            _check.set_fields(self, vectors=",".join(map(str, names)))
-        records.refuse_unnamed("vectors", self.vectors)
+            _check.set_fields(self, tangents=",".join(map(str, names)))
+        records.refuse_unnamed("tangents", self.tangents)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
             raise ValueError(_check.message("conditioned", expected, "none"))
@@ -77,7 +77,7 @@ def pathlines(
     *,
     kind: Kind = "pathlines",
     times: ArrayLike | None = None,
-    vectors: str | None = None,
+    tangents: str | None = None,
     seeds: int | ArrayLike | pv.DataSet = 200,
     seed: int = 0,
     tail: float | None = None,
@@ -110,7 +110,7 @@ def pathlines(
         particles are now that have left a seed one after the other, like smoke.
     times : array_like, shape (S,), optional
         Times of a sequence of meshes, rising. Default: their field array ``TimeValue``.
-    vectors : str, optional
+    tangents : str, optional
         Name of a point array of 3 components, of the same name at each step, or of components,
         such as ``"u,v"``. Default: the active vectors of the first, or its only components. On a
         map in degrees they are metres a second, east and north.
@@ -168,7 +168,7 @@ def pathlines(
     ...     step["V"] = np.tile([1.0, np.cos(t), 0.0], (step.n_points, 1))
     ...     steps.append(step)
     >>> scene = vizlight.Scene(view=vizlight.View(direction=(0, 0, 1)))
-    >>> frames = list(vizlight.pathlines(steps, scene, times=times, vectors="V", seeds=20))
+    >>> frames = list(vizlight.pathlines(steps, scene, times=times, tangents="V", seeds=20))
     >>> len(frames), "luminance" in frames[-1].point_data
     (4, True)
     """
@@ -179,14 +179,14 @@ def pathlines(
         series = cf_grids.Steps(Path(series))
     steps = Series(series, asked.times)
     first = steps.mesh(0)
-    vectors = asked.vectors
-    if vectors is None:
-        vectors = first.point_data.active_vectors_name or meaning.only_vectors(first)
-    if vectors is None:
+    named = asked.tangents
+    if named is None:
+        named = first.point_data.active_vectors_name or meaning.only_vectors(first)
+    if named is None:
         expected = "the name of a point array of 3 components"
-        raise ValueError(_check.message("vectors", expected, None))
-    seeds = _seeds(first, steps.vectors(0, vectors), asked)
-    asked = dataclasses.replace(asked, vectors=vectors)
+        raise ValueError(_check.message("tangents", expected, None))
+    seeds = _seeds(first, steps.vectors(0, named), asked)
+    asked = dataclasses.replace(asked, tangents=named)
 
     # A generator of its own: arguments are checked at the call, and not when the first frame is
     # asked for.
@@ -213,7 +213,7 @@ def _seeds(mesh: pv.DataSet, vectors: Array, options: PathlineOptions) -> Array:
     count = _check.integer("seeds", given, low=1)
     moving = np.flatnonzero(np.any(vectors != 0, axis=1))
     if not len(moving):
-        name = repr(options.vectors)
+        name = repr(options.tangents)
         raise ValueError(_check.message("seeds", "points at which the vectors are not zero", name))
     random = np.random.default_rng(options.seed)
     chosen = np.sort(random.choice(moving, min(count, len(moving)), replace=False))
@@ -225,12 +225,11 @@ def _lines(
     steps: Series, seeds: Array, options: PathlineOptions, report: Callable[[int], None]
 ) -> Iterator[tuple[pv.PolyData, LightOptions]]:
     """Yield the lines of each step, and how they are lit."""
-    name, streaks = str(options.vectors), options.kind == "streaklines"
-    light = LightOptions.of(vars(options))
+    name, streaks = str(options.tangents), options.kind == "streaklines"
     # A pathline follows one particle, whose velocity is the tangent; a streak joins several
     # particles.
-    if not streaks:
-        light = dataclasses.replace(light, tangents=TANGENTS if name != TANGENTS else OWN_TANGENTS)
+    tangents = None if streaks else TANGENTS if name != TANGENTS else OWN_TANGENTS
+    light = LightOptions.of(vars(options) | {"tangents": tangents})
     carrier, times = Carrier(steps.mesh(0)), steps.times
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))
     before, coarse = steps.vectors(0, name), 0.0
@@ -272,8 +271,8 @@ def _lines(
             expected = "points inside the mesh where the vectors are not zero"
             name = "seeds" if options.tail is None else "seeds, tail"
             raise ValueError(_check.message(name, expected, "no line"))
-        if light.tangents in (TANGENTS, OWN_TANGENTS):
-            records.attach_rows(lines, str(light.tangents), np.asarray(lines.point_data[name]))
+        if tangents is not None:
+            records.attach_rows(lines, tangents, np.asarray(lines.point_data[name]))
         lines.field_data[TIME] = [float(times[i])]
         report(i)
         yield lines, light

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 LightWhen = Literal["before", "after"]
 #: Options of the projection alone.
-PROJECTION = ("rotation", "hyperplane", "distance", "frame", "vectors", "cut", "light")
+PROJECTION = ("rotation", "hyperplane", "distance", "frame", "turned", "cut", "light")
 #: Options of the light alone, which need a scene.
 LIGHT_ALONE = {field.name for field in dataclasses.fields(LightOptions)} - {"positions"}
 
@@ -49,7 +49,7 @@ class ProjectOptions(LightOptions):
     distance: float | None = None
     positions: str | None = POSITION
     frame: str | None = FRAME
-    vectors: str | Sequence[str] | None = None
+    turned: str | Sequence[str] | None = None
     cut: bool = False
     light: LightWhen = "before"
 
@@ -60,15 +60,15 @@ class ProjectOptions(LightOptions):
         if not isinstance(positions, str) or not positions:
             got, remedy = _check.describe(positions), "attach it to the mesh and name it"
             raise TypeError(_check.message("positions", "the name of a point array", got, remedy))
-        vectors: object = () if self.vectors is None else self.vectors
-        vectors = (vectors,) if isinstance(vectors, str) else vectors
-        if not isinstance(vectors, list | tuple):
+        turned: object = () if self.turned is None else self.turned
+        turned = (turned,) if isinstance(turned, str) else turned
+        if not isinstance(turned, list | tuple):
             expected = "the name of a point array, or a list of names"
-            raise TypeError(_check.message("vectors", expected, _check.describe(vectors)))
+            raise TypeError(_check.message("turned", expected, _check.describe(turned)))
         distance = self.distance
         _check.set_fields(
             self,
-            vectors=tuple(vectors),
+            turned=tuple(turned),
             distance=None if distance is None else projection.check_distance(distance),
         )
 
@@ -89,7 +89,7 @@ def project(
     distance: float | None = None,
     positions: str | None = "position",
     frame: str | None = "frame",
-    vectors: str | Sequence[str] | None = None,
+    turned: str | Sequence[str] | None = None,
     cut: bool = False,
     light: LightWhen = "before",
     tangents: str | ArrayLike | None = None,
@@ -131,7 +131,7 @@ def project(
     frame : str or None, default: "frame"
         Name of the point array of k n components, the tangents, row after row. None: there is
         none.
-    vectors : str or sequence of str, optional
+    turned : str or sequence of str, optional
         Names of further point arrays of m n components, vectors in n-space that turn with the
         mesh.
     cut : bool, default: False
@@ -153,7 +153,7 @@ def project(
     pyvista.DataSet or pyvista.MultiBlock
         A mesh with points in 3-space, ``position`` and ``frame`` turned, and for k < 3 the point
         array ``projected_frame``: the derivative of the projection applied to the frame,
-        orthonormalised; for each array V of ``vectors`` its image ``projected_V``, of the length
+        orthonormalised; for each array V of ``turned`` its image ``projected_V``, of the length
         that it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
         ``luminance_provenance`` makes the light again from the mesh that was given.
         It shares no memory with ``mesh``: arrays that nothing is done to are copies.
@@ -201,7 +201,7 @@ def project(
         distance=asked.distance,
         positions=asked.positions or POSITION,
         frame=asked.frame,
-        vectors=tuple(asked.vectors or ()),
+        turned=tuple(asked.turned or ()),
         cut=asked.cut,
     )
 
@@ -233,7 +233,7 @@ def project(
         done = Counter(report)
         lost = Counter(lambda _: None)
         # Between these two steps the mesh has its turned positions of n components.
-        out = lit(_each(mesh, lambda block: job.turned(block, done, lost)), "before")
+        out = lit(_each(mesh, lambda block: job.rotated(block, done, lost)), "before")
         out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
             for block in blocks.all_blocks(out):

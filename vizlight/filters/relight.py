@@ -249,10 +249,10 @@ def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
         light["conditioned"] = beside
     if light["conditioned"] is True and light.get("normals") is None:
         light["normals"] = "Normals"
-    if light.get("tangents") is None:
-        # Both are there if the traced mesh had an array of the first name.
-        made = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
-        light["tangents"] = next(made, None)
+    # The record names the vectors of the traced mesh. Both of these are there if it had an array of
+    # the second name.
+    made = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
+    light["tangents"] = next(made, None)
     return LightOptions.of(light)
 
 

@@ -11,7 +11,6 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
-from vizlight.mesh import records
 from vizlight.scene.keywords import named
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import is_of_cells, tangents_of, vectors_of
@@ -31,8 +30,9 @@ class SatinOptions(StreamlineOptions):
     """
 
     DECIDED: ClassVar = frozenset(
-        {"conditioned", "vectors", "surface", "confined", "stroke_length", "min_length"}
+        {"conditioned", "surface", "confined", "stroke_length", "min_length"}
     )
+    tangents: str | None = None
     seeds: int | ArrayLike | pv.DataSet = 300
 
 
@@ -48,7 +48,7 @@ def satin(
     spacing: float | None = None,
     step: float = 0.3,
     max_length: float | None = None,
-    tangents: str | ArrayLike | None = None,
+    tangents: str | None = None,
     positions: str | None = None,
     normals: str | ArrayLike | None = None,
     facing: Facing = "auto",
@@ -102,7 +102,6 @@ def satin(
         raise ValueError(_check.message("tangents", "the name of a point array", None))
     traced, averaged = surface, False
     if isinstance(surface, pv.DataSet):
-        records.refuse_unnamed("tangents", asked.tangents)
         name = str(asked.tangents)
         averaged = is_of_cells(surface, name)
         if averaged:
@@ -122,9 +121,7 @@ def satin(
     lines = StreamlineOptions.of(
         vars(asked)
         | {
-            "vectors": str(asked.tangents),
             "line_field": asked.line_field or averaged,
-            "tangents": None,
             "conditioned": False,
             "normals": None,
             "facing": "auto",

@@ -55,9 +55,9 @@ class StreamlineOptions(LightOptions):
     The fields are keywords of :func:`vizlight.streamlines`.
     """
 
-    DECIDED: ClassVar = frozenset({"tangents", "positions", "normals"})
+    DECIDED: ClassVar = frozenset({"positions", "normals"})
 
-    vectors: str | tuple[str, str] | None = None
+    tangents: str | tuple[str, str] | None = None
     surface: pv.PolyData | None = None
     confined: bool | None = None
     seeds: int | ArrayLike | pv.DataSet = 200
@@ -77,13 +77,13 @@ class StreamlineOptions(LightOptions):
         if surface is not None and not isinstance(surface, pv.DataSet):
             expected, got = "a PyVista surface", _check.describe(surface)
             raise TypeError(_check.message("surface", expected, got))
-        given: object = self.vectors
+        given: object = self.tangents
         if isinstance(given, list | tuple):
             names = _names_of(given, pair=self.line_field)
             # The two of a cross field have no sign; of others these are the components.
-            _check.set_fields(self, vectors=names if self.line_field else ",".join(names))
+            _check.set_fields(self, tangents=names if self.line_field else ",".join(names))
         else:
-            records.refuse_unnamed("vectors", given)
+            records.refuse_unnamed("tangents", given)
         _check.fields(self, _check.integer, "seed", low=0)
         for length in ("spacing", "min_length", "stroke_length"):
             _check.fields(self, _check.positive, length, optional=True)
@@ -93,13 +93,13 @@ def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
     """Return the names of the arrays of a cross field, or of the components of vectors."""
     if len(names) not in ((2,) if pair else (2, 3)):
         expected = "one name of a point array, the names of components, or the two of a cross field"
-        raise ValueError(_check.message("vectors", expected, f"{len(names)} names"))
+        raise ValueError(_check.message("tangents", expected, f"{len(names)} names"))
     checked = tuple(
-        _check.text("vectors", name, expected="the names of two point arrays") for name in names
+        _check.text("tangents", name, expected="the names of two point arrays") for name in names
     )
     if len({*checked}) != len(checked):
         remedy = "for a single line field pass its name alone"
-        raise ValueError(_check.message("vectors", "different arrays", repr(checked[0]), remedy))
+        raise ValueError(_check.message("tangents", "different arrays", repr(checked[0]), remedy))
     return checked
 
 
@@ -109,7 +109,7 @@ def streamlines(
     /,
     scene: AnyScene | None = None,
     *,
-    vectors: str | tuple[str, str] | None = None,
+    tangents: str | tuple[str, str] | None = None,
     line_field: bool = False,
     surface: pv.PolyData | None = None,
     confined: bool | None = None,
@@ -141,7 +141,7 @@ def streamlines(
         cells of the highest dimension are taken, without patches.
     scene : Scene or str, optional
         Lights, material and view, by default ``Scene()``.
-    vectors : str or tuple of str, optional
+    tangents : str or tuple of str, optional
         Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
         points. Names of two or three arrays of one component, as a tuple or as ``"u,v"``, are
         those of components. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in
@@ -247,7 +247,7 @@ def streamlines(
     >>> import vizlight
     >>> flow = vizlight.load_example()
     >>> scene = vizlight.Scene(view=vizlight.View(direction=(1, 1, 1)))
-    >>> lines = vizlight.streamlines(flow, scene, vectors="V", seeds=20)
+    >>> lines = vizlight.streamlines(flow, scene, tangents="V", seeds=20)
     >>> "luminance" in lines.point_data
     True
     """
@@ -269,9 +269,9 @@ def light_lines(
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
-    mesh, vectors = meaning.with_named(mesh, options.vectors)
-    options = dataclasses.replace(options, vectors=vectors)
-    mesh = records.averaged(mesh, *_names(options.vectors))
+    mesh, found = meaning.with_named(mesh, options.tangents)
+    options = dataclasses.replace(options, tangents=found)
+    mesh = records.averaged(mesh, *_names(options.tangents))
     scene = as_scene(scene)
     if options.conditioned is None and _tells_of_lines(scene):
         options = dataclasses.replace(options, conditioned=False)
@@ -286,7 +286,7 @@ def light_lines(
     # The lines are new and nobody else's, and need no copy.
     lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     # The record names the vectors that were found, since the active ones of a mesh may change.
-    recorded = dataclasses.replace(options, vectors=made.vectors)
+    recorded = dataclasses.replace(options, tangents=made.tangents)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
 
@@ -314,9 +314,9 @@ def _as_strokes(
 
 def _speed(lines: pv.PolyData, options: StreamlineOptions) -> Array | None:
     """Return the lengths of the vectors at the points of lines, None where they have none."""
-    if not isinstance(options.vectors, str):
+    if not isinstance(options.tangents, str):
         return None
-    rows = np.asarray(lines.point_data[options.vectors], dtype=np.float64)
+    rows = np.asarray(lines.point_data[options.tangents], dtype=np.float64)
     return np.linalg.norm(rows, axis=1) if rows.ndim == 2 and rows.shape[1] == 3 else None
 
 
@@ -346,7 +346,7 @@ def _check_mesh(mesh: object, argument: str) -> None:
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
     """Return the options with vectors, surface and whether lines are confined put in."""
-    vectors, unsigned = _vectors_name(mesh, options.vectors)
+    vectors, unsigned = _vectors_name(mesh, options.tangents)
     surface, confined = _as_surface(options.surface), options.confined
     own = _as_surface(mesh)
     is_surface = isinstance(own, pv.PolyData) and has_faces(own)
@@ -359,7 +359,7 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
     return dataclasses.replace(
         options,
-        vectors=vectors,
+        tangents=vectors,
         surface=surface,
         confined=confined,
         line_field=options.line_field or unsigned,
@@ -426,8 +426,8 @@ def _traced(
         # Where a line comes to rest it has the direction in which it came.
         tangents[resting] = polylines.line_tangents(lines)[resting]
     lines.point_data[name] = tangents.astype(np.float32)
-    if isinstance(options.vectors, str):
-        rows = np.asarray(lines.point_data[options.vectors])
+    if isinstance(options.tangents, str):
+        rows = np.asarray(lines.point_data[options.tangents])
         # The mask tells points without a first eigenvector from those whose tangent is a direction
         # of the field.
         if rows.ndim == 2 and rows.shape[1] in (6, 9):
@@ -475,7 +475,7 @@ def _lines(
     if not tracer.cells.extent > 0:
         expected = "cells of some area or volume between finite points"
         raise ValueError(_check.message(argument, expected, "none"))
-    unsigned = options.vectors if options.line_field else None
+    unsigned = options.tangents if options.line_field else None
     given = None if places is None else tracer.located(places)
     if options.spacing is None:
         start = tracer.random(count, options.seed) if given is None else given
@@ -556,11 +556,11 @@ def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, b
     for name in _names(vectors):
         if name not in mesh.point_data:
             raise _no_vectors(mesh, name)
-        array = array_of(mesh, "vectors", name)
+        array = array_of(mesh, "tangents", name)
         # Eigenvectors of tensors have no sign, whatever the option says.
         if array.shape[1] in (6, 9) and not pair:
             return name, True
-        vectors_of(mesh, "vectors", name, 3)
+        vectors_of(mesh, "tangents", name, 3)
     return vectors, pair
 
 
@@ -578,11 +578,11 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
     ]
     if not point:
         expected = "a mesh with an array of 3 components"
-        return ValueError(_check.message("vectors", expected, "a mesh without one"))
-    remedy = f"pass {' or '.join(f'vectors={key}' for key in point)}"
+        return ValueError(_check.message("tangents", expected, "a mesh without one"))
+    remedy = f"pass {' or '.join(f'tangents={key}' for key in point)}"
     expected = f"the name of an array of 3 components ({', '.join(point)})"
     given = None if got is None else repr(got)
-    return ValueError(_check.message("vectors", expected, given, remedy))
+    return ValueError(_check.message("tangents", expected, given, remedy))
 
 
 def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOptions) -> Array:
@@ -591,7 +591,7 @@ def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOpt
     They are sampled from the mesh where the surface lacks them, those without sign as tensors. The
     surface then gets the array that was sampled. A cross field has 6 components.
     """
-    names = _names(options.vectors)
+    names = _names(options.tangents)
     if surface is None:
         return np.hstack([_directions(np.asarray(mesh.point_data[name])) for name in names])
     return np.hstack([_on_surface(mesh, surface, name, options) for name in names])
@@ -601,15 +601,15 @@ def _on_surface(
     mesh: pv.DataSet, surface: pv.PolyData, name: str, options: StreamlineOptions
 ) -> Array:
     """Return the tangential part of vectors on a surface; see :func:`_field`."""
-    pair = isinstance(options.vectors, tuple)
+    pair = isinstance(options.tangents, tuple)
     if pair and name not in surface.point_data:
         expected = "two point arrays of the surface"
         remedy = "attach both directions of the cross field to the surface"
-        raise ValueError(_check.message("vectors", expected, repr(name), remedy))
+        raise ValueError(_check.message("tangents", expected, repr(name), remedy))
     if name in surface.point_data:
-        rows = array_of(surface, "vectors", name)
+        rows = array_of(surface, "tangents", name)
         if rows.shape[1] not in ((3,) if pair else (3, 6, 9)):
-            vectors_of(surface, "vectors", name, 3)
+            vectors_of(surface, "tangents", name, 3)
         array = _directions(rows)
     else:
         # A shallow copy takes the array that is sampled, so that the caller's mesh gets none.

@@ -377,7 +377,7 @@ def decide(data: object, wishes: Wishes) -> Look:
     ready = [prepared(part, step, wishes) for part, step in zip(parts, steps, strict=True)]
     if wishes.question == "flow":
         for part, (step, _, _) in zip(parts, ready, strict=True):
-            look_options.check_flow(part, step.run(), wishes.light.get("vectors"))
+            look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
         return _decided(*_chosen(step, contents, wishes), notes)
@@ -501,6 +501,8 @@ def _explicit(
         shape = "normals" in wishes.light and not wishes.light.get("conditioned")
         if best is not None and best.role == "vectors":
             question = "shape" if shape else "direction"
+    if array is not None and question in _FILTERS:
+        data = wishes.joined(data, array)
     if question == "relief" and not _is_height_field(contents, array):
         question = "shadow"
     recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))
@@ -551,7 +553,7 @@ def _is_height_field(contents: Contents, array: Named | None) -> bool:
 def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     """Return the array that was asked for, by any of the options that name one."""
     options = {"array": wishes.array}
-    options |= {name: wishes.light.get(name) for name in ("tangents", "vectors", "elevation")}
+    options |= {name: wishes.light.get(name) for name in ("tangents", "elevation")}
     options["scalars"] = wishes.picture.get("scalars")
     named_by = [
         (option, value)
@@ -566,7 +568,7 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
         there = [*contents.mesh.point_data, *contents.mesh.cell_data]
         expected = f"the name of an array, {one_of(there)}"
         raise ValueError(message(option, expected, repr(name)))
-    if option in ("tangents", "vectors") and named.role != "vectors":
+    if option == "tangents" and named.role != "vectors":
         got = f"{name!r} with {named.role}"
         raise ValueError(message(option, "vectors, or names U,V of their components", got))
     return named

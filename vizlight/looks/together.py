@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Options of a look that name an array, which not all parts need to have.
-_NAMING = ("tangents", "vectors", "elevation")
+_NAMING = ("tangents", "elevation")
 
 
 def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:

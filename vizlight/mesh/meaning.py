@@ -223,14 +223,12 @@ def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
     return rows
 
 
-def only_vectors(mesh: pv.DataSet, argument: str = "vectors") -> str | None:
+def only_vectors(mesh: pv.DataSet) -> str | None:
     """Return the names of the only components of a mesh, None where it has other vectors or none.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-    argument : str
-        Name of the argument for messages.
 
     Raises
     ------
@@ -243,13 +241,11 @@ def only_vectors(mesh: pv.DataSet, argument: str = "vectors") -> str | None:
     names = [",".join(group) for group in components(mesh)]
     if len(names) > 1:
         expected = f"the name of an array, or names of components ({' or '.join(names)})"
-        raise ValueError(_check.message(argument, expected, None))
+        raise ValueError(_check.message("tangents", expected, None))
     return names[0] if names else None
 
 
-def with_named(
-    mesh: DataSetT, named: Named | None, argument: str = "vectors"
-) -> tuple[DataSetT, Named | None]:
+def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | None]:
     """Return a mesh with the vectors that are named by their components, and their name.
 
     Parameters
@@ -260,8 +256,6 @@ def with_named(
         Name of vectors, or names of their components separated by commas. None takes the only
         components of the mesh, if it has no array of three components. Vectors of two components
         get 0 as the third.
-    argument : str
-        Name of the argument for messages.
 
     Returns
     -------
@@ -276,7 +270,7 @@ def with_named(
         If several vectors could be meant, or the components are no arrays of one component.
     """
     if named is None:
-        named = only_vectors(mesh, argument)
+        named = only_vectors(mesh)
     if isinstance(named, str) and named in mesh.array_names and np.shape(mesh[named])[1:] == (2,):
         mesh = records.averaged(mesh, named).copy(deep=False)
         flat = np.asarray(mesh.point_data[named])
@@ -293,7 +287,7 @@ def with_named(
         expected = "the names of two or three arrays of one component"
         known = [",".join(one) for one in components(mesh)]
         remedy = f"there are {' and '.join(known)}" if known else ""
-        raise ValueError(_check.message(argument, expected, repr(named), remedy))
+        raise ValueError(_check.message("tangents", expected, repr(named), remedy))
     # Arrays of cells are averaged to the points.
     mesh = records.averaged(mesh, *group).copy(deep=False)
     mesh.point_data[named] = vectors(mesh, group)

@@ -54,10 +54,10 @@ class Turning:
     distance: float | None
     positions: str
     frame: str | None
-    vectors: tuple[str, ...]
+    turned: tuple[str, ...]
     cut: bool
 
-    def turned(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
+    def rotated(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
         """Return a mesh with its arrays rotated, and cut by the hyperplane; not yet projected."""
         # These have axes in place of points, which projected points do not follow.
         if isinstance(mesh, pv.ImageData | pv.RectilinearGrid):
@@ -114,7 +114,7 @@ class Turning:
             remedy = "name an array of positions in n-space"
             raise ValueError(_check.message("positions", "2 components or more", got, remedy))
         found = {self.positions: position}
-        given = [("vectors", name) for name in self.vectors]
+        given = [("turned", name) for name in self.turned]
         if self.frame is not None:
             given.append(("frame", self.frame))
         for argument, name in given:
@@ -192,7 +192,7 @@ class Turning:
             points, _ = self._points(position)
         out = mesh.copy(deep=False)
         out.SetPoints(pv.vtk_points(points))
-        for name in self.vectors:
+        for name in self.turned:
             records.attach_rows(out, PROJECTED + name, self._image(out, name, position))
         if self.frame is not None:
             name = PROJECTED + self.frame
@@ -202,7 +202,7 @@ class Turning:
             if self.frame in out.point_data and out.point_data[self.frame].shape[1] < 3 * n:
                 records.attach_rows(out, name, self._image(out, self.frame, position, space=True))
         framed = () if self.frame is None else (self.frame,)
-        images = [PROJECTED + name for name in (*self.vectors, *framed)]
+        images = [PROJECTED + name for name in (*self.turned, *framed)]
         record = records.read(out, RECORD) or {}
         records.write(out, RECORD, record, [name for name in images if name in out.point_data])
         done.add(mesh.n_points)

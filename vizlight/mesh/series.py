@@ -135,7 +135,7 @@ class Series:
         ValueError
             If the step has no such point array of 3 components.
         """
-        mesh, name = self.mesh(step), f"vectors, {self.name(step)}"
+        mesh, name = self.mesh(step), f"tangents, {self.name(step)}"
         mesh = meaning.with_named(mesh, array)[0] if "," in array else mesh
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"

@@ -219,7 +219,7 @@ def of_winds(mesh):
 
     def asked(plotter):
         lit(mesh, scene, True, scalars=None, **field)(plotter)
-        lines = vizlight.streamlines(mesh, vectors="wind", spacing=0.06).scale(1.005)
+        lines = vizlight.streamlines(mesh, tangents="wind", spacing=0.06).scale(1.005)
         ink = Scene(material=Material(ambient=1, diffuse=0, specular=0))
         lit(lines, ink, color="#202028", line_diameter=0.006)(plotter)
 

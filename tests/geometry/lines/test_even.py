@@ -41,7 +41,7 @@ def evenness(lines, places):
 def test_on_a_sphere(name):
     spacing = 0.15
     mesh = ball()
-    lines = streamlines(mesh, SCENE, vectors=name, spacing=spacing)
+    lines = streamlines(mesh, SCENE, tangents=name, spacing=spacing)
     gap, near, step = evenness(lines, mesh.points)
     assert step <= spacing / 4 * 1.01
     assert gap <= 1.3 * spacing
@@ -55,7 +55,7 @@ def test_on_a_sphere(name):
 
 
 def test_orbits_are_closed():
-    lines = streamlines(ball(), SCENE, vectors="orbits", spacing=0.15)
+    lines = streamlines(ball(), SCENE, tangents="orbits", spacing=0.15)
     pieces = parts(lines)
     closed = [np.array_equal(piece[0], piece[-1]) for piece in pieces]
     assert lines.field_data["closed"][0] == sum(closed)
@@ -75,7 +75,7 @@ def test_the_last_gaps_are_filled():
     """Where lines that others or the boundary cut short would leave gaps of 1.5 spacings."""
     grid, spacing = pv.ImageData(dimensions=(12, 12, 12), spacing=(0.1, 0.1, 0.1)), 0.15
     grid["V"] = waves(np.asarray(grid.points), 6, 0)
-    lines = streamlines(grid, SCENE, vectors="V", spacing=spacing)
+    lines = streamlines(grid, SCENE, tangents="V", spacing=spacing)
     gap, near, _ = evenness(lines, 1.1 * np.random.default_rng(2).random((60_000, 3)))
     assert gap <= 1.3 * spacing
     assert np.percentile(near, 5) >= 0.5 * spacing
@@ -84,7 +84,7 @@ def test_the_last_gaps_are_filled():
 
 
 def test_a_spiral_is_not_closed():
-    lines = streamlines(ball(), SCENE, vectors="spiral", spacing=0.15)
+    lines = streamlines(ball(), SCENE, tangents="spiral", spacing=0.15)
     assert not any(np.array_equal(piece[0], piece[-1]) for piece in parts(lines))
 
 
@@ -94,18 +94,18 @@ def test_a_spiral_is_not_closed():
 def test_where_there_is_no_field_there_are_no_lines(missing, line_field):
     mesh = ball()
     mesh["orbits"][mesh.points[:, 0] > 0.3] = missing
-    lines = streamlines(mesh, SCENE, vectors="orbits", spacing=0.2, line_field=line_field)
+    lines = streamlines(mesh, SCENE, tangents="orbits", spacing=0.2, line_field=line_field)
     assert lines.n_cells > 3
     assert lines.points[:, 0].max() < 0.45
     mesh["orbits"][:] = 0
     with pytest.raises(ValueError, match="where the vectors are not zero"):
-        streamlines(mesh, SCENE, vectors="orbits", spacing=0.2, line_field=line_field)
+        streamlines(mesh, SCENE, tangents="orbits", spacing=0.2, line_field=line_field)
 
 
 def test_parts_of_a_surface_have_lines_of_their_own():
     small = ball(20).scale(0.03).translate((1.6, 0, 0))
     mesh = ball(30).append_polydata(small, ball(20).scale(0.5).translate((2.9, 0, 0)))
-    lines = streamlines(mesh, SCENE, vectors="orbits", spacing=0.25)
+    lines = streamlines(mesh, SCENE, tangents="orbits", spacing=0.25)
     x = np.asarray(lines.points)[:, 0]
     assert np.any(np.abs(x - 1.6) < 0.05)
     assert np.any(np.abs(x - 2.9) < 0.5)
@@ -116,7 +116,7 @@ def test_two_sides_of_a_sheet_are_apart():
     """Sides a third of a spacing from each other do not take the place of the other's lines."""
     sheet = pv.Box((0, 1, 0, 1, 0, 0.03), level=15).triangulate().clean()
     sheet["V"] = np.tile([1.0, 0.2, 0], (sheet.n_points, 1))
-    lines = streamlines(sheet, SCENE, vectors="V", spacing=0.1)
+    lines = streamlines(sheet, SCENE, tangents="V", spacing=0.1)
     z = np.asarray(lines.points)[:, 2]
     top, bottom = np.sum(z > 0.029), np.sum(z < 0.001)
     assert 0.6 < top / bottom < 1.7
@@ -128,26 +128,26 @@ def test_two_sides_of_a_sheet_are_apart():
 def test_seeds_come_first_and_lines_keep_their_distance():
     mesh = ball(30)
     seeds = np.array([[0, 1.0, 0], [1.0, 0, 0]])
-    lines = streamlines(mesh, SCENE, vectors="spiral", spacing=0.2, seeds=seeds)
+    lines = streamlines(mesh, SCENE, tangents="spiral", spacing=0.2, seeds=seeds)
     _, near, _ = evenness(lines, seeds)
     assert np.percentile(near, 5) > 0.45 * 0.2
     assert cKDTree(lines.points).query(seeds)[0].max() < 0.03
-    again = streamlines(mesh, SCENE, vectors="spiral", spacing=0.2, seeds=seeds)
+    again = streamlines(mesh, SCENE, tangents="spiral", spacing=0.2, seeds=seeds)
     np.testing.assert_array_equal(lines.points, again.points)
 
 
 def test_far_from_the_origin_and_of_any_size():
-    expected = streamlines(ball(20), SCENE, vectors="spiral", spacing=0.3)
+    expected = streamlines(ball(20), SCENE, tangents="spiral", spacing=0.3)
     mesh = ball(20)
     mesh.points = 1e6 * (np.asarray(mesh.points, float) + np.array([40.0, 500.0, 1.0]))
-    found = streamlines(mesh, SCENE, vectors="spiral", spacing=0.3e6)
+    found = streamlines(mesh, SCENE, tangents="spiral", spacing=0.3e6)
     assert abs(found.n_lines - expected.n_lines) <= 3
     assert found.field_data["largest_gap"][0] < 1.3
     assert found.points.dtype == np.float64
 
 
 test_bad_input = refusals(
-    lambda options: streamlines(ball(12), SCENE, vectors="spiral", **options),
+    lambda options: streamlines(ball(12), SCENE, tangents="spiral", **options),
     ({"spacing": 0}, "spacing: expected a number above 0"),
     ({"spacing": "wide"}, "spacing: expected a number", TypeError),
     ({"spacing": 1e-5}, "spacing: expected a number from 0.00.* for a mesh of this"),

@@ -67,7 +67,7 @@ def test_the_largest_gap_on_a_surface(name):
     make, frequency, seed, spacing = SURFACES[name]
     mesh = make()
     mesh["V"] = waves(np.asarray(mesh.points, float), frequency, seed)
-    lines = streamlines(mesh, vectors="V", spacing=spacing)
+    lines = streamlines(mesh, tangents="V", spacing=spacing)
     expected = farthest(with_normals(mesh, None, None), lines, spacing)
     found = lines.field_data["largest_gap"][0]
     assert expected - 0.01 <= found <= expected + 0.005
@@ -78,7 +78,7 @@ def test_the_largest_gap_between_parallel_lines(n):
     """Where all places midway are about as far, on large triangles and on small ones."""
     plane = pv.Plane(i_resolution=n, j_resolution=n).triangulate()
     plane["V"] = np.tile([1.0, 0, 0], (plane.n_points, 1))
-    lines = streamlines(plane, vectors="V", spacing=0.05)
+    lines = streamlines(plane, tangents="V", spacing=0.05)
     y = np.unique([lines.get_cell(i).points[0, 1] for i in range(lines.n_cells)])
     expected = max(y[0] + 0.5, 0.5 - y[-1], np.diff(y).max() / 2) / 0.05
     assert lines.field_data["largest_gap"][0] == pytest.approx(expected, abs=0.01)
@@ -87,7 +87,7 @@ def test_the_largest_gap_between_parallel_lines(n):
 def test_the_largest_gap_in_a_volume():
     grid, spacing = pv.ImageData(dimensions=(9, 9, 9), spacing=(0.125, 0.125, 0.125)), 0.2
     grid["V"] = waves(np.asarray(grid.points), 6, 0)
-    lines = streamlines(grid, vectors="V", spacing=spacing)
+    lines = streamlines(grid, tangents="V", spacing=spacing)
     share = np.linspace(0, 1, 20)[:, np.newaxis, np.newaxis]
     tree = cKDTree(
         np.concatenate(

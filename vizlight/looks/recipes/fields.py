@@ -177,7 +177,7 @@ def flow(case: Case) -> Drawing:
     mesh = case.wishes.joined(case.data, array)
     if array.of_cells:
         mesh = Step("averaged", ".cell_data_to_point_data", mesh)
-    keywords: Keywords = {"vectors": array.name} | dict(case.wishes.light)
+    keywords: Keywords = {"tangents": array.name} | dict(case.wishes.light)
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
@@ -251,7 +251,7 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
     if has_lines_only(surface) or not surface.n_cells:
         return None
     spacing = float(f"{spacing:.3g}")
-    keywords: Keywords = {"vectors": array.name, "spacing": spacing, "confined": True}
+    keywords: Keywords = {"tangents": array.name, "spacing": spacing, "confined": True}
     keywords |= {"stroke_length": LONG * spacing, "feature_angle": "auto"}
     triangles = Step("triangles", ".triangulate", mesh)
     strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)

@@ -12,7 +12,7 @@ scene = Scene(
     material=Material(ambient=0.3, diffuse=1, specular=0.5, shininess=20),
 )
 lines = vizlight.streamlines(
-    surface, scene, vectors="V", surface=surface, spacing=0.15, conditioned=True, components=True
+    surface, scene, tangents="V", surface=surface, spacing=0.15, conditioned=True, components=True
 )
 lines = vizlight.tint(lines, "speed", cmap="coolwarm")
 plotter = pv.Plotter()
