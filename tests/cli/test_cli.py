@@ -29,9 +29,7 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
     def interrupted(*_args, **_keywords):
         raise KeyboardInterrupt
 
-    # The package keeps the name of what it has loaded.
-    for module in (vizlight, vizlight.files):
-        monkeypatch.setattr(module, "read", interrupted)
+    monkeypatch.setattr(vizlight.files, "read_parts", interrupted)
     out = tmp_path / "lit.vtp"
     assert cli.main(["light", str(volume), "-o", str(out)]) == 2
     assert capfd.readouterr().err == "vizlight: interrupted\n"

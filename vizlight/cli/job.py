@@ -64,24 +64,30 @@ class Job:
     def carry_out(self, paths: Sequence[Path]) -> int:
         """Show each file, or print the script that does; return the exit code.
 
-        With several files an error is reported, and the other files are still done. A file whose
-        steps are taken one by one counts as several.
+        Several files make one picture where one file is named for it. Otherwise an error in one of
+        them is reported, and the others are still done. A file whose steps are taken one by one
+        counts as several.
         """
-        out, stems = self.out, [path.stem for path in paths]
-        if len(paths) > 1 and self._in_one_picture():
-            return self._all_in_one(paths)
-        _check_output(out, several=len(paths) > 1 or self.part.times is not None)
-        for twice in (name for name in stems if stems.count(name) > 1):
+        out = self.out
+        named = out.output or ()
+        joined = len(paths) > 1 and bool(named) and not any(path.is_dir() for path in named)
+        if joined and self.part.times is not None:
+            expected = "one time for several files in one picture"
+            raise ValueError(message("times", expected, self.part.times, "pass --time"))
+        groups = [list(paths)] if joined else [[path] for path in paths]
+        _check_output(out, several=len(groups) > 1 or self.part.times is not None)
+        stems = [path.stem for path in paths]
+        for twice in (name for name in stems if not joined and stems.count(name) > 1):
             expected = "files of different names, after which the outputs are named"
             raise ValueError(message("file", expected, f"{twice!r} twice"))
         scripts: list[tuple[Look, list[Step]]] = []
         codes = [OK]
-        for path in paths:
+        for group in groups:
             try:
-                for i, time in enumerate(times(path, self.part)):
-                    look = self._look(path, time)
+                for i, time in enumerate([None] if joined else times(group[0], self.part)):
+                    look = self._look(group, time)
                     ending = self.stem if self.part.times is None else f"{self.stem}-{i:04d}"
-                    outputs = _outputs(look, f"{path.stem}-{ending}", out, paths)
+                    outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
                     if out.script:
                         last = [step for steps in outputs for step in steps]
                         scripts.append((look, [*(look.read_steps() if self.read else []), *last]))
@@ -89,9 +95,9 @@ class Job:
                         codes.append(self._run(look, outputs))
             except (TypeError, ValueError, OSError) as error:
                 # The error of a single file becomes the command's.
-                if len(paths) == 1:
+                if len(groups) == 1:
                     raise
-                complain(f"{path}: {one_line(error)}")
+                complain(f"{group[0]}: {one_line(error)}")
                 codes.append(BAD_INPUT)
         if scripts:
             reported = [look.drawing.lit for look, _ in scripts] if out.report else []
@@ -99,34 +105,17 @@ class Job:
             say(source(jobs, reported=reported))
         return max(codes)
 
-    def _in_one_picture(self) -> bool:
-        """Return whether several files make one picture: where one file is named for them."""
-        named = self.out.output or ()
-        return bool(named) and not any(path.is_dir() for path in named)
-
-    def _all_in_one(self, paths: Sequence[Path]) -> int:
-        """Show several files in one picture; return the exit code."""
-        from vizlight.looks.look import decide
-
-        if self.part.times is not None:
-            expected = "one time for several files in one picture"
-            raise ValueError(message("times", expected, self.part.times, "pass --time"))
-        _check_output(self.out, several=False)
-        look = decide(list(paths), self.wishes)
-        outputs = _outputs(look, "", self.out, paths)
-        if self.out.script:
-            say(source([[step for steps in outputs for step in steps]]))
-            return OK
-        return self._run(look, outputs)
-
-    def _look(self, path: Path, time: float | str | None) -> Look:
+    def _look(self, paths: Sequence[Path], time: float | str | None) -> Look:
+        """Return the look of a file at a time, or of several in one picture."""
         from vizlight.looks.look import decide
 
         part = dict(self.wishes.part)
         if time is not None:
             part["time"] = time
-        source_ = [] if self.recipe is None else [str(path), *self.recipe]
-        return decide(path, replace(self.wishes, part=part, source=source_))
+        only = len(paths) == 1
+        made = [] if self.recipe is None or not only else [str(paths[0]), *self.recipe]
+        wishes = replace(self.wishes, part=part, source=made)
+        return decide(paths[0] if only else list(paths), wishes)
 
     def _run(self, look: Look, outputs: Sequence[Sequence[Step]]) -> int:
         """Light, then write, draw and print; return the exit code."""
