@@ -221,6 +221,7 @@ OWN = {
     "files.read_parts": {"path": saved},
     "surface_of": {"mesh": flow, "contour": None},
     "stretched": {"mesh": hills},
+    "layer_of": {"mesh": lambda: pv.ImageData(dimensions=(3, 3, 3)), "at": 1},
     "warped": {"mesh": hills, "name": "h"},
     "with_vectors": {"mesh": hills},
     "manifold": {"scene": SCENE4},

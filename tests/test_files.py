@@ -39,7 +39,7 @@ def volume():
         ("f.vtu", b'<?xml version="1.0"?><VTKFile type="UnstructuredGrid"><UnstructuredGrid>', ""),
         ("g.ex2", b"x", ""),
         ("h.vtp", b"", ""),
-        ("i.las", b"x", "no reader takes '.las' files; convert it to"),
+        ("i.dwg", b"x", "no reader takes '.dwg' files; convert it to"),
         ("j.dae", b"x", "no reader takes '.dae' files; convert it to"),
         ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),
         # Headers that break off within a line.
@@ -668,3 +668,34 @@ def test_fine_rows_far_away_stay_apart_in_stl(tmp_path):
             files.write_mesh(mesh, tmp_path / "a.stl")
         again = vizlight.read(tmp_path / "a.stl")
         assert len(np.unique(np.asarray(again.points)[:, 1])) == 60
+
+
+def test_colours_of_gltf_are_bytes(tmp_path):
+    from vizlight.files import _as_bytes
+
+    linear = np.array([[0.0, 0.2159, 1.0, 0.5], [0.0031, 2.0, -1.0, 1.0]], np.float32)
+    assert _as_bytes(linear).tolist() == [[0, 128, 255, 128], [10, 255, 0, 255]]
+
+
+def test_one_layer_of_a_grid():
+    grid = pv.RectilinearGrid([0.0, 1, 3], [0.0, 2], [5.0, 6, 9])
+    grid["p"], grid.cell_data["c"] = np.arange(18), np.arange(4)
+    grid.field_data["unit"] = ["degree"]
+    layer = files.layer_of(grid, 2)
+    assert layer.dimensions == (3, 2, 1)
+    assert layer["p"].tolist() == list(range(12, 18))
+    assert layer.cell_data["c"].tolist() == [2, 3]
+    assert layer.bounds[4:] == (9, 9)
+    assert layer.field_data["unit"][0] == "degree"
+    with pytest.raises(ValueError, match=r"at: expected .* got 3"):
+        files.layer_of(grid, 3)
+
+
+def test_labels_of_what_is_no_image():
+    ball = pv.Sphere()
+    with pytest.raises(TypeError, match="mesh: expected an image, which has labels"):
+        files.surface_of(ball, labels="a")
+    image = pv.ImageData(dimensions=(4, 4, 4))
+    image["a"] = np.zeros(64)
+    with pytest.raises(ValueError, match="labels: expected whole numbers that are not all 0"):
+        files.surface_of(image, labels="a")

@@ -61,8 +61,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "read", "read_parts", "stretched", "surface_of", "warped", "with_vectors",
-    "write_mesh",
+    "FileError", "layer_of", "read", "read_parts", "stretched", "surface_of", "warped",
+    "with_vectors", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -78,6 +78,8 @@ FORMATS: dict[str, tuple[str, ...]] = {
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
+#: Ends of names of files of glTF, and their array of colours.
+GLTF, GLTF_COLORS = (".glb", ".gltf"), "COLOR_0"
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
 #: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
@@ -94,7 +96,9 @@ _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 #: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
 #: keys of ParaView's are metadata, and conditions at the boundary of CGNS are no cells.
-_HARMLESS = re.compile("bad X server connection|Could not locate key|Skipping BC_t node")
+_HARMLESS = re.compile(
+    "bad X server connection|Could not locate key|Skipping BC_t node|glTF extension .* is used in"
+)
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
 #: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
@@ -353,10 +357,23 @@ def _whole(
             mesh.point_data[name] = rows
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
+    if suffix in GLTF and GLTF_COLORS in mesh.point_data:
+        mesh.point_data[GLTF_COLORS] = _as_bytes(mesh.point_data[GLTF_COLORS])
     # Points that only a colour tells apart have the normals of the surface, if it has no creases.
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _as_bytes(colors: Raw) -> Raw:
+    """Return colours of glTF, which are linear in light, as bytes in sRGB."""
+    if colors.dtype.kind != "f":
+        return colors
+    light = np.clip(np.asarray(colors, np.float64), 0, 1)
+    light[:, :3] = np.where(
+        light[:, :3] <= 0.0031308, 12.92 * light[:, :3], 1.055 * light[:, :3] ** (1 / 2.4) - 0.055
+    )
+    return np.rint(255 * light).astype(np.uint8)
 
 
 def _arrays(mesh: pv.DataSet) -> set[str]:
@@ -562,9 +579,13 @@ captured_errors = _Messages().collected
 
 
 def surface_of(
-    mesh: pv.DataSet | pv.MultiBlock, /, contour: str | None = None, level: float | None = None
+    mesh: pv.DataSet | pv.MultiBlock,
+    /,
+    contour: str | None = None,
+    level: float | None = None,
+    labels: str | None = None,
 ) -> pv.PolyData:
-    """Return an isosurface of a mesh, or its outer surface if no contour is given.
+    """Return an isosurface of a mesh, what is outside of labels, or its outer surface.
 
     Parameters
     ----------
@@ -574,6 +595,10 @@ def surface_of(
         Name of an array of one component; one of cells is averaged to the points.
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range.
+    labels : str, optional
+        Name of an array of whole numbers of an image, such as an atlas of a brain, in which 0 is
+        the ground. The surface of all that has a label is smoothed within the size of a voxel, and
+        each of its cells has the label inside of it.
 
     Returns
     -------
@@ -584,6 +609,8 @@ def surface_of(
     ValueError
         If the array does not exist, or the isosurface is empty.
     """
+    if labels is not None:
+        return _of_labels(mesh, _check.text("labels", labels))
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _dataset(mesh)
@@ -591,7 +618,7 @@ def surface_of(
         if isinstance(mesh, pv.PolyData):
             return mesh
         return blocks.outer_surface(mesh)[0]
-    mesh = records.averaged(mesh, contour)
+    mesh = records.averaged(mesh, _check.text("contour", contour))
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
@@ -605,6 +632,22 @@ def surface_of(
     # Beside a hole VTK makes faces with corners that are nowhere.
     there: Foreign = np.isfinite(np.asarray(found.points)).all(axis=1)
     return found if there.all() else _kept_points(found, there)
+
+
+def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
+    """Return the smoothed surface of what has a label in an image, with labels of its cells."""
+    if not isinstance(mesh, pv.ImageData):
+        got = type(mesh).__name__
+        raise TypeError(_check.message("mesh", "an image, which has labels", got))
+    values = _scalars(mesh, "labels", name)
+    if values.dtype.kind not in "iu" or not values.any():
+        got = f"{name!r} of {values.dtype}"
+        raise ValueError(_check.message("labels", "whole numbers that are not all 0", got))
+    found: pv.PolyData = mesh.contour_labels(scalars=name, output_mesh_type="triangles")
+    rows = np.asarray(found.cell_data["boundary_labels"])
+    found.clear_data()
+    found.cell_data[name] = rows
+    return found
 
 
 def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
@@ -706,6 +749,47 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     found: pv.DataSet = moved
     # Cells at a hole go, whatever their other points are.
     return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
+
+
+def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid:
+    """Return one layer of a grid across z, with its arrays.
+
+    Parameters
+    ----------
+    mesh : pyvista.ImageData or pyvista.RectilinearGrid
+        Grid, which is not changed.
+    at : int
+        Number of the layer, from 0 where z is least.
+
+    Returns
+    -------
+    pyvista.RectilinearGrid
+        Grid of one layer; values of cells are those above it, below the last layer.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the mesh is no such grid, or has no such layer.
+    """
+    if isinstance(mesh, pv.ImageData):
+        mesh = mesh.cast_to_rectilinear_grid()
+    if not isinstance(mesh, pv.RectilinearGrid):
+        got = type(mesh).__name__
+        raise TypeError(_check.message("mesh", "an image or a rectilinear grid", got))
+    nx, ny, nz = mesh.dimensions
+    at = _check.integer("at", at, low=0, high=nz - 1)
+    found = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
+    cells = max(nx - 1, 1) * max(ny - 1, 1)
+    places = (
+        (mesh.point_data, found.point_data, at, nx * ny),
+        (mesh.cell_data, found.cell_data, min(at, max(nz - 2, 0)), cells),
+    )
+    for data, into, number, count in places:
+        for name in data:
+            into[name] = np.array(data[name][number * count : (number + 1) * count])
+    for name in mesh.field_data:
+        found.field_data[name] = mesh.field_data[name]
+    return found
 
 
 def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:

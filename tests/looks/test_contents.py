@@ -24,7 +24,7 @@ def rising(n):
         ("p", rising, "values"),
         ("surface_height", rising, "heights"),
         ("V", lambda n: np.random.default_rng(0).normal(size=(n, 3)), "vectors"),
-        ("skin", lambda n: np.full((n, 3), 9, np.uint8), "colors"),
+        ("skin", lambda n: np.arange(3 * n, dtype=np.uint8).reshape(n, 3), "colors"),
         ("part", lambda n: np.arange(n) % 3, "kinds"),
         ("counts", np.arange, "values"),
     ],
@@ -65,3 +65,34 @@ def test_flat_sheets_and_slabs():
     assert Contents(pv.ImageData(dimensions=(300, 400, 2))).flat_axis == 2
     assert Contents(pv.Sphere()).flat_axis is None
     assert Contents(pv.ImageData(dimensions=(9, 9, 9))).flat_axis is None
+
+
+def test_tables_of_a_mesh_and_tangents_of_textures_are_no_data():
+    mesh = pv.Plane(i_resolution=3, j_resolution=3)
+    mesh.clear_data()
+    rows = np.arange(mesh.n_points, dtype=float)
+    for name in ("node_x", "cellsOnCell", "face_edge_connectivity", "Mesh2_face_links"):
+        mesh[name] = rows
+    mesh["TANGENT"] = np.tile((1.0, 0.0, 0.5), (mesh.n_points, 1)) * rows[:, np.newaxis]
+    mesh["RGBA"] = np.full((mesh.n_points, 4), 200, np.uint8)
+    assert Contents(mesh).arrays == ()
+    mesh["cell_area"], mesh["x"] = rows, rows
+    assert [array.name for array in Contents(mesh).arrays] == ["cell_area", "x"]
+
+
+def test_clouds_and_layers_are_no_ground():
+    mesh = pv.Plane(i_resolution=3, j_resolution=3)
+    mesh.clear_data()
+    names = {"cloud_top_height": "values", "snow_depth": "values", "surface_height": "heights"}
+    for name in names:
+        mesh[name] = np.linspace(0, 1, mesh.n_points) ** 2
+    assert {array.name: array.role for array in Contents(mesh).arrays} == names
+
+
+def test_labels_may_be_floats_with_holes():
+    image = pv.ImageData(dimensions=(40, 40, 1))
+    labels = 7.0 * (np.arange(1600) % 40 // 2) + 300
+    labels[:90] = np.nan
+    image["basin"] = labels
+    (array,) = Contents(image).arrays
+    assert (array.role, array.distinct) == ("kinds", 20)

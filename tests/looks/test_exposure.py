@@ -39,7 +39,6 @@ def test_the_70th_percentile_of_the_pixels_of_a_surface_becomes_1():
 def test_a_scene_that_is_given_is_not_exposed():
     scene = vizlight.Scene()
     assert vizlight.look(ball(), scene=scene, size=SIZE).scene.exposure is None
-    assert vizlight.look(pv.Plane(), size=SIZE).question == "shape"
 
 
 def test_rows_of_arrays_follow_the_corners_that_are_seen():

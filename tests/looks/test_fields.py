@@ -89,3 +89,15 @@ def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
     short = vizlight.look(volume(-9), "flow", seeds=20, max_length=1.0)
     assert not short.notes
     assert short.drawing.lit.run().n_lines > 0
+
+
+def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
+    image = pv.ImageData(dimensions=(9, 9, 9))
+    x, y, _ = (np.asarray(image.points) - 4).T
+    vectors = np.stack([-y, x, 0 * x + 3], axis=1)
+    image["m"] = vectors
+    assert vizlight.look(image, size=(120, 80)).drawing.keys[0]["question"] == "value"
+    image["m"] = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    look = vizlight.look(image, size=(120, 80))
+    assert "question" not in look.drawing.keys[0]
+    assert "speed" not in look.summary

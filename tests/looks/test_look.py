@@ -172,3 +172,36 @@ def test_a_part_with_most_points_on_its_surface_shows_values_there():
     beam["velocity"] = beam["displacement"] + 1.0
     del beam.point_data["displacement"]
     assert vizlight.look(beam, size=SIZE).shown == "streamlines"
+
+
+def test_a_plane_without_data_is_grey_with_its_edges(tmp_path):
+    plane = pv.Plane(i_resolution=2, j_resolution=2)
+    plane.clear_data()
+    look = vizlight.look(plane, size=SIZE)
+    assert (look.question, look.shown, look.drawing.keys) == ("none", "sheet", ())
+    pixels = np.asarray(Image.open(look.save(tmp_path / "a.png")).convert("L"))
+    assert 120 < np.median(pixels[30:50, 50:70]) < 200
+
+
+def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path):
+    image = pv.ImageData(dimensions=(30, 30, 30))
+    x, y, z = image.points.T - 14.5
+    inside = x**2 + y**2 + z**2 < 100
+    image["atlas"] = np.where(inside, 5 + (x > 0) * 4 + (y > 0) * 20, 0).astype(np.int16)
+    look = vizlight.look(image, size=SIZE)
+    assert look.shown == "hull"
+    mesh = look.drawing.layers[0].mesh.run()
+    assert {*np.unique(mesh.cell_data["atlas"])} == {5, 9, 25, 29}
+    radius = np.linalg.norm(np.asarray(mesh.points) - 14.5, axis=1)
+    assert np.ptp(radius) < 1.5
+    image["atlas"] = np.where(inside, np.arange(27000) // 37 * 3, 0).astype(np.int16)
+    look = vizlight.look(image, array="atlas", size=SIZE)
+    assert look.drawing.keys == []
+    assert any("colours repeat, and have no key" in note for note in look.notes)
+
+
+def test_a_solid_whose_least_kind_is_0_is_drawn_whole():
+    grid = pv.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    grid["group"] = (np.asarray(grid.points)[:, 2] > 2).astype(np.int32)
+    look = vizlight.look(grid, size=SIZE)
+    assert look.drawing.layers[0].mesh.run().bounds == grid.bounds

@@ -236,3 +236,34 @@ def test_the_way_to_read_grib_and_zarr(tmp_path, name, package, monkeypatch):
         files.FileError, match=f"are read by {package}: run pip install '{package}'"
     ):
         vizlight.read(tmp_path / name)
+
+
+def test_values_in_a_list_are_no_image():
+    nodes = xr.Dataset({"sst": (("nz", "nod2"), np.zeros((4, 30)))})
+    with pytest.raises(ValueError, match="no variable on a grid of two or three axes"):
+        vizlight.read(nodes)
+
+
+def test_a_mapping_that_xarray_cannot_decode_names_no_axis(tmp_path):
+    data = xr.Dataset({"t": (("lat", "lon"), np.arange(12.0).reshape(3, 4))},
+                      {"lat": [0.0, 1, 2], "lon": [0.0, 1, 2, 3]})  # fmt: skip
+    data["t"].attrs["grid_mapping"] = "rotated pole: latitude: 40. longitude 12"
+    data.to_netcdf(tmp_path / "a.nc")
+    assert vizlight.read(tmp_path / "a.nc")["t"].tolist() == list(range(12))
+
+
+def test_the_lowest_layer_of_the_air_and_the_highest_of_the_sea_are_shown():
+    values = np.arange(24.0).reshape(3, 2, 4)
+    places = {"lat": ("lat", [50.0, 51], {"units": "degrees_north"}),
+              "lon": ("lon", [0.0, 1, 2, 3], {"units": "degrees_east"})}  # fmt: skip
+    for axis, which, expected in (
+        (("level", [200.0, 500, 850], {"units": "millibars"}), "lowest", values[2]),
+        (("depth", [5.0, 100, 400], {"units": "m", "positive": "down"}), "highest", values[0]),
+    ):
+        data = xr.Dataset({"t": ((axis[0], "lat", "lon"), values)}, {axis[0]: axis} | places)
+        look = vizlight.look(data, size=(90, 60))
+        assert look.shown == "sheet"
+        assert any(f"the {which} of 3 layers is shown" in note for note in look.notes)
+        np.testing.assert_array_equal(look.drawing.layers[0].mesh.run()["t"], expected.ravel())
+        assert "files.layer_of(" in look.script("a.png")
+        assert vizlight.look(data, "shape", size=(90, 60)).shown != "sheet"

@@ -266,7 +266,8 @@ def test_depths_are_below_the_surface(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("cut", "rise"), [((), 600), (("--clip", "z:3"), 1000), (("--slice", "x:1.15"), 1500)]
+    ("cut", "rise"),
+    [(("--for", "shape"), 600), (("--clip", "z:3"), 1000), (("--slice", "x:1.15"), 1500)],
 )
 def test_a_volume_in_degrees_is_no_needle_in_pictures(cut, rise, tmp_path, capsys):
     """Planes that cut it are in the coordinates of the file."""
@@ -346,3 +347,38 @@ def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):
     (tmp_path / "t1.geo").write_text("Point(1) = {0, 0, 0, 1};\n")
     with pytest.raises(files.FileError, match="gmsh makes a mesh of it: gmsh -3 -format msh2"):
         vizlight.read(tmp_path / "t1.geo")
+
+
+def test_a_neuron_has_branches_radii_and_types(tmp_path):
+    path = tmp_path / "a.swc"
+    rows = ["# a comment", "1 1 0 0 0 5 -1", "2 3 1 0 0 1 1", "3 3 2 0 0 1 2", "5 2 0 1 0 2 1"]
+    path.write_text("\n".join(rows))
+    mesh = vizlight.read(path)
+    assert mesh.n_points == 4
+    assert [cell.point_ids for cell in mesh.cell] == [[0, 1, 2], [0, 3]]
+    assert mesh["radius"].tolist() == [5, 1, 1, 2]
+    assert mesh["type"].dtype == np.int32
+    path.write_text("1 2 3\n")
+    with pytest.raises(files.FileError, match="3 columns, not the 7 of a neuron"):
+        vizlight.read(path)
+
+
+def test_points_of_a_lidar(tmp_path):
+    laspy = pytest.importorskip("laspy")
+    cloud = laspy.create(point_format=3, file_version="1.2")
+    cloud.header.scales, cloud.header.offsets = [0.01] * 3, [600_000.0, 5_000_000.0, 0.0]
+    places = np.array([[600_001.25, 5_000_002.5, 7.0], [600_003.0, 5_000_004.0, 8.0]])
+    cloud.x, cloud.y, cloud.z = places.T
+    cloud.intensity, cloud.classification = [3, 9], [2, 5]
+    cloud.red, cloud.green, cloud.blue = [65280, 0], [256, 512], [0, 65280]
+    cloud.write(tmp_path / "a.las")
+    mesh = vizlight.read(tmp_path / "a.las")
+    np.testing.assert_allclose(mesh.points, places, atol=0.005)
+    assert mesh["intensity"].tolist() == [3, 9]
+    assert mesh["rgb"].tolist() == [[255, 1, 0], [0, 2, 255]]
+
+
+def test_points_in_lines_of_text(tmp_path):
+    (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
+    mesh = vizlight.read(tmp_path / "a.xyz")
+    assert mesh["rgb"].tolist() == [[10, 20, 30], [40, 50, 60]]

@@ -36,6 +36,12 @@ _NO_DATUM = {
     "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons", "lat",
     "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
 }  # fmt: skip
+#: Words that names of coordinates of nodes, and of tables of which belongs to which, consist of.
+_TABLE_WORDS = {
+    "x", "y", "z", "lon", "lat", "node", "nodes", "nod", "cell", "cells", "face", "faces", "edge",
+    "edges", "vertex", "vertices", "elem", "center", "centre", "centroid", "mesh", "in", "on",
+    "of", "d", "connectivity", "links",
+}  # fmt: skip
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "class", "classes", "domain", "group", "groups", "label", "labels", "layer",
@@ -52,6 +58,10 @@ _LOAD_WORDS = {
 MOST_ON_SURFACE, OUTSIDE = 300_000, 0.3
 #: Words of a name: runs of letters, of which a capital begins another.
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
+#: What else has heights and depths that are no ground: clouds, waves, layers, snow, trees.
+_NO_GROUND = re.compile(
+    r"cloud|wave|swell|layer|snow|canop|tree|tropopause|mixing|mixed|optical|melt|penetration|mld|pbl"
+)
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
 _HEIGHTS = re.compile(
     r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
@@ -182,8 +192,11 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
                 continue
             values = np.asarray(data[name])
             array = _described(name, values, of_cells=of_cells, named=True)
-            if array is not None and _HEIGHTS.search(_words_of(mesh, name)):
-                array = replace(array, role="heights" if array.role == "values" else array.role)
+            said = _words_of(mesh, name)
+            if array is not None and array.role == "values" and _HEIGHTS.search(said):
+                array = replace(array, role="heights")
+            if array is not None and array.role == "heights" and _NO_GROUND.search(said):
+                array = replace(array, role="values")
             if array is not None:
                 described.append(array)
     if raster and len(described) == 1 and described[0].role == "values":
@@ -192,7 +205,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     joined = [
         Named(",".join(names), "vectors", names[0] not in mesh.point_data)
         for names in meaning.components(mesh)
-        if ",".join(names) not in mesh.array_names
+        if ",".join(names) not in mesh.array_names and not all(map(_is_table, names))
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
 
@@ -220,9 +233,14 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
     if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
         return None
+    # The tangents of glTF belong to textures.
+    if named and (_is_table(name) or name == "TANGENT"):
+        return None
     lower = name.lower()
     if are_colors(values):
-        return Named(name, "colors", of_cells)
+        # A file whose colours are all alike has none to show.
+        plain = named and not np.any(values != values[:1])
+        return None if plain else Named(name, "colors", of_cells)
     if values.dtype.kind not in "fiub" or values.ndim > 2 or not len(values):
         return None
     sample = np.asarray(values[:: max(len(values) // SAMPLE, 1)], dtype=np.float64)
@@ -240,7 +258,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if whole and (distinct <= MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
-        role = "heights" if _HEIGHTS.search(lower) else "values"
+        ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
+        role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
 
 
@@ -248,12 +267,17 @@ def _words(name: str) -> list[str]:
     return [word.lower() for word in _WORDS.findall(name)] or [""]
 
 
+def _is_table(name: str) -> bool:
+    """Return whether a name is that of a table of a mesh, such as ``node_x``, ``cellsOnCell``."""
+    words = [word for word in _words(name) if not word.isdigit()]
+    return len(words) > 1 and _TABLE_WORDS.issuperset(words)
+
+
 def _are_labels(values: Raw) -> bool:
-    """Return whether integers are labels of regions: neighbours mostly equal, else far apart."""
-    if values.dtype.kind not in "iu" or len(values) < 2:
-        return False
+    """Return whether whole numbers are labels: neighbours mostly equal, else far apart."""
     middle = len(values) // 2
-    run = np.asarray(values[max(middle - SAMPLE, 0) : middle + SAMPLE], dtype=np.int64)
+    run = np.asarray(values[max(middle - SAMPLE, 0) : middle + SAMPLE])
+    run = run[np.isfinite(run)].astype(np.int64)
     inside = (run[1:] != 0) & (run[:-1] != 0)
     steps = np.abs(np.diff(run))[inside]
     if len(steps) < 2 or np.mean(steps == 0) < EQUAL:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
@@ -15,15 +16,13 @@ from vizlight.draw import render
 from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
-from vizlight.mesh import series
+from vizlight.mesh import georeference, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
@@ -109,12 +108,35 @@ def cut(mesh: Step, wishes: Wishes) -> Step:
         factor, note = wishes.heightened(mesh.run(), part["warp"])
         mesh = Step("raised", "files.warped", mesh, part["warp"], factor)
         mesh.note = note
+    mesh = layer(mesh, wishes)
     for name, low, high in part.get("threshold") or ():
         mesh = _kept(mesh, name, low, high)
     for normal, origin in part.get("clip") or ():
         mesh = Step("clipped", ".clip", mesh, normal=normal, origin=origin)
         mesh.asked = ("clip", f"{normal}, {origin}")
     return mesh
+
+
+def layer(mesh: Step, wishes: Wishes) -> Step:
+    """Return the step that takes the lowest layer of a volume over a map, the highest of a sea.
+
+    A volume is left as it is where a question or a part of it was asked for.
+    """
+    grid, part = mesh.run(), wishes.part
+    of_volume = ("contour", "slice", "clip", "threshold")
+    asked = wishes.question != "auto" or any(part.get(name) for name in of_volume)
+    flat = isinstance(grid, pv.ImageData | pv.RectilinearGrid)
+    if asked or not flat or min(grid.dimensions) < 2 or not georeference.is_map(grid):
+        return mesh
+    heights = np.asarray(grid.z) if isinstance(grid, pv.RectilinearGrid) else grid.bounds[4:]
+    words = meaning.of(grid).axes
+    sea = max(heights) <= 0 and "pressure" not in " ".join(words[2:])
+    count = grid.dimensions[2]
+    at = count - 1 if sea else 0
+    taken = Step("layer", "files.layer_of", mesh, at)
+    which, height = ("highest", max(heights)) if sea else ("lowest", min(heights))
+    taken.note = f"the {which} of {count} layers is shown, at {abs(float(height)):g} along z"
+    return taken
 
 
 def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:

@@ -66,8 +66,9 @@ def _is_flat(contents: Contents) -> bool:
     return contents.flat_axis is not None
 
 
-def _is_map(contents: Contents) -> bool:
-    return contents.flat_axis == 2
+def _is_terrain(contents: Contents) -> bool:
+    # Shadows are followed over grids.
+    return contents.flat_axis == 2 and hasattr(contents.mesh, "dimensions")
 
 
 def _is_surface(contents: Contents) -> bool:
@@ -94,10 +95,10 @@ RULES = (
          "points with values"),
     Rule("points", _is_points, "shape", (), lines.points, "points without values"),
     Rule("sheet", _is_flat, "direction", ("vectors",), fields.vectors, "a map with vectors"),
-    Rule("sheet", _is_map, "relief", ("heights",), reliefs.relief, "a map of heights"),
+    Rule("sheet", _is_terrain, "relief", ("heights",), reliefs.relief, "a map of heights"),
     Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a map of values"),
-    Rule("sheet", _is_flat, "shape", (), surfaces.surface, "a plane without data"),
+    Rule("sheet", _is_flat, "none", (), surfaces.plane, "a plane without data"),
     Rule("surface", _is_surface, "direction", ("vectors",), fields.vectors,
          "a surface with vectors"),
     Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), surfaces.values,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from vizlight._types import Array, Bools, Foreign, Indices, Raw
+    from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Raw
 
 __all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 
@@ -68,7 +68,7 @@ _NODES = r"(.*_)?[xy](_?(nodes?|vert\w*|coord\w*))?"
 #: Pressures in hectopascals of other units.
 _PRESSURES = {
     "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
-    "millibar": 1.0, "kpa": 10.0, "bar": 1e3, "dbar": 100.0, "decibar": 100.0,
+    "millibar": 1.0, "kpa": 10.0, "kilopascal": 10.0, "bar": 1e3, "dbar": 100.0, "decibar": 100.0,
 }  # fmt: skip
 #: Standard and other names of what counts downward though it is no pressure.
 _DOWN = (
@@ -87,6 +87,13 @@ _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECAS
 
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
+
+
+#: Axes along which values stand in a list, as those of the nodes of a mesh in a file of its own.
+_LISTS = (
+    r"(n?mesh\w*_)?n?_?(nod|node|vert|vertex|vertice|cell|elem|element|ele|face|edge|col|point)(e?s)?\d?"
+    r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|profiles?|rgrid|traject.*"
+)
 
 
 @dataclass
@@ -140,12 +147,15 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
-        opened = xarray.open_dataset(
-            path,
-            engine=_ENGINES.get(path.suffix.lower()),
-            decode_times=False,
-            decode_coords="all",
-        )
+        engine = _ENGINES.get(path.suffix.lower())
+        options: Keywords = {"engine": engine, "decode_times": False}
+        try:
+            opened = xarray.open_dataset(path, decode_coords="all", **options)
+        except ValueError as error:
+            if "cannot decode" not in str(error):
+                raise
+            # A mapping that is written in another way names no coordinates.
+            opened = xarray.open_dataset(path, **options)
     with opened as file:
         return of_dataset(file, time, at, nodata, source=str(path))
 
@@ -452,7 +462,9 @@ class _Reader:
         rest = [
             dim
             for dim in dims
-            if not self.letters[dim][0] and not re.fullmatch(_MEMBERS, dim, re.IGNORECASE)
+            if not self.letters[dim][0]
+            and not re.fullmatch(_MEMBERS, dim, re.IGNORECASE)
+            and not re.fullmatch(_LISTS, dim, re.IGNORECASE)
         ]
         # Beside a known x or y an unknown axis is no height.
         letters = "xy" if named.keys() & {"x", "y"} else "xyz"
@@ -669,7 +681,7 @@ def _named_so(pattern: str, name: str, attributes: Mapping[str, Foreign]) -> boo
 def _up(name: str, attributes: Mapping[str, Foreign], ticks: Array, by: str) -> tuple[Array, str]:
     """Return heights that rise, of coordinates that may be pressures or depths, and words."""
     unit = str(attributes.get("units", "")).strip()
-    pressure, length = _PRESSURES.get(unit.lower()), meaning.metres(unit)
+    pressure, length = _PRESSURES.get(unit.lower().removesuffix("s")), meaning.metres(unit)
     positive = str(attributes.get("positive", "")).lower()
     if pressure is not None:
         # In the sea a pressure is a depth in decibars.

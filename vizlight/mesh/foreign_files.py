@@ -31,6 +31,8 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
+    ".las": ("laspy", "formats"),
+    ".laz": ("laspy", "formats"),
 } | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
     cf_grids.GRIB, ("cfgrib", "")
 ) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
@@ -183,6 +185,54 @@ def _scan(path: Path) -> pv.PolyData:
     return mesh
 
 
+def _lidar(path: Path) -> pv.PolyData:
+    """Return the points of a LAS file with intensity, classification and colours."""
+    import laspy
+
+    cloud: Foreign = laspy.read(path)
+    mesh = pv.PolyData(np.asarray(cloud.xyz, dtype=np.float64))
+    mesh.point_data["intensity"] = np.asarray(cloud.intensity)
+    mesh.point_data["classification"] = np.asarray(cloud.classification)
+    names = {*cloud.point_format.dimension_names}
+    if {"red", "green", "blue"} <= names:
+        colors = np.stack([cloud.red, cloud.green, cloud.blue], axis=1)
+        # Colours have 16 bits by the standard, and 8 by many writers.
+        depth = 256 if colors.max(initial=0) > 255 else 1
+        mesh.point_data["rgb"] = (colors // depth).astype(np.uint8)
+    return mesh
+
+
+def _neuron(path: Path) -> pv.PolyData:
+    """Return the branches of a neuron as polylines with the radius and the type of each point."""
+    with path.open(encoding="latin-1") as file, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "loadtxt: input contained no data")
+        rows = np.loadtxt(file, ndmin=2, comments="#")
+    if rows.shape[1] != 7:
+        raise ValueError(f"{rows.shape[1]} columns, not the 7 of a neuron")
+    row_of = {number: row for row, number in enumerate(rows[:, 0].tolist())}
+    parents = [row_of.get(number, -1) for number in rows[:, 6].tolist()]
+    children: dict[int, list[int]] = {}
+    for row, parent in enumerate(parents):
+        if parent not in (-1, row):
+            children.setdefault(parent, []).append(row)
+    lines = []
+    for parent, heads in children.items():
+        if len(heads) == 1 and parents[parent] != -1:
+            continue  # inside of a branch
+        for head in heads:
+            line = [parent, head]
+            while len(further := children.get(line[-1], ())) == 1:
+                line += further
+            lines.append(line)
+    mesh = pv.PolyData(rows[:, 2:5].copy())
+    if lines:
+        mesh = pv.PolyData(
+            mesh.points, lines=np.concatenate([[len(line), *line] for line in lines])
+        )
+    mesh.point_data["radius"], mesh.point_data["type"] = rows[:, 5], rows[:, 1].astype(np.int32)
+    return mesh
+
+
 def _refuse_narrow(path: Path) -> None:
     """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
     number = _head(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
@@ -311,6 +361,6 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 
 #: Readers that need the path alone, by suffix.
 _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock]] = {
-    ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan,
-    ".off": geomview.read_off,
+    ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
+    ".las": _lidar, ".laz": _lidar, ".off": geomview.read_off, ".swc": _neuron,
 } | dict.fromkeys(scene_files.SUFFIXES, scene_files.read)  # fmt: skip

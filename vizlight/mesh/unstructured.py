@@ -188,6 +188,8 @@ def surface(
     )
     # A face of fewer nodes than others has no number in the rest of its row.
     start = float(table.attrs.get("start_index", _start(rows, len(x))))
+    if start == 1 and np.any(rows == 0) and not np.any(rows == len(x)):
+        start = 0.0  # the file says otherwise, and has a node 0
     there: Bools = np.isfinite(rows) & (rows >= start)
     ids = np.where(there, rows - start, 0).astype(np.intp)
     if ids.max(initial=0) >= len(x):

@@ -31,7 +31,7 @@ from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from vizlight._types import Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -53,6 +53,8 @@ WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
 #: Length below which streamlines of a volume are left out, in distances between them: many are cut
 #: short where the field is noise.
 SHORTEST = 4 * SPACING_IN_VOLUME
+#: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
+EVEN = 0.05
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
 MOST_CELLS, SEEDS = 250_000, 300
 
@@ -77,8 +79,8 @@ def vectors(case: Case) -> Drawing:
         return replace(_lit(case, mesh, camera, strokes=None), notes=[note])
     spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
     strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
-    if strokes is None:
-        return _lit(case, mesh, camera, strokes=None)
+    if strokes is None or _is_even(mesh.run(), array.name):
+        return _lit(case, mesh, camera, strokes)
     return _speed(case, mesh, camera, strokes)
 
 
@@ -124,8 +126,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     layers = [Layer(mesh, shown | case.wishes.drawn(light))]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera, halo=HALO))
-    lengths = np.linalg.norm(np.asarray(mesh.run()[array.name], dtype=np.float64), axis=1)
-    finite = lengths[np.isfinite(lengths)]
+    finite = _lengths(mesh.run(), array.name)
     sense = "" if strokes is None else "; strokes run from thin to thick"
     title = f"length of {titled(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
@@ -133,6 +134,18 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
     return Drawing(layers, camera, scene, case.lit(mesh, scene, **light), words, [bar], kind=mesh)
+
+
+def _lengths(mesh: pv.DataSet, name: str) -> Array:
+    """Return the finite lengths of vectors."""
+    found: Array = np.linalg.norm(np.asarray(mesh[name], dtype=np.float64), axis=1)
+    return found[np.isfinite(found)]
+
+
+def _is_even(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether vectors have nearly one length, such as unit vectors: directions alone."""
+    least, median = np.percentile(_lengths(mesh, name), (1, 50))
+    return bool(least > (1 - EVEN) * median)
 
 
 def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
@@ -183,6 +196,7 @@ def flow(case: Case) -> Drawing:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
     camera = case.camera(on if keywords.get("confined") else mesh)
     by_speed = case.wishes.question == "auto" and "surface" not in keywords
+    by_speed = by_speed and not _is_even(mesh.run(), array.name)
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
     lit = _streamlines(case, mesh, scene, keywords)
     keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pyvista as pv
+
 from vizlight.filters.fur import LENGTH
 from vizlight.looks import levels
+from vizlight.looks.contents import kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     MISSING,
@@ -20,17 +23,20 @@ from vizlight.mesh import blocks
 from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
+
+#: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
+GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Most kinds that have a key: more of them share colours.
+MOST_IN_KEY = 16
 
 
 def values(case: Case) -> Drawing:
     """Draw a sheet or a surface in the colours of values, with their bar."""
     array = case.needed_array
-    mesh = case.surface
+    mesh = _labels(case, array) if array.role == "kinds" else case.surface
     camera = case.camera(mesh)
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
@@ -40,17 +46,19 @@ def values(case: Case) -> Drawing:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
     if array.role == "kinds":
-        mesh = _kept(mesh, array, case)
-        keywords = colors_of_kinds(mesh, array, case.wishes.colors)
+        keywords = {"nan_color": MISSING} | colors_of_kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":
         keywords = {"rgb": True}
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
     shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
+    notes = []
+    if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
+        keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
     return Drawing(
         [Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys,
-        colors=colors_of(array, keywords),
+        colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
 
 
@@ -68,6 +76,17 @@ def surface(case: Case) -> Drawing:
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key], kind=mesh)
+
+
+def plane(case: Case) -> Drawing:
+    """Draw a plane without data, which no light can shape: grey, with the edges of its cells."""
+    mesh = case.surface
+    camera = case.camera(mesh)
+    scene = case.wishes.scene("none", camera)
+    drawn: Keywords = {"scene": scene, "color": GREY}
+    if mesh.run().n_cells <= MOST_WITH_EDGES:
+        drawn |= {"show_edges": True, "edge_color": "white"}
+    return Drawing([Layer(mesh, drawn)], camera, scene, case.lit(mesh, scene), "plane")
 
 
 def fur(case: Case) -> Drawing:
@@ -125,11 +144,12 @@ def _tips(mesh: Step, length: object) -> Step:
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=tip)
 
 
-def _kept(mesh: Step, array: Named, case: Case) -> Step:
-    """Return the step that leaves out the ground of a volume of kinds, which is 0."""
-    if case.contents.dimension < 3 or case.contents.flat_axis is not None or array.low != 0:
-        return mesh
-    kept = Step("kept", ".threshold", case.data, 0.5, scalars=array.name)
-    if not kept.run().n_cells:
-        return mesh
-    return Step("surface", "files.surface_of", kept)
+def _labels(case: Case, array: Named) -> Step:
+    """Return the step that takes the surface of the labels of an image, without its ground, 0."""
+    grid, contents = case.data.run(), case.contents
+    of_image = isinstance(grid, pv.ImageData) and contents.dimension == 3
+    if not of_image or contents.flat_axis is not None or array.low != 0 or not array.high:
+        return case.surface
+    if grid[array.name].dtype.kind not in "iu":
+        return case.surface
+    return Step("surface", "files.surface_of", case.data, labels=array.name)
