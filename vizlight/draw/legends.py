@@ -228,15 +228,18 @@ class MarginKey:
         """Return the width and height in pixels that the key takes at a size of letters."""
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
+        longest = max(map(len, self._title.replace("_", " ").split()), default=0)
+        # Most words are narrower than their number of wide letters: one is not broken for a few.
+        columns = max(columns, min(longest, int(1.2 * columns)))
         parts = [_wrapped(part, columns) for part in self._title.splitlines()]
         self._lines = [line for part in parts for line in part]
         below = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
             return min(2 * self._half, width), 2 * self._half + below
-        longest = max(len(word) for _, word in self._marks)
+        widest = max(len(word) for _, word in self._marks)
         tall = max(4.0 * self._half, 1.3 * LINE * letters * len(self._marks))
         bar = 2 * BAR_WIDE * self._half
-        return bar + (0.6 + LETTER * longest) * letters, tall + letters + below
+        return bar + (0.6 + LETTER * widest) * letters, tall + letters + below
 
     def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""
