@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds
 from vizlight.looks.steps import Step
@@ -14,6 +16,9 @@ if TYPE_CHECKING:
 
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
+
+#: Least and largest size of points in pixels, and the share of a picture that they may fill.
+POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 
 
 def lines(case: Case) -> Drawing:
@@ -48,7 +53,11 @@ def points(case: Case) -> Drawing:
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
-    drawn: Keywords = {"render_points_as_spheres": True, "point_size": 6.0}
+    # As large as they can be without hiding each other, were they spread over the picture.
+    columns, rows = case.wishes.size
+    size = np.sqrt(FILLED * columns * rows / max(mesh.run().n_points, 1))
+    size = round(float(np.clip(size, *POINT_SIZES)), 1)
+    drawn: Keywords = {"render_points_as_spheres": True, "point_size": size}
     keys: list[Keywords] = []
     words = "points"
     array = case.array
