@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-__all__ = ["even", "heights", "kinds", "speed"]
+__all__ = ["directions", "even", "heights", "kinds", "speed"]
 
 #: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
 #: sets, one after the other.
@@ -159,4 +159,28 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     table.values = colors
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): f"{value:g}" for value in rows}
+    return table
+
+
+def directions() -> pv.LookupTable:
+    """Return a lookup table with the colours of the axes, of which those of directions are mixed.
+
+    They are those of :func:`vizlight.direction_colors`: red along x, green along y, blue along z.
+
+    Returns
+    -------
+    pyvista.LookupTable
+
+    Examples
+    --------
+    >>> from vizlight import maps
+    >>> maps.directions().annotations
+    {0.0: 'x', 1.0: 'y', 2.0: 'z'}
+    """
+    table = kinds([0, 1, 2])
+    colors = np.zeros((3, 4), dtype=np.uint8)
+    colors[:, :3] = 255 * np.eye(3, dtype=np.uint8)
+    colors[:, 3] = 255
+    table.values = colors
+    table.annotations = {float(axis): name for axis, name in enumerate("xyz")}
     return table

@@ -94,7 +94,7 @@ def test_a_direction_is_the_name_of_an_axis(volume, done):
 
 def test_colours_of_a_file_are_no_light(done):
     ball = pv.Sphere()
-    ball["rgb"] = np.full((ball.n_points, 3), 200, np.uint8)
+    ball["rgb"] = np.arange(3 * ball.n_points).astype(np.uint8).reshape(-1, 3)
     ball.save("ball.vtp")
     assert done("light ball.vtp -o a.png").splitlines()[-2].startswith("shown    rgb in colours")
 
@@ -200,7 +200,7 @@ def test_what_is_shown_is_told(volume, done, run):
     number, rising = np.arange(20), np.arange(20.0)
     flat().save("bare.vti")
     flat(NodeId=rising, constant=np.ones(20), number=number, height=rising).save("flat.vti")
-    flat(rgb=np.full((20, 3), 200, np.uint8)).save("colors.vti")
+    flat(rgb=np.arange(60, dtype=np.uint8).reshape(20, 3)).save("colors.vti")
     cells = flat()
     cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
     cells.save("cells.vti")
@@ -216,7 +216,7 @@ def test_what_is_shown_is_told(volume, done, run):
             "length of V in colours, with strokes along it (direction: surface)",
         ),
         ("flat.vti --warp height", "heights are taken 0.1 times"),
-        ("bare.vti", "surface (shape: sheet)"),
+        ("bare.vti", "plane (none: sheet)"),
     ):
         code, out, _ = run("light", words, "-o", "a.vtk")
         assert code == 0

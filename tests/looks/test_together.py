@@ -23,7 +23,7 @@ def lines():
 def test_each_mesh_is_drawn_by_its_rule_and_all_share_the_camera_and_the_range():
     look = vizlight.look([ball(0), ball(3), lines()], size=SIZE)
     layers = look.drawing.layers
-    assert [layer.keywords.get("scalars") for layer in layers] == ["T", "T", None]
+    assert [layer.keywords.get("scalars") for layer in layers] == ["T", "T", "rgb"]
     first, second = (layer.keywords["clim"] for layer in layers[:2])
     assert first == second == pytest.approx((-0.5, 3.5), abs=0.02)
     assert len(look.drawing.keys) == 2
@@ -76,7 +76,7 @@ def test_blocks_of_a_file_are_drawn_each_by_its_rule(tmp_path):
     path = tmp_path / "mixed.vtm"
     pv.MultiBlock({"ball": ball(0), "lines": lines(), "cloud": cloud}).save(path)
     look = vizlight.look(path, size=SIZE)
-    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", None, "q"]
+    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", "rgb", "q"]
     assert look.mesh.n_blocks == 3
     script = look.script(tmp_path / "a.png")
     assert "parts = files.read_parts(" in script

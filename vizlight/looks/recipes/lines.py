@@ -9,6 +9,7 @@ import numpy as np
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds
 from vizlight.looks.steps import Step
+from vizlight.looks.wishes import even_light
 
 if TYPE_CHECKING:
     from vizlight._types import Keywords
@@ -22,7 +23,7 @@ POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 
 
 def lines(case: Case) -> Drawing:
-    """Draw lines, lit by their heading or in the colours of values."""
+    """Draw lines, lit by their heading: in the colours of their direction, or of values."""
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
@@ -30,12 +31,15 @@ def lines(case: Case) -> Drawing:
     drawn: Keywords = {"scene": scene, "line_width": case.width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words = "lines by their heading"
-    if case.wishes.picture.get("scalars") == DIRECTION:
+    asked, array = case.wishes.picture.get("scalars"), case.array
+    if asked == DIRECTION or (asked is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
-        shown = _by_direction(lit)
-        by_direction = {"scalars": RGB, "rgb": True, "lighting": False, "line_width": case.width}
-        layers = [Layer(shown, by_direction, live=False)]
-        return Drawing(layers, camera, scene, lit, "lines by their direction", kind=mesh)
+        shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
+        layer = Layer(_by_direction(lit), {**shown, "line_width": case.width})
+        table = Step("", "vizlight.maps.directions")
+        key: Keywords = {"question": "value", "title": "direction", "cmap": table}
+        words = "lines by their direction"
+        return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
         array = case.needed_array
         colors = case.wishes.colors
