@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 ROOT = Path(__file__).resolve().parents[2]
 #: Words of each command, and the names of what it leaves in the folder.
 COMMANDS = {
-    "light": ("light ball.vtp --tangents V -o lit.vtp", ["lit.vtp"]),
+    "light": ("light ball.vtp --for shape -o lit.vtp", ["lit.vtp"]),
     "light with a picture": ("light ball.vtp -o lit.vtp -o lit.png", ["lit.png", "lit.vtp"]),
     "light in processes": (
         "light box.vti --contour height --workers 2 --slab 0.002 -o lit.pvtp", ["lit", "lit.pvtp"]
