@@ -41,9 +41,9 @@ COMMANDS = {
     "section": "light flow.vti --slice 0,1,1:8 --tangents V",
     "points of a volume": "light flow.vti --no-surface --tangents V",
     "raised": "light terrain.vti --warp height --exaggeration 2 --facing as-given",
-    "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
-    "view of a scene": "light flow.vti --contour r --scene view.json",
-    "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
+    "scene of a file": "light terrain.vti --warp height --scene scene.json --specular 0.1",
+    "view of a scene": "light terrain.vti --warp height --scene view.json",
+    "saved camera": "light terrain.vti --warp height --view camera.json --zoom 2 --parallel",
     "streamlines": "streamlines flow.vti --vectors V --seeds 9 --model cylinder --scalars r "
     "--cmap plasma",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
