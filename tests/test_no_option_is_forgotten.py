@@ -178,7 +178,9 @@ def shell(scene, options, folder):
         f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))
         for k, v in options.items() if v is not False
     ]  # fmt: skip
-    assert cli.main(["light", paths[0], "--scene", paths[1], *words, "-o", paths[2]]) == 0
+    # Where a scalar is shown no lines are traced along the vectors.
+    light = ["light", paths[0], "--scalars", "share"]
+    assert cli.main([*light, "--scene", paths[1], *words, "-o", paths[2]]) == 0
     lit = pv.read(paths[2])
     return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
 

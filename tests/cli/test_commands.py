@@ -243,7 +243,7 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, done, refused):
     made = {path.name for path in Path("out").glob("*.vtp")}
     assert made == {f"case-streamlines-000{i}.vtp" for i in range(2)}
     (folder / "all").mkdir()
-    done("light", *arguments[1:2], "--times", "all", "-o", "all", *SMALL)
+    done("light", *arguments[1:2], "--for shape --times all -o all", *SMALL)
     assert len([*Path("all").glob("*.png")]) == 3
     for asked in ("3:", "x", "all --time 1"):
         err = refused(*arguments, "--times", asked, "-o", "out")
