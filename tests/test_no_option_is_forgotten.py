@@ -178,8 +178,8 @@ def shell(scene, options, folder):
         f"--{k.replace('_', '-')}" + ("" if v is True else f"={v}".replace(" ", "-"))
         for k, v in options.items() if v is not False
     ]  # fmt: skip
-    # Where a scalar is shown no lines are traced along the vectors.
-    light = ["light", paths[0], "--scalars", "share"]
+    # Where another array is shown no lines are traced along the vectors.
+    light = ["light", paths[0], "--array", "share"]
     assert cli.main([*light, "--scene", paths[1], *words, "-o", paths[2]]) == 0
     lit = pv.read(paths[2])
     return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
