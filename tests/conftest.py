@@ -33,7 +33,7 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason=str(error)))
 
 
-def pytest_collection_finish(session):
+def pytest_collection_finish():
     """Search for garbage in what the tests make, not in all that was imported and collected."""
     gc.collect()
     gc.freeze()
