@@ -44,8 +44,6 @@ def without_vectors(mesh):
 
 
 def _vtk(folder):
-    box().save(folder / "vectors.vti")
-    ball().save(folder / "vectors.vtp")
     box_, ball_ = without_vectors(box()), without_vectors(ball())
     meshes = {
         "vtp": ball_,
@@ -58,6 +56,8 @@ def _vtk(folder):
         for binary, form in (True, "binary"), (False, "ascii"):
             mesh.save(folder / f"{suffix}-{form}.vtk", binary=binary)
             mesh.save(folder / f"{form}.{suffix}", binary=binary)
+    box().save(folder / "binary.vti")
+    ball().save(folder / "binary.vtp")
     from vtkmodules import vtkIOXML
 
     writer = vtkIOXML.vtkXMLPolyDataWriter()
