@@ -16,7 +16,7 @@ from vizlight import Light, Material, Scene, legibility, load_example, relief_sh
 tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#d6ecec", "#5f9a52", "#b5965f", "#f4efe6"]
 places = [0, 0.3, 0.58, 0.665, 0.67, 0.83, 1]  # of heights from -5800 to 2860 m: 0.67 is the coast
 tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
-relief = load_example("hawaii.vti").resample(8.0, interpolation="bspline")
+relief = load_example("hawaii.vti").resample(6.0, interpolation="bspline")
 sun = Light(direction=(-0.87, 0.25, 0.42), color="#ffc080", intensity=1.1)
 blue = Light(direction=(0.48, -0.14, 0.87), color="#80b8ff", intensity=0.6)
 scene = Scene(lights=[sun, blue], material=Material(ambient=0.4, diffuse=0.85, specular=0))

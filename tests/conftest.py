@@ -1,3 +1,4 @@
+import gc
 import os
 import sys
 from pathlib import Path
@@ -30,6 +31,12 @@ def pytest_collection_modifyitems(config, items):
     except render.BackendError as error:
         for item in drawing:
             item.add_marker(pytest.mark.skip(reason=str(error)))
+
+
+def pytest_collection_finish():
+    """Search for garbage in what the tests make, not in all that was imported and collected."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter, config):

@@ -22,7 +22,7 @@ UNCOUNTED = (".obj", ".su2")
 #: Where files that failed are kept.
 KEPT = Path("failed_files")
 #: Files of one process, and the least number of bytes that matter in a mutation.
-BATCH = 100
+BATCH = 200
 NUMBERS = (0, 1, -1, 2**31 - 1, 2**31, 2**32 - 1, 10**12)
 
 

@@ -23,7 +23,7 @@ def straws(count=300, points=12, seed=1):
     return pv.PolyData(places.reshape(-1, 3), lines=np.insert(ids, 0, points, axis=1).ravel())
 
 
-def torus(count=151, centre=(0.0, 0.0, 0.0)):
+def torus(count=101, centre=(0.0, 0.0, 0.0)):
     """Return a surface in float64: normals ``n``, tangents ``around`` and heights."""
     angles = np.linspace(0, 2 * np.pi, count)
     angles[-1] = 0.0

@@ -65,14 +65,14 @@ FILES = [
 
 def make(folder: Path) -> None:
     """Make files with the tools of their fields, as far as these are installed."""
-    y, x = np.mgrid[:90, :120]
+    y, x = 2 * np.mgrid[:45, :60]
     heights = 600 + 200 * np.sin(x / 17) * np.cos(y / 23) + 40 * np.sin((x + 2 * y) / 7)
     with contextlib.suppress(ImportError):
         _rasters(folder, heights)
     with contextlib.suppress(ImportError):
         import xarray
 
-        axes = {"lat": 47 - np.arange(90) / 1200, "lon": 11 + np.arange(120) / 1200}
+        axes = {"lat": 47 - np.arange(45) / 1200, "lon": 11 + np.arange(60) / 1200}
         grid = xarray.Dataset({"height": (("lat", "lon"), heights)}, coords=axes)
         grid.to_netcdf(folder / "map.nc", engine="scipy")
     with contextlib.suppress(ImportError):
@@ -130,7 +130,7 @@ def _rasters(folder: Path, heights: np.ndarray) -> None:
         ("grid.asc", [holed], (utm[0], None), {"driver": "AAIGrid", "nodata": -9999}),
     ):
         with rasterio.open(
-            folder / name, "w", height=90, width=120, count=len(bands), dtype=bands[0].dtype,
+            folder / name, "w", height=45, width=60, count=len(bands), dtype=bands[0].dtype,
             transform=transform, crs=crs, **more,
         ) as file:  # fmt: skip
             file.write(np.stack(bands))

@@ -85,7 +85,7 @@ def test_script_for_paraview(volume, tmp_path, done, refused, run):
 def test_a_direction_is_the_name_of_an_axis(volume, done):
     pictures = []
     for up, view in (("y", "x"), ("0,1,0", "1,0,0"), ("z", "x")):
-        options = ("--contour", "r", "--up", up, "--view", view, "-o", "a.png")
+        options = ("--contour r --for shape --size 90x60", "--up", up, "--view", view, "-o a.png")
         done("light", volume, *options)
         pictures.append(pv.read("a.png")["PNGImage"])
     np.testing.assert_array_equal(pictures[0], pictures[1])
@@ -167,7 +167,7 @@ def test_help_reads_the_arguments_of_its_command_once(monkeypatch, done):
 
 @pytest.mark.parametrize("name", ["x.vtp", "X.VTU", "x.vtk", "x.vti"])
 def test_outputs_by_ending(name, volume, tmp_path, done):
-    more = "--no-surface --tangents V" if name == "x.vti" else "--view 0,-1,0 --headlight"
+    more = "--no-surface --tangents V" if name == "x.vti" else "--array r --view 0,-1,0 --headlight"
     done("light", volume, "-o", name, more)
     lit = pv.read(name)
     assert "luminance" in lit.point_data

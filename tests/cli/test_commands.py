@@ -41,9 +41,9 @@ COMMANDS = {
     "section": "light flow.vti --slice 0,1,1:8 --tangents V",
     "points of a volume": "light flow.vti --no-surface --tangents V",
     "raised": "light terrain.vti --warp height --exaggeration 2 --facing as-given",
-    "scene of a file": "light flow.vti --contour r --scene scene.json --specular 0.1",
-    "view of a scene": "light flow.vti --contour r --scene view.json",
-    "saved camera": "light flow.vti --contour r --view camera.json --zoom 2 --parallel",
+    "scene of a file": "light terrain.vti --warp height --scene scene.json --specular 0.1",
+    "view of a scene": "light terrain.vti --warp height --scene view.json",
+    "saved camera": "light terrain.vti --warp height --view camera.json --zoom 2 --parallel",
     "streamlines": "streamlines flow.vti --tangents V --seeds 9 --model cylinder --scalars r "
     "--cmap plasma",
     "colour of data": "light flow.vti --slice z:4 --scalars r --diffuse 0.9",
@@ -120,13 +120,13 @@ def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, r
 
 def test_a_scene_of_a_file_lights_as_in_a_script(folder, done):
     Path("view.json").write_text(json.dumps(SCENE | {"view": VIEW}))
-    arguments = ("light", "flow.vti", "--contour", "r", "--scene", "view.json")
-    done(*arguments, "-o", "lit.vtp")
+    asked = "light flow.vti --no-surface --tangents V --scene view.json -o lit.vti"
+    done(asked)
     scene = vizlight.Scene.from_dict(SCENE | {"view": VIEW})
-    lit = vizlight.illuminate(pv.read("flow.vti").contour([5.06], scalars="r"), scene)
-    assert vizlight.provenance(pv.read("lit.vtp"))["scene"] == vizlight.provenance(lit)["scene"]
-    done(*arguments, "--diffuse", "0.3", "--light", "0,0,1", "-o", "lit.vtp")
-    made = vizlight.provenance(pv.read("lit.vtp"))["scene"]
+    lit = vizlight.illuminate(pv.read("flow.vti"), scene, tangents="V")
+    assert vizlight.provenance(pv.read("lit.vti"))["scene"] == vizlight.provenance(lit)["scene"]
+    done(asked, "--diffuse 0.3 --light 0,0,1")
+    made = vizlight.provenance(pv.read("lit.vti"))["scene"]
     assert made["material"] == {**vizlight.provenance(lit)["scene"]["material"], "diffuse": 0.3}
     assert [light["direction"] for light in made["lights"]] == [[0.0, 0.0, 1.0]]
 
@@ -184,12 +184,12 @@ def test_components_of_vectors_are_joined(folder, run, done):
     mesh["V"] = np.column_stack([x, y, 0 * z])
     mesh.save("whole.vti")
     for file, name in (("parts", "u,v"), ("whole", "V")):
-        done(f"light {file}.vti --tangents {name} -o {file}-lit.vtp")
-    parts, whole = pv.read("parts-lit.vtp"), pv.read("whole-lit.vtp")
+        done(f"light {file}.vti --no-surface --tangents {name} -o {file}-lit.vti")
+    parts, whole = pv.read("parts-lit.vti"), pv.read("whole-lit.vti")
     np.testing.assert_array_equal(parts["luminance"], whole["luminance"])
     joined = vizlight.files.with_vectors(pv.read("parts.vti"), "v,u")
     np.testing.assert_array_equal(joined["v,u"][:, [1, 0, 2]], pv.read("whole.vti")["V"])
-    done("streamlines parts.vti --tangents u,v -o lines.vtp")
+    done("streamlines parts.vti --tangents u,v --seeds 9 -o lines.vtp")
     assert np.ptp(pv.read("lines.vtp").points[:, 2]) > 0.1
     for file, name in (("parts", "u,v"), ("whole", "V")):
         # Most of them point into the isosurface, and a warning says so.
@@ -227,7 +227,7 @@ def test_parts_are_blocks_of_one_file_and_one_page(folder, done, refused):
     # Pages name the pictures that a reader saves after themselves.
     again = Path("c.html").read_text(encoding="utf-8")
     assert again.replace('": "c"', '": "a"') == page
-    err = refused("light flow.vti -o d.vtm")
+    err = refused("light flow.vti --array r -o d.vtm")
     assert "a name that ends in .vtp, .vtk, .vtu, .stl for PolyData" in err
 
 
@@ -249,7 +249,7 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, done, refused):
     made = {path.name for path in Path("out").glob("*.vtp")}
     assert made == {f"case-streamlines-000{i}.vtp" for i in range(2)}
     (folder / "all").mkdir()
-    done("light", *arguments[1:2], "--times", "all", "-o", "all", *SMALL)
+    done("light", *arguments[1:2], "--for shape --times all -o all", *SMALL)
     assert len([*Path("all").glob("*.png")]) == 3
     for asked in ("3:", "x", "all --time 1"):
         err = refused(*arguments, "--times", asked, "-o", "out")
@@ -298,7 +298,7 @@ def test_the_key_of_colours_names_what_they_are(folder, monkeypatch, done):
     ],
 )
 def test_azimuth_and_altitude(text, direction, folder, done):
-    _, record = lit(done, f"light flow.vti --light {text}")
+    _, record = lit(done, f"light flow.vti --no-surface --tangents V --light {text}", "lit.vti")
     np.testing.assert_allclose(record["scene"]["lights"][0]["direction"], direction, atol=1e-15)
 
 
@@ -307,7 +307,7 @@ def test_azimuth_and_altitude(text, direction, folder, done):
     [("clip=z:5", 0, 5), ("clip=-z:-5", 5, 11), ("clip=0,0,-2:-5", 5, 11), ("slice=0,0,3:4", 4, 4)],
 )
 def test_planes_keep_what_they_say(option, low, high, folder, done):
-    bounds = lit(done, f"light flow.vti --{option}")[0].bounds
+    bounds = lit(done, f"light flow.vti --no-surface --tangents V --{option}", "lit.vtk")[0].bounds
     assert (bounds.z_min, bounds.z_max) == pytest.approx((low, high), abs=1e-5)
 
 
@@ -324,14 +324,15 @@ def test_several_files_are_lit_each_by_itself(folder, run, done):
     """An error in one leaves the others, and no input is overwritten."""
     shutil.copy("flow.vti", "again.vti")
     (folder / "made").mkdir()
-    done("light flow.vti again.vti --contour r -o made", *SMALL)
+    done("light flow.vti again.vti --contour r --for shape -o made", *SMALL)
     assert {p.name for p in Path("made").iterdir()} == {
         f"{name}-lit.{suffix}" for name in ("flow", "again") for suffix in ("vtp", "png")
     }
     same_arrays(pv.read("made/flow-lit.vtp"), pv.read("made/again-lit.vtp"))
     shutil.copy("torus.vtp", "again-lit.vtp")
     before = Path("again-lit.vtp").read_bytes()
-    code, _, err = run("light none.vti torus.vtp again.vti flow.vti again-lit.vtp --contour r")
+    files = "none.vti torus.vtp again.vti flow.vti again-lit.vtp"
+    code, _, err = run("light", files, "--contour r --for shape", *SMALL)
     assert (code, err.count("\n")) == (2, 4)
     assert err.startswith("vizlight: none.vti: file: expected a file")
     assert "vizlight: torus.vtp: contour: expected" in err
@@ -379,7 +380,8 @@ def test_options_reach_the_filter(line, path, name, expected, folder, done):
 def test_a_saved_camera_is_the_view(folder, done):
     Path("camera.json").write_text(json.dumps([[30, -10, 20], [5, 5, 5], [0, 0, 1]]))
     for parallel in ("", "--parallel"):
-        _, record = lit(done, f"light flow.vti --contour r --view camera.json {parallel}")
+        asked = "light flow.vti --no-surface --tangents V --view camera.json"
+        _, record = lit(done, f"{asked} {parallel}", "lit.vti")
         view = record["scene"]["view"]
         assert view["position"] == [30, -10, 20]
         np.testing.assert_allclose(view["direction"], unit([25, -15, 15]), atol=1e-12)

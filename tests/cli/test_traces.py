@@ -17,8 +17,10 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 ROOT = Path(__file__).resolve().parents[2]
 #: Words of each command, and the names of what it leaves in the folder.
 COMMANDS = {
-    "light": ("light ball.vtp --tangents V -o lit.vtp", ["lit.vtp"]),
-    "light with a picture": ("light ball.vtp -o lit.vtp -o lit.png", ["lit.png", "lit.vtp"]),
+    "light": ("light ball.vtp --for shape -o lit.vtp", ["lit.vtp"]),
+    "light with a picture": (
+        "light ball.vtp --for shape -o lit.vtp -o lit.png", ["lit.png", "lit.vtp"]
+    ),
     "light in processes": (
         "light box.vti --contour height --workers 2 --slab 0.002 -o lit.pvtp", ["lit", "lit.pvtp"]
     ),
@@ -30,8 +32,8 @@ COMMANDS = {
     "project": ("project ball.vtp --positions W --frame F -o flat.vtp", ["flat.vtp"]),
     "relief": ("relief ball.vtp -o cast.vtp", ["cast.vtp"]),
     "sky": ("sky ball.vtp --error 0.1 -o sky.vtp", ["sky.vtp"]),
-    "streamlines": ("streamlines box.vti -o lines.vtp", ["lines.vtp"]),
-    "view": ("view ball.vtp --no-browser -o page.html", ["page.html"]),
+    "streamlines": ("streamlines box.vti --seeds 9 -o lines.vtp", ["lines.vtp"]),
+    "view": ("view ball.vtp --for shape --no-browser -o page.html", ["page.html"]),
 }  # fmt: skip
 
 
@@ -42,7 +44,7 @@ def test_nothing_listens_and_nothing_is_open_to_others(name, tmp_path):
     work, temporary, home = (tmp_path / part for part in ("work", "tmp", "home"))
     for folder in (work, temporary, home):
         folder.mkdir()
-    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
     ball["V"] = np.cross(ball.points, (0.3, 0.2, 1.0))
     ball["W"] = np.column_stack([ball.points, ball.points[:, 0]])
     ball["F"] = np.tile(np.eye(2, 4).ravel(), (ball.n_points, 1))

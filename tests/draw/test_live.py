@@ -91,8 +91,15 @@ def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighti
     assert seen[0][drawn].min() >= 0.29 * 255
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("model", ["phong", "blinn"])
+#: A model and a scene: the other scenes with the second model are among the slow tests.
+LIT = [
+    pytest.param(model, scene, marks=[pytest.mark.slow] * (model == "blinn" and scene != "near"))
+    for model in ("phong", "blinn")
+    for scene in SCENES
+]
+
+
+@pytest.mark.parametrize(("model", "scene"), LIT)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_within_four_of_the_light_at_points(shape, model, scene):
     make, options = SHAPES[shape]

@@ -6,7 +6,6 @@ import io
 import json
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import browsers
@@ -18,7 +17,7 @@ from PIL import Image
 from shapes import torus
 
 import vizlight
-from vizlight import Light, Material, Scene, View
+from vizlight import Light, Material, Scene, View, cli
 
 BASH = shutil.which("bash")
 pytestmark = [pytest.mark.opengl, browsers.needed(bash=BASH)]
@@ -98,17 +97,22 @@ def test_no_text_is_read_as_anything_else(number, opened, tmp_path):
         assert text in strings
         assert f"field {text}" in strings
     for command in (copied["command"], again["command"]):
-        run = subprocess.run(
-            [BASH, "-c", f"vizlight() {{ printf '%s\\0' \"$@\"; }}\n{command}"],
-            cwd=tmp_path, capture_output=True, check=True,
-        )  # fmt: skip
-        first, file, *rest = run.stdout.decode().split("\0")
+        first, file, *rest = words_of(command, tmp_path)
         assert (first, file) == ("light", f"./{text}" if text.startswith("-") else text)
         assert rest[: len(words)] == words
         assert {p.name for p in tmp_path.iterdir()} == {
             "page.html", "page.scene.json", "page.view.json",
         }  # fmt: skip
     assert rest[rest.index("--scalars") + 1] == text
+
+
+def words_of(command, folder):
+    """Return the words that the shell gives to ``vizlight`` in a command."""
+    run = subprocess.run(
+        [BASH, "-c", f"vizlight() {{ printf '%s\\0' \"$@\"; }}\n{command}"],
+        cwd=folder, capture_output=True, check=True,
+    )  # fmt: skip
+    return run.stdout.decode().split("\0")[:-1]
 
 
 def _is_string(node):
@@ -129,7 +133,7 @@ ACTS = {
 
 @pytest.mark.parametrize("act", ACTS)
 def test_what_is_copied_draws_the_picture(act, opened, tmp_path, monkeypatch):
-    """The command, run by a shell as it was copied, and the program draw what the page shows."""
+    """The command, in the words of a shell, and the program draw what the page shows."""
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
     monkeypatch.chdir(tmp_path)
     mesh = torus()
@@ -152,10 +156,10 @@ def test_what_is_copied_draws_the_picture(act, opened, tmp_path, monkeypatch):
     data = page.evaluate("vizlight.canvas.toDataURL().split(',')[1]")
     texts = page.evaluate("vizlight.texts()")
     seen = np.array(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB"))
-    shell = f'vizlight() {{ {sys.executable} -m vizlight "$@"; }}\n{texts["command"]}'
+    words = words_of(texts["command"], tmp_path)
     program = texts["python"].replace("clim=", "show_scalar_bar=False, clim=")
     for draw in (
-        lambda: subprocess.run([BASH, "-c", shell], capture_output=True, check=True),
+        lambda: cli.main(words),
         lambda: exec(compile(program, "copied", "exec"), {}),
     ):
         draw()

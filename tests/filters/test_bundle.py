@@ -94,7 +94,7 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
 
 
 def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
-    mesh = lines(200)
+    mesh = lines(60)
     # Compiled code may take over between two calls.
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
     with _pool.threads(1):
@@ -111,16 +111,22 @@ def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypat
         np.testing.assert_allclose(fast[name], one[name], atol=2e-5)
 
 
+def in_one_light(mesh):
+    scene = SCENE.replace(lights=[FAR])
+    return vizlight.illuminate(mesh, scene, bundle=QUICK, occlusion="sky")
+
+
+@pytest.fixture(scope="module")
+def unmoved():
+    return in_one_light(lines(60))
+
+
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize(("scale", "far"), [(1e-20, 0.0), (1e12, 0.0), (1.0, 1e4)])
-def test_neither_the_unit_nor_the_place_matters(kind, scale, far):
-    mesh = lines(150)
-    moved = mesh.copy()
-    moved.points = (np.asarray(mesh.points, np.float64) * scale + far).astype(kind)
-    scene = SCENE.replace(lights=[FAR])
-    found, other = (
-        vizlight.illuminate(each, scene, bundle=QUICK, occlusion="sky") for each in (mesh, moved)
-    )
+def test_neither_the_unit_nor_the_place_matters(kind, scale, far, unmoved):
+    moved = lines(60)
+    moved.points = (np.asarray(moved.points, np.float64) * scale + far).astype(kind)
+    found, other = unmoved, in_one_light(moved)
     off = 2e-2 if far and kind is np.float32 else 2e-3
     np.testing.assert_allclose(other["transmittance"], found["transmittance"], atol=off)
     assert abs(other["sky"] - found["sky"]).mean() < off

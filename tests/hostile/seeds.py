@@ -36,8 +36,15 @@ def lines(n=5):
     return [np.stack([np.cos(t + i), np.sin(t), t * i], axis=1).astype("f4") for i in range(n)]
 
 
+def without_vectors(mesh):
+    """Return a mesh with pairs of numbers in place of vectors, whose lines take time to trace."""
+    mesh["pair"] = mesh["V"][:, :2].copy()
+    del mesh.point_data["V"]
+    return mesh
+
+
 def _vtk(folder):
-    box_, ball_ = box(), ball()
+    box_, ball_ = without_vectors(box()), without_vectors(ball())
     meshes = {
         "vtp": ball_,
         "vti": box_,
@@ -49,6 +56,8 @@ def _vtk(folder):
         for binary, form in (True, "binary"), (False, "ascii"):
             mesh.save(folder / f"{suffix}-{form}.vtk", binary=binary)
             mesh.save(folder / f"{form}.{suffix}", binary=binary)
+    box().save(folder / "binary.vti")
+    ball().save(folder / "binary.vtp")
     from vtkmodules import vtkIOXML
 
     writer = vtkIOXML.vtkXMLPolyDataWriter()

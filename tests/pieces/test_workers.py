@@ -128,6 +128,8 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     calls = [(i, str(tmp_path / f"mark{i % 2}")) for i in range(6)]
     assert list(work(killing, calls)) == list(range(6))
     assert len(list(tmp_path.iterdir())) == 2
+    del work
+    work = pieces.Processes(1)
     one = pieces.sources.pieces_of(slabs(tmp_path), 64.0)[0]
     with pytest.raises(pieces.PieceError, match=r"piece slices \[0:19\]: workers ended while"):
         Work(work, 0, False).each(always_killed, [(one,)], "light")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import operator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from vizlight.scene import View
@@ -162,7 +163,7 @@ class Oracle:
         )  # fmt: skip
         parts: list[tuple[Light, Real, Real]] = []
         for i, light in enumerate(light for light in scene.lights if light.intensity > 0):
-            wi, distance = self.toward(light.seen_from(eye), at)
+            wi, distance = self.toward(_seen(light, eye), at)
             # A light at the point itself has no direction, and adds nothing.
             if wi is not None:
                 scale = self._arriving(wi, distance, light, place)
@@ -462,6 +463,12 @@ class Oracle:
             if own is not None:
                 frame.append(own)
         return frame
+
+
+@lru_cache(maxsize=64)
+def _seen(light: Light, eye: View) -> Light:
+    """Return a light in a view, which all points of a scene share."""
+    return light.seen_from(eye)
 
 
 def _placed(point: Vector, scene: Scene) -> bool:

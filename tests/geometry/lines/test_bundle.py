@@ -108,16 +108,18 @@ def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
 def shaded(origins, toward, own, middles, tangents, length, diameter, reach):
     """Return whether rays meet a cylinder other than their own as far as their reach."""
     found = np.zeros(len(origins), np.bool_)
+    turned, own_way = np.cross(middles, tangents), (middles * tangents).sum(axis=1)
     for i, (origin, one) in enumerate(zip(origins, toward, strict=True)):
-        across = np.cross(tangents, one)
-        sine = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
+        # Products with the way from the origin to the middle, of which the axis is a tangent.
         cosine = tangents @ one
-        way = middles - origin
-        gap = np.abs((way * across).sum(axis=1)) / sine
-        x, y = way @ one, (way * tangents).sum(axis=1)
-        at, along = (x - cosine * y) / sine**2, (cosine * x - y) / sine**2
-        met = (gap < diameter / 2) & (at > 0) & (at < reach[i]) & (np.abs(along) < length / 2)
-        met[own[i]] = False
+        sine = np.sqrt(np.maximum(1 - cosine**2, 1e-24))
+        gap = np.abs(turned @ one - tangents @ np.cross(one, origin)) / sine
+        near = np.flatnonzero(gap < diameter / 2)
+        near = near[near != own[i]]
+        x, y = (middles[near] - origin) @ one, own_way[near] - tangents[near] @ origin
+        at, along = (x - cosine[near] * y), (cosine[near] * x - y)
+        square = sine[near] ** 2
+        met = (at > 0) & (at < reach[i] * square) & (np.abs(along) < length / 2 * square)
         found[i] = met.any()
     return found
 

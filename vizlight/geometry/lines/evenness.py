@@ -21,9 +21,11 @@ if TYPE_CHECKING:
 KNOWN = 0.005
 #: Side of the boxes, in spacings, in which one cell's distance bounds the distances of all.
 BOX = 0.25
-#: Number of parts of cells that are halved at once, and most halves that are smaller than boxes:
-#: along each axis per spacing, but at least so many.
-BATCH, MOST_PARTS, LEAST_PARTS = 256, 4, 4000
+#: Number of parts of cells that are halved at once: at least so many, and one of so many, since the
+#: others are copied each time.
+BATCH, SHARE = 256, 4
+#: Most halves that are smaller than boxes: along each axis per spacing, but at least so many.
+MOST_PARTS, LEAST_PARTS = 4, 4000
 #: Number of places from which the first distances are measured exactly.
 FIRST = 64
 #: Points of curves by whose segments a distance is measured, and most that are looked at for it.
@@ -197,13 +199,14 @@ def largest_gap(distances: Distances) -> float:
         # Large parts come first and are not counted: what is in them is not known yet.
         large = parts.radius > BOX * spacing
         first = np.where(large, np.inf, parts.far)
-        order = np.argpartition(-first, min(BATCH, len(first)) - 1)
-        halves, moving = parts[order[:BATCH]].halved(distances)
+        batch = min(max(BATCH, len(first) // SHARE), len(first))
+        order = np.argpartition(-first, batch - 1)
+        halves, moving = parts[order[:batch]].halved(distances)
         room -= 0 if large.any() else len(halves.cell)
         # No curve passes where the field has no direction, and such a middle is no gap.
         gap = max(gap, float(halves.far[moving].max(initial=0)))
         # All places of a smaller part are as far as its middle, to within what the gap is known to.
-        parts = parts[order[BATCH:]].joined(halves[halves.radius > known])
+        parts = parts[order[batch:]].joined(halves[halves.radius > known])
         parts = parts[parts.far + parts.radius > gap + known]
     return gap
 
