@@ -333,6 +333,9 @@ def test_nothing_stays_behind(how, light):
     del live, actor, mesh
     plotter.mesh = plotter.mapper = None
     gc.collect()
+    # What is left of an actor that is gone goes with the next frame, or the next question.
+    assert not plotter.vizlight.has_live_light
+    gc.collect()
     assert [ref() for ref in left] == [None] * 3
 
 

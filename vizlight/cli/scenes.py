@@ -113,7 +113,7 @@ def check_part(part: Part) -> None:
 
 
 def _check_lights(lights: Lights) -> None:
-    for name in ("light", "light_position", "headlight", "scene"):
+    for name in ("light", "light_position", "headlight"):
         if lights.question is not None and getattr(lights, name):
             got = f"--{name.replace('_', '-')} beside it"
             raise ValueError(message("--for", "lights of its own", got, "leave one out"))

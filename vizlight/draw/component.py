@@ -8,6 +8,7 @@ import weakref
 from typing import TYPE_CHECKING, get_args
 
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkWeakReference
 
 from vizlight import _check
 from vizlight.draw import keywords
@@ -62,7 +63,7 @@ class Component:
     def __init__(self, plotter: pv.BasePlotter) -> None:
         # Weak both ways: neither the plotter nor a removed actor is kept alive by its light.
         self._plotter = weakref.ref(plotter)
-        self._lives: dict[str, Live] = {}
+        self._lives: dict[str, tuple[vtkWeakReference, Live]] = {}
         self._observed: list[tuple[vtkRenderer, int]] = []
         self._margins: dict[str, Margin] = {}
         #: What was said to be lost.
@@ -471,6 +472,7 @@ class Component:
     @property
     def has_live_light(self) -> bool:
         """Whether the plotter shows a mesh whose light follows the camera."""
+        self._forget()
         return bool(self._lives)
 
     def legibility(self, **options: Given) -> Foreign:
@@ -508,7 +510,18 @@ class Component:
         return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:
-        return self._lives.get(_address(actor))
+        kept, live = self._lives.get(_address(actor), (None, None))
+        # Another actor may have come to the place of one that is gone.
+        return live if kept is not None and kept.Get() is not None else None
+
+    def _forget(self) -> None:
+        """Let go of the light of actors that are gone.
+
+        Observers of their end would be called by VTK while Python collects garbage, which crashes.
+        """
+        for address, (kept, _) in [*self._lives.items()]:
+            if kept.Get() is None:
+                del self._lives[address]
 
     def _open_plotter(self) -> pv.BasePlotter:
         plotter = self._plotter()
@@ -573,10 +586,10 @@ class Component:
     def _keep(self, plotter: pv.BasePlotter, live: Live, actor: pv.Actor) -> None:
         """Tie a live light to its actor, and observe the renderers."""
         guard_exports(plotter)
-        # Without the actor nothing is left of the light.
-        lives, address, me = self._lives, _address(actor), weakref.ref(self)
-        lives[address] = live
-        actor.AddObserver("DeleteEvent", lambda *_: lives.pop(address, None))
+        self._forget()
+        kept, me = vtkWeakReference(), weakref.ref(self)
+        kept.Set(actor)
+        self._lives[_address(actor)] = kept, live
 
         # The observer lives as long as its renderer, and must not keep the component alive.
         def update(renderer: vtkRenderer, _: str) -> None:
@@ -593,6 +606,7 @@ class Component:
     def _update(self, renderer: vtkRenderer) -> None:
         """Light what a renderer is about to draw, and say once what does not show."""
         lost, any_live = set(), False
+        self._forget()
         for actor in items(renderer.GetActors()):
             live = self._live_of(actor)
             if live is not None:

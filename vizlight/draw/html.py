@@ -766,7 +766,12 @@ def page_text(
     page.add_bars(plotter, shown)
     if source:
         file, *words = [str(word) for word in source]
-        page.recipe |= {"file": file, "command": words}
+        # The vectors that a file has are not lit where the page lights a surface.
+        tangents = any(word.startswith("--tangents") for word in words)
+        meshes = [one.live.drawn for one in shown]
+        faces = all(mesh.n_cells and mesh.max_cell_dimensionality > 1 for mesh in meshes)
+        plain = faces and not tangents
+        page.recipe |= {"file": file, "command": words, "plain": plain}
     content = page.content() | {
         "name": title or stem, "stem": stem, "panel": panel, "frame": 0,
         "frames": None if frames is None else {"label": frames[0], "values": list(frames[1])},

@@ -98,7 +98,7 @@ function commandOf(app) {
     '--scene', `${stem}.scene.json`, '--view', `${stem}.view.json`,
     ...(camera.parallel ? ['--parallel', '--zoom', short(norm(minus(camera.position, camera.focal)) * half / camera.scale, 9)] : ['--zoom', short(ANGLE / camera.angle, 9)]),
     ...(cut ? [`--clip=${cut.sign < 0 ? '' : '-'}${AXES[cut.axis]}:${short(-cut.sign * (cut.place + app.page.origin[cut.axis]), 9)}`] : []),
-    ...(app.page.arrays[state.color] ? ['--scalars', state.color, '--cmap', state.cmap] : []),
+    ...(app.page.arrays[state.color] ? ['--scalars', state.color, '--cmap', state.cmap] : recipe.plain ? ['--for', 'shape'] : []),
     '--no-key', '--background', app.background, '--size', `${canvas.clientWidth}x${canvas.clientHeight}`, '-o', `${stem}.png`,
   ];
   const file = (name, value) => `cat > ${word(name)} <<'END'\n${JSON.stringify(value)}\nEND\n`;
