@@ -363,16 +363,18 @@ def test_a_neuron_has_branches_radii_and_types(tmp_path):
         vizlight.read(path)
 
 
-def test_points_of_a_lidar(tmp_path):
+@pytest.mark.parametrize("name", ["a.las", "a.laz"])
+def test_points_of_a_lidar(tmp_path, name):
     laspy = pytest.importorskip("laspy")
+    pytest.importorskip("lazrs")
     cloud = laspy.create(point_format=3, file_version="1.2")
     cloud.header.scales, cloud.header.offsets = [0.01] * 3, [600_000.0, 5_000_000.0, 0.0]
     places = np.array([[600_001.25, 5_000_002.5, 7.0], [600_003.0, 5_000_004.0, 8.0]])
     cloud.x, cloud.y, cloud.z = places.T
     cloud.intensity, cloud.classification = [3, 9], [2, 5]
     cloud.red, cloud.green, cloud.blue = [65280, 0], [256, 512], [0, 65280]
-    cloud.write(tmp_path / "a.las")
-    mesh = vizlight.read(tmp_path / "a.las")
+    cloud.write(tmp_path / name)
+    mesh = vizlight.read(tmp_path / name)
     np.testing.assert_allclose(mesh.points, places, atol=0.005)
     assert mesh["intensity"].tolist() == [3, 9]
     assert mesh["rgb"].tolist() == [[255, 1, 0], [0, 2, 255]]

@@ -56,6 +56,7 @@ def named(function: Callable[P, R]) -> Callable[P, R]:
 
 def unknown_option(function: str, name: str, known: list[str]) -> str:
     """Return the message for a keyword that a function does not have."""
-    near = difflib.get_close_matches(name, known, n=1)
+    begun = [option for option in known if option.startswith(name)]
+    near = begun or difflib.get_close_matches(name, known, n=1)
     remedy = f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[1:])}"
     return _check.message(name, f"an option of {function}", "a name that it does not have", remedy)
