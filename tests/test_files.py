@@ -696,6 +696,10 @@ def test_labels_of_what_is_no_image():
     with pytest.raises(TypeError, match="mesh: expected an image, which has labels"):
         files.surface_of(ball, labels="a")
     image = pv.ImageData(dimensions=(4, 4, 4))
+    image.cell_data["c"] = np.arange(27) // 14 * 5
+    found = files.surface_of(image, labels="c")
+    assert {*found.cell_data["c"].tolist()} == {5}
+    assert found.bounds.z_max > 2
     image["a"] = np.zeros(64)
     with pytest.raises(ValueError, match="labels: expected whole numbers that are not all 0"):
         files.surface_of(image, labels="a")

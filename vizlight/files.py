@@ -639,6 +639,9 @@ def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
     if not isinstance(mesh, pv.ImageData):
         got = type(mesh).__name__
         raise TypeError(_check.message("mesh", "an image, which has labels", got))
+    if name not in mesh.point_data and name in mesh.cell_data:
+        # Each cell becomes a point at its middle.
+        mesh = mesh.cells_to_points(name)
     values = _scalars(mesh, "labels", name)
     if values.dtype.kind not in "iu" or not values.any():
         got = f"{name!r} of {values.dtype}"

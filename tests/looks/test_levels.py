@@ -36,3 +36,10 @@ def test_constants_and_holes():
     assert levels.best_level(made, "flat")[1] == 0
     made["T"][::7] = np.nan
     assert np.isfinite(levels.best_level(made, "T")[0])
+
+
+def test_values_that_rise_ever_faster_have_no_isosurface_that_stands_out():
+    image = pv.ImageData(dimensions=(12, 12, 12))
+    x, y, z = np.asarray(image.points).T
+    image["p"] = x * y * z
+    assert best_level(image, "p")[1] <= 1

@@ -46,9 +46,11 @@ def isosurface(case: Case) -> Drawing:
     if around and wishes.view is None and wishes.frame is None:
         eye = eye_around(mesh.run())
         wishes = replace(wishes, frame=wishes.camera(Step("", ".outline", volume), eye))
-    case = replace(case, data=mesh, contents=contents, wishes=wishes)
     words = f"isosurface {array.name} = {levels.number(level)}"
-    second = contents.first("values", "kinds")
+    # A few values of the volume are not its kinds.
+    known = {one.name: one for one in case.contents.arrays if one.role in ("values", "kinds")}
+    second = next((known[one.name] for one in contents.arrays if one.name in known), None)
+    case = replace(case, data=mesh, contents=contents, wishes=wishes)
     if second is None or case.wishes.question == "shape":
         drawing = surfaces.surface(replace(case, question="shape"))
     else:
