@@ -42,4 +42,4 @@ def test_values_that_rise_ever_faster_have_no_isosurface_that_stands_out():
     image = pv.ImageData(dimensions=(12, 12, 12))
     x, y, z = np.asarray(image.points).T
     image["p"] = x * y * z
-    assert best_level(image, "p")[1] <= 1
+    assert levels.best_level(image, "p")[1] <= 1
