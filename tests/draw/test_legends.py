@@ -183,3 +183,11 @@ def test_pictures_have_keys():
     # The data have moved to the left of the plate, on which the key stands.
     assert (plain[:, wide + 2 :] == 0).all() or (plain != keyed).any()
     assert (keyed[:, wide + 2 :].astype(int).max(axis=2) > 100).sum() > 0.9 * np.pi * 30**2
+
+
+def test_names_break_before_capitals_and_after_underscores():
+    from vizlight.draw.legends import _wrapped
+
+    assert _wrapped("MaximumInscribedRadius", 12) == ["Maximum", "Inscribed", "Radius"]
+    assert _wrapped("sample_cell_scalars", 12) == ["sample_cell_", "scalars"]
+    assert _wrapped("two words", 12) == ["two words"]

@@ -205,3 +205,19 @@ def test_a_solid_whose_least_kind_is_0_is_drawn_whole():
     grid["group"] = (np.asarray(grid.points)[:, 2] > 2).astype(np.int32)
     look = vizlight.look(grid, size=SIZE)
     assert look.drawing.layers[0].mesh.run().bounds == grid.bounds
+
+
+def test_lines_show_their_values_and_few_are_wider_than_many():
+    few = pv.Spline(np.array([(0, 0, 0), (1, 1, 0), (2, 0, 1.0)]), 60)
+    many = pv.PolyData(
+        np.random.default_rng(5).random((4000, 3)), lines=np.insert(np.arange(4000), 0, 4000)
+    )
+    widths = [
+        vizlight.look(mesh, size=(600, 400)).drawing.layers[0].keywords["line_width"]
+        for mesh in (few, many)
+    ]
+    assert widths[0] > 2 * widths[1]
+    few["radius"] = np.linspace(1, 2, 60)
+    look = vizlight.look(few, size=SIZE)
+    assert (look.question, look.array) == ("value", "radius")
+    assert vizlight.look(few, "heading", size=SIZE).question == "heading"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -41,15 +42,18 @@ PLACED = {
 LETTER, LINE, LONGEST = 0.57, 1.5, 10
 #: Least height of letters, in pixels, and the height of a picture in letters.
 LEAST, LETTERS_HIGH = 9, 24
+#: Mark of a place where a name may break.
+BREAK = "\x1f"
 #: Most digits of a number.
 DIGITS = 7
 
 
 def _wrapped(text: str, columns: int) -> list[str]:
-    """Return the lines of a text, which may break after the underscores of a name too."""
-    spaced = text.replace("_", "_ ") if max(map(len, text.split()), default=0) > columns else text
-    lines = textwrap.wrap(spaced, columns)
-    return [line.replace("_ ", "_") for line in lines]
+    """Return the lines of a text, which may break within a name: after _, before a capital."""
+    if max(map(len, text.split()), default=0) > columns:
+        text = re.sub(r"_|(?<=[a-z])(?=[A-Z])", rf"\g<0>{BREAK} ", text)
+    lines = textwrap.wrap(text, columns)
+    return [line.replace(f"{BREAK} ", "").replace(BREAK, "") for line in lines]
 
 
 def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:

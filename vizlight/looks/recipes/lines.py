@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
+from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
     from vizlight._types import Keywords
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 
+#: Largest width of lines in pixels, and the share of a picture that they may fill.
+WIDEST, COVERED = 4.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 
@@ -27,15 +31,15 @@ def lines(case: Case) -> Drawing:
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
-    light = dict(case.wishes.light)
-    drawn: Keywords = {"scene": scene, "line_width": case.width, **case.wishes.drawn(light)}
+    light, width = dict(case.wishes.light), _width(case)
+    drawn: Keywords = {"scene": scene, "line_width": width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words = "lines by their heading"
     asked, array = case.wishes.picture.get("scalars"), case.array
     if asked == DIRECTION or (asked is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
-        layer = Layer(_by_direction(lit), {**shown, "line_width": case.width})
+        layer = Layer(_by_direction(lit), {**shown, "line_width": width})
         table = Step("", "vizlight.maps.directions")
         key: Keywords = {"question": "value", "title": "direction", "cmap": table}
         words = "lines by their direction"
@@ -50,6 +54,21 @@ def lines(case: Case) -> Drawing:
         words = f"lines in the colours of {array.name}"
     lit = case.lit(mesh, scene, **light)
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+
+
+def _width(case: Case) -> float:
+    """Return the width of lines by their spacing: few are wider than many."""
+    mesh: pv.PolyData = case.data.run()
+    if case.wishes.picture.get("line_width") or not isinstance(mesh, pv.PolyData):
+        return case.width
+    ids, ends = connectivity(mesh.GetLines())
+    places = np.asarray(mesh.points, dtype=np.float64)[ids]
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    steps[ends[1:-1] - 1] = 0  # from the end of a line to the next
+    columns, rows = case.wishes.size
+    length = float(np.nansum(steps)) / (mesh.length or 1.0) * np.hypot(columns, rows)
+    widest = COVERED * columns * rows / max(length, 1e-9)
+    return round(float(np.clip(widest, case.width, max(WIDEST, case.width))), 1)
 
 
 def points(case: Case) -> Drawing:
