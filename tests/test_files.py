@@ -703,3 +703,14 @@ def test_labels_of_what_is_no_image():
     image["a"] = np.zeros(64)
     with pytest.raises(ValueError, match="labels: expected whole numbers that are not all 0"):
         files.surface_of(image, labels="a")
+
+
+@pytest.mark.parametrize("turn", [np.diag([-1.0, -1, 1]), [[0, -1, 0], [1, 0, 0], [0, 0, 1]]])
+def test_an_isosurface_of_an_image_whose_rows_run_elsewhere_is_at_its_place(turn):
+    image = pv.ImageData(dimensions=(20, 24, 16), spacing=(1, 2, 1), origin=(5, 6, 7))
+    image.direction_matrix = turn
+    middle = np.asarray(image.center)
+    image["r"] = np.linalg.norm(np.asarray(image.points) - middle, axis=1)
+    found = files.surface_of(image, contour="r", level=5.0)
+    radius = np.linalg.norm(np.asarray(found.points) - middle, axis=1)
+    assert np.abs(radius - 5).max() < 0.3

@@ -625,7 +625,7 @@ def surface_of(
         raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
     low, high = float(finite.min()), float(finite.max())
     level = (low + high) / 2 if level is None else _check.number("level", level)
-    found: pv.PolyData = mesh.contour([level], scalars=contour)
+    found = blocks.isosurface(mesh, contour, level)
     if not found.n_points:
         expected = f"a value between {low:g} and {high:g}"
         raise ValueError(_check.message("level", expected, f"{level:g}"))

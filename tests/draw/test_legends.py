@@ -189,5 +189,5 @@ def test_names_break_before_capitals_and_after_underscores():
     from vizlight.draw.legends import _wrapped
 
     assert _wrapped("MaximumInscribedRadius", 12) == ["Maximum", "Inscribed", "Radius"]
-    assert _wrapped("sample_cell_scalars", 12) == ["sample_cell_", "scalars"]
+    assert _wrapped("sample_cell_scalars", 14) == ["sample_", "cell_scalars"]
     assert _wrapped("two words", 12) == ["two words"]

@@ -185,6 +185,22 @@ def placed(
     return mesh, own
 
 
+def isosurface(mesh: pv.DataSet, name: str, level: float) -> pv.PolyData:
+    """Return an isosurface where it belongs: VTK forgets in which directions the rows run."""
+    if not isinstance(mesh, pv.ImageData) or np.allclose(mesh.direction_matrix, np.eye(3)):
+        found: pv.PolyData = mesh.contour([level], scalars=name)
+        return found
+    turned = np.asarray(mesh.direction_matrix, dtype=np.float64)
+    straight = mesh.copy(deep=False)
+    straight.direction_matrix = np.eye(3)
+    found = straight.contour([level], scalars=name)
+    if found.n_points:
+        origin = np.asarray(mesh.origin)
+        places = (np.asarray(found.points, dtype=np.float64) - origin) @ turned.T + origin
+        found.points = places.astype(found.points.dtype)
+    return found
+
+
 def box(mesh: pv.DataSet) -> tuple[Array, float]:
     """Return the centre of the bounding box of a mesh and its longest side.
 

@@ -293,5 +293,5 @@ def _isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
         return pv.PolyData()
     if job.options.get("normals") == GRADIENT and GRADIENT not in mesh.point_data:
         mesh = mesh.compute_derivative(scalars=name, gradient=GRADIENT)
-    found: pv.PolyData = mesh.contour([job.level], scalars=name)
+    found = blocks.isosurface(mesh, name, job.level)
     return found
