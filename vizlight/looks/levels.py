@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 SAMPLE, LEVELS, ENDS = 20_000, 48, (0.02, 0.98)
 #: Gradient at a level, as a multiple of the mean gradient, from which its isosurface is good.
 GOOD = 1.5
-#: Share of the levels at either end of which none stands out: values that rise ever faster are
-#: steepest there.
-OUTER = 0.1
+#: Share of the levels at either end, where values that rise ever faster are steepest, and the
+#: contrast that a level needs there.
+OUTER, STRONG = 0.1, 3.0
 #: Fewest cells of the sample that a level must cross.
 FEWEST = 30
 
@@ -61,7 +61,7 @@ def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
     # A level between two others that are as good is safer than one at the end of their range.
     smooth = np.convolve(scores, (0.25, 0.5, 0.25), mode="same")
     best = int(np.argmax(smooth))
-    if not OUTER * LEVELS <= best < (1 - OUTER) * LEVELS:
+    if not OUTER * LEVELS <= best < (1 - OUTER) * LEVELS and scores[best] < STRONG:
         scores[best] = min(scores[best], 1.0)
     return _few_digits(float(candidates[best]), float(top - bottom)), float(scores[best])
 

@@ -13,7 +13,7 @@ from vizlight import _check, _compiled, _pool, files
 from vizlight.draw import cameras
 from vizlight.filters.illuminate import illuminate, light_mesh
 from vizlight.filters.streamlines import streamlines
-from vizlight.mesh import normals, records
+from vizlight.mesh import blocks, normals, records
 from vizlight.pieces.ghosts import GHOST
 from vizlight.pieces.sources import INDEX, SUFFIX, PieceError
 from vizlight.scene import Scene
@@ -293,5 +293,4 @@ def _isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:
         return pv.PolyData()
     if job.options.get("normals") == GRADIENT and GRADIENT not in mesh.point_data:
         mesh = mesh.compute_derivative(scalars=name, gradient=GRADIENT)
-    found = blocks.isosurface(mesh, name, job.level)
-    return found
+    return blocks.isosurface(mesh, name, job.level)
