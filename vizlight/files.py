@@ -78,6 +78,10 @@ FORMATS: dict[str, tuple[str, ...]] = {
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
+#: Names of the blocks of Exodus: those of elements, and of what is chosen among them.
+EXODUS = (
+    "Element Blocks", "Side Sets", "Node Sets", "Face Sets", "Edge Sets", "Element Sets",
+)  # fmt: skip
 #: Ends of names of files of glTF, and their array of colours.
 GLTF, GLTF_COLORS = (".glb", ".gltf"), "COLOR_0"
 #: Largest number of points of a mesh: half of the addresses that processors have.
@@ -441,10 +445,26 @@ def _found(
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
         found = pv.MultiBlock({"cells of lower dimension": found})
+    if isinstance(found, pv.MultiBlock) and EXODUS[0] in _names(found):
+        found = _without_sets(found)
     if isinstance(found, pv.PartitionedDataSet):
         data, found = found.field_data, pv.MultiBlock(list(found))
         found.field_data.update(data)
     return found
+
+
+def _names(found: pv.MultiBlock) -> list[str]:
+    return [str(name) for name in found.keys()]  # noqa: SIM118 - its own loop gives blocks
+
+
+def _without_sets(found: pv.MultiBlock) -> pv.MultiBlock:
+    """Return the elements of a file of Exodus, without the sets of sides and nodes of them."""
+    if not any(block.n_cells for block in blocks.all_blocks(found[EXODUS[0]])):
+        return found
+    kept = pv.MultiBlock({name: found[name] for name in _names(found) if name not in EXODUS[1:]})
+    for name in found.field_data:
+        kept.field_data[name] = found.field_data[name]
+    return kept
 
 
 def _path(name: str, value: object) -> Path:

@@ -221,3 +221,39 @@ def test_lines_show_their_values_and_few_are_wider_than_many():
     look = vizlight.look(few, size=SIZE)
     assert (look.question, look.array) == ("value", "radius")
     assert vizlight.look(few, "heading", size=SIZE).question == "heading"
+
+
+def test_points_without_cells_show_the_length_of_their_vectors(tmp_path):
+    cloud = pv.UnstructuredGrid()
+    cloud.points = np.random.default_rng(2).random((50, 3))
+    cloud["Force"] = np.asarray(cloud.points) * 3
+    look = vizlight.look(cloud, size=SIZE)
+    assert (look.shown, look.array) == ("points", "Force")
+    low, high = look.drawing.keys[0]["clim"]
+    lengths = np.linalg.norm(cloud["Force"], axis=1)
+    assert (low, high) == pytest.approx((lengths.min(), lengths.max()))
+    pixels = np.asarray(Image.open(look.save(tmp_path / "a.png")).convert("RGB")).astype(int)
+    assert np.mean(np.ptp(pixels[:, :90], axis=2) > 40) > 0.02
+
+
+def test_one_label_is_a_shape_and_what_is_around_all_kinds_is_left_out():
+    image = pv.ImageData(dimensions=(20, 20, 20))
+    x, y, z = np.asarray(image.points).T - 9.5
+    inside = x**2 + y**2 + z**2 < 36
+    image["label"] = inside.astype(np.int16)
+    look = vizlight.look(image, size=SIZE)
+    assert look.summary.startswith("surface of label 1")
+    grid = image.cast_to_unstructured_grid()
+    grid["material"] = np.where(inside, 3 + (z > 0), 2).astype(np.int32)
+    del grid.point_data["label"]
+    look = vizlight.look(grid, size=SIZE)
+    assert {*np.unique(look.drawing.layers[0].mesh.run()["material"])} == {3, 4}
+    assert any("material 2, which is around all else, is left out" in note for note in look.notes)
+
+
+def test_a_row_of_points_is_a_line():
+    row = pv.RectilinearGrid([0.0, 1, 2, 4], [0.0], [0.0])
+    row["p"] = [1.0, 2.5, 4, 9]
+    look = vizlight.look(row, size=SIZE)
+    assert (look.shown, look.array) == ("lines", "p")
+    look.plotter().close()

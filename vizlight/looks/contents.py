@@ -202,6 +202,12 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     if raster and len(described) == 1 and described[0].role == "values":
         only = described[0]
         described = [Named(only.name, "heights", only.of_cells, only.distinct, only.low, only.high)]
+    described = [
+        replace(array, role="values")
+        if array.role == "heights" and not _is_length(mesh, array.name)
+        else array
+        for array in described
+    ]
     joined = [
         Named(",".join(names), "vectors", names[0] not in mesh.point_data)
         for names in meaning.components(mesh)
@@ -214,6 +220,12 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         return (kinds, array.name not in active, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _is_length(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether the unit of an array, if its file has one, is that of a length."""
+    unit = meaning.of(mesh).arrays.get(name, {}).get("units", "")
+    return not unit or meaning.metres(unit) is not None
 
 
 def _words_of(mesh: pv.DataSet, name: str) -> str:

@@ -449,6 +449,11 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:
         raise ValueError(message("data", "a mesh with points", "none"))
+    if not mesh.n_cells and not isinstance(mesh, pv.PolyData):
+        # VTK draws points that are cells.
+        step = Step("points", ".cast_to_poly_points", step)
+    elif getattr(mesh, "dimensionality", 3) == 1:
+        step = Step("lines", ".cast_to_unstructured_grid", step)
     step = look_options.cut(step, wishes)
     notes += [step.note] if step.note else []
     if part.get("slice") is not None:

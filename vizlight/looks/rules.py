@@ -94,6 +94,7 @@ RULES = (
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
     Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,
          "points with values"),
+    Rule("points", _is_points, "none", ("vectors",), lines.points, "points with vectors"),
     Rule("points", _is_points, "shape", (), lines.points, "points without values"),
     Rule("sheet", _is_flat, "direction", ("vectors",), fields.vectors, "a map with vectors"),
     Rule("sheet", _is_terrain, "relief", ("heights",), reliefs.relief, "a map of heights"),

@@ -40,6 +40,8 @@ _MZ3 = {"faces": ("<i4", 3), "points": ("<f4", 3), "rgb": ("u1", 4), "values": (
 _MAGIC = b"MZ"
 #: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
 _TT = 32
+#: What is said of values at the points of a surface, such as its curvature.
+NO_SURFACE = "values over a surface, without one: read the surface, with this file as its overlay"
 
 
 def is_freesurfer(path: Path) -> bool:
@@ -79,9 +81,7 @@ def read(path: Path) -> pv.PolyData:
     else:
         points, faces = nibabel.freesurfer.read_geometry(path)
     if points is None or faces is None:
-        raise ValueError(
-            "values over a surface, without one: read the surface, with this file as its overlay"
-        )
+        raise ValueError(NO_SURFACE)
     # Native float32 stays; all else, such as bytes in another order, becomes float64.
     kind = points.dtype if points.dtype == np.float32 else np.float64
     mesh: pv.PolyData = pv.PolyData.from_regular_faces(points.astype(kind), faces)
@@ -132,6 +132,8 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     rows = rows.reshape(*rows.shape, *[1] * (3 - rows.ndim))
     if rows.ndim not in (3, 4) or rows.dtype.kind not in "biuf":
         raise ValueError(f"{rows.dtype} numbers of shape {rows.shape} are no volume")
+    if rows.shape[1:3] == (1, 1) and path.suffix.lower() in (".mgz", ".mgh"):
+        raise ValueError(NO_SURFACE)
     # Axes of the storage that run to the left, to the back or down are turned over, and put in
     # order, with their values: the places stay.
     turn = nibabel.io_orientation(affine)

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.filters.tint import RGB
-from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds
+from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.vtk.cells import connectivity
@@ -84,7 +84,16 @@ def points(case: Case) -> Drawing:
     keys: list[Keywords] = []
     words = "points"
     array = case.array
-    if array is not None and array.role != "vectors":
+    if array is not None and array.role == "vectors":
+        mesh = case.wishes.joined(mesh, array)
+        lengths = np.linalg.norm(np.asarray(mesh.run().point_data[array.name], np.float64), axis=1)
+        ends = float(np.nanmin(lengths)), float(np.nanmax(lengths))
+        colors: Keywords = {"cmap": LIGHTNESS, "clim": ends} | case.wishes.colors
+        drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
+        bar: Keywords = {"question": "value", "scene": scene, **colors}
+        keys = [bar | {"title": f"length of {titled(mesh.run(), array.name)}"}]
+        words = f"points in the colours of the length of {array.name}"
+    elif array is not None:
         drawn |= {"scalars": array.name, "show_scalar_bar": False}
         words = f"points in the colours of {array.name}"
         if array.role == "colors":

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyvista as pv
 
 from vizlight.filters.fur import LENGTH
 from vizlight.looks import levels
-from vizlight.looks.contents import kinds_of
+from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     MISSING,
@@ -23,6 +24,8 @@ from vizlight.mesh import blocks
 from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
@@ -37,6 +40,17 @@ def values(case: Case) -> Drawing:
     """Draw a sheet or a surface in the colours of values, with their bar."""
     array = case.needed_array
     mesh = _labels(case, array) if array.role == "kinds" else case.surface
+    if array.role == "kinds" and case.contents.dimension == 3:
+        kinds = kinds_of(mesh.run(), array.name)
+        if len(kinds) == 1 and mesh is not case.surface:
+            # The surface of a single label is a shape.
+            drawing = surface(replace(case, question="shape", data=mesh))
+            return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}")
+        inner = _inside(case, array, kinds) if len(kinds) == 1 else None
+        if inner is not None:
+            drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
+            note = f"{array.name} {kinds[0]:g}, which is around all else, is left out"
+            return replace(drawing, notes=[*drawing.notes, note])
     camera = case.camera(mesh)
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
@@ -142,6 +156,15 @@ def _tips(mesh: Step, length: object) -> Step:
         tip = float(length)
     normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
     return Step("tips", ".warp_by_vector", normals, "Normals", factor=tip)
+
+
+def _inside(case: Case, array: Named, kinds: Sequence[float]) -> Step | None:
+    """Return the step that leaves out the only kind that shows, None if there is no other."""
+    ends = (kinds[0] - 0.5, kinds[0] + 0.5)
+    # Cells that have a point of the kind go too.
+    inner = Step("inside", ".threshold", case.data, ends, scalars=array.name, invert=True)
+    left = inner.run()
+    return inner if left.n_cells and kinds[0] not in kinds_of(left, array.name) else None
 
 
 def _labels(case: Case, array: Named) -> Step:
