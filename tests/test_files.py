@@ -714,3 +714,19 @@ def test_an_isosurface_of_an_image_whose_rows_run_elsewhere_is_at_its_place(turn
     found = files.surface_of(image, contour="r", level=5.0)
     radius = np.linalg.norm(np.asarray(found.points) - middle, axis=1)
     assert np.abs(radius - 5).max() < 0.3
+
+
+def test_sets_of_exodus_are_no_blocks(tmp_path, monkeypatch):
+    plane = pv.Plane(i_resolution=2, j_resolution=2)
+    found = pv.MultiBlock(
+        {
+            "Element Blocks": pv.MultiBlock({"shell": plane}),
+            "Side Sets": pv.MultiBlock({"top": plane.copy(), "edge": pv.Line()}),
+        }
+    )
+    monkeypatch.setattr(files.foreign_files, "read", lambda path, time, **options: found)
+    # What the reader gives counts, not the name.
+    path = tmp_path / "a.vtpd"
+    path.touch()
+    (part,) = files.read_parts(path)
+    assert part.n_cells == 4

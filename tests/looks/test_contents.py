@@ -96,3 +96,15 @@ def test_labels_may_be_floats_with_holes():
     image["basin"] = labels
     (array,) = Contents(image).arrays
     assert (array.role, array.distinct) == ("kinds", 20)
+
+
+def test_heights_in_kelvin_are_values():
+    from vizlight.mesh import meaning
+
+    image = pv.ImageData(dimensions=(5, 5, 1))
+    image["elevation"] = np.linspace(240, 310, 25)
+    assert Contents(image).arrays[0].role == "heights"
+    said = meaning.Meaning()
+    said.add_array("elevation", {"units": "K"})
+    meaning.attach(image, said)
+    assert Contents(image).arrays[0].role == "values"
