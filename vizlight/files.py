@@ -774,19 +774,19 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
 
 
-def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid:
-    """Return one layer of a grid across z, with its arrays.
+def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.StructuredGrid:
+    """Return one layer of a grid across its last axis, with its arrays.
 
     Parameters
     ----------
-    mesh : pyvista.ImageData or pyvista.RectilinearGrid
+    mesh : pyvista.ImageData, pyvista.RectilinearGrid or pyvista.StructuredGrid
         Grid, which is not changed.
     at : int
         Number of the layer, from 0 where z is least.
 
     Returns
     -------
-    pyvista.RectilinearGrid
+    pyvista.RectilinearGrid or pyvista.StructuredGrid
         Grid of one layer; values of cells are those above it, below the last layer.
 
     Raises
@@ -796,12 +796,18 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid:
     """
     if isinstance(mesh, pv.ImageData):
         mesh = mesh.cast_to_rectilinear_grid()
-    if not isinstance(mesh, pv.RectilinearGrid):
+    if not isinstance(mesh, pv.RectilinearGrid | pv.StructuredGrid):
         got = type(mesh).__name__
-        raise TypeError(_check.message("mesh", "an image or a rectilinear grid", got))
+        raise TypeError(_check.message("mesh", "an image or a grid", got))
     nx, ny, nz = mesh.dimensions
     at = _check.integer("at", at, low=0, high=nz - 1)
-    found = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
+    found: pv.RectilinearGrid | pv.StructuredGrid
+    if isinstance(mesh, pv.RectilinearGrid):
+        found = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
+    else:
+        found = pv.StructuredGrid()
+        found.points = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
+        found.dimensions = (nx, ny, 1)
     cells = max(nx - 1, 1) * max(ny - 1, 1)
     places = (
         (mesh.point_data, found.point_data, at, nx * ny),

@@ -150,12 +150,15 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"
         raise ValueError(_check.message("values", expected, values))
-    table = pv.LookupTable(n_values=int(np.ptp(rows)) + 1)
+    # VTK gives a table of one colour a second one.
+    table = pv.LookupTable(n_values=max(int(np.ptp(rows)) + 1, 2))
     # A table with transparent colours would make all of a mesh translucent.
     colors = np.full((table.n_values, 4), 255, dtype=np.uint8)
     for place, value in enumerate(rows):
         color = np.array(to_rgba(_KINDS[place % len(_KINDS)]))
         colors[int(value - rows[0])] = np.round(255 * color)
+    if len(rows) == 1:
+        colors[1] = colors[0]
     table.values = colors
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): f"{value:g}" for value in rows}

@@ -267,3 +267,15 @@ def test_the_lowest_layer_of_the_air_and_the_highest_of_the_sea_are_shown():
         np.testing.assert_array_equal(look.drawing.layers[0].mesh.run()["t"], expected.ravel())
         assert "files.layer_of(" in look.script("a.png")
         assert vizlight.look(data, "shape", size=(90, 60)).shown != "sheet"
+
+
+def test_a_layer_without_data_is_passed_over():
+    values = np.arange(24.0).reshape(3, 2, 4)
+    values[0] = 0.0  # the wind through the ground
+    places = {"lat": ("lat", [50.0, 51], {"units": "degrees_north"}),
+              "lon": ("lon", [0.0, 1, 2, 3], {"units": "degrees_east"})}  # fmt: skip
+    height = {"height": ("height", [0.0, 10, 20], {"units": "m", "axis": "Z"})}
+    data = xr.Dataset({"w": (("height", "lat", "lon"), values)}, height | places)
+    look = vizlight.look(data, size=(90, 60))
+    assert any("the lowest with data of 3 layers is shown, at 10 along z" in n for n in look.notes)
+    np.testing.assert_array_equal(look.drawing.layers[0].mesh.run()["w"], values[1].ravel())

@@ -246,7 +246,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
         return None
     # The tangents of glTF belong to textures, and PyVista's splines have their length.
-    if named and (_is_table(name) or name in ("TANGENT", "arc_length")):
+    if named and (_is_table(name) or name in ("TANGENT", "arc_length", "gmsh:bounding_entities")):
         return None
     lower = name.lower()
     if are_colors(values):

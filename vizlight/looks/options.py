@@ -14,6 +14,7 @@ from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw import render
 from vizlight.filters.streamlines import vectors_by_default
+from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
 from vizlight.mesh import georeference, meaning, series
@@ -125,17 +126,24 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
     asked = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    flat = isinstance(grid, pv.ImageData | pv.RectilinearGrid)
-    if asked or not flat or min(grid.dimensions) < 2 or not georeference.is_map(grid):
+    layered = isinstance(grid, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid)
+    if asked or not layered or min(grid.dimensions) < 2 or not georeference.is_map(grid):
         return mesh
-    heights = np.asarray(grid.z) if isinstance(grid, pv.RectilinearGrid) else grid.bounds[4:]
+    heights = grid.bounds[4:]
     words = meaning.of(grid).axes
     sea = max(heights) <= 0 and "pressure" not in " ".join(words[2:])
     count = grid.dimensions[2]
-    at = count - 1 if sea else 0
-    taken = Step("layer", "files.layer_of", mesh, at)
-    which, height = ("highest", max(heights)) if sea else ("lowest", min(heights))
-    taken.note = f"the {which} of {count} layers is shown, at {abs(float(height)):g} along z"
+    order = range(count - 1, -1, -1) if sea else range(count)
+    for at in order:
+        taken = Step("layer", "files.layer_of", mesh, at)
+        # The wind across the ground is 0: a layer without data shows nothing.
+        if Contents(taken.run()).arrays:
+            break
+    else:
+        return mesh
+    height = abs(float(np.nanmean(taken.run().points[:, 2])))
+    which = ("highest" if sea else "lowest") + " with data" * (at != order[0])
+    taken.note = f"the {which} of {count} layers is shown, at {height:g} along z"
     return taken
 
 
