@@ -452,7 +452,7 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if not mesh.n_cells and not isinstance(mesh, pv.PolyData):
         # VTK draws points that are cells.
         step = Step("points", ".cast_to_poly_points", step)
-    elif getattr(mesh, "dimensionality", 3) == 1:
+    elif sum(size > 1 for size in getattr(mesh, "dimensions", ())) == 1:
         step = Step("lines", ".cast_to_unstructured_grid", step)
     step = look_options.cut(step, wishes)
     notes += [step.note] if step.note else []
