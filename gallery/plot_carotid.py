@@ -40,4 +40,4 @@ plotter.show(auto_close=False)
 # What can be read of the speed, with the map of one lightness and with ``viridis``:
 
 for cmap in (None, "viridis"):
-    print(legibility(blood, Scene(), scalars="speed", cmap=cmap, view=plotter.camera))
+    print(legibility(blood, Scene(), scalars="speed", cmap=cmap, view=plotter.camera, **look))

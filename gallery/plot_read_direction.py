@@ -4,7 +4,7 @@ Which way does the field run?
 
 The winds of July in six ways, with the median error in degrees at which a place is read; 45 is
 chance. Arrows, LIC and lines are read by a machine that follows strokes, the lights by their keys:
-the study *strokes* measures all six. Evenly spaced lines read as well as the light of
+the study *strokes* measures all six. LIC and evenly spaced lines are read better than the light of
 ``presets.direction``, in which every place reads on its own, also where no line runs; white light
 has no key to the direction. Both together are in the example *The winds of July*.
 """

@@ -30,4 +30,4 @@ plotter.show(auto_close=False)
 # What can be read in this light, and in white light from the eye:
 
 for light in (scene, presets.slope()):
-    print(vizlight.legibility(fibres, light, view=plotter.camera))
+    print(vizlight.legibility(fibres, light, view=plotter.camera, line_diameter=0.22))

@@ -22,7 +22,7 @@ scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.7, spec
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 760), border=False)
 plotter.set_background("#10141a", all_renderers=True)
 plain = plotter.add_mesh(cortex, color="white", smooth_shading=True, show_scalar_bar=False)
-plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.52)
+plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.3)
 plain = Scene.from_plotter(plotter, actor=plain)
 plotter.subplot(0, 1)
 lit = cortex.vizlight.illuminate(scene, occlusion="sky")

@@ -31,4 +31,4 @@ plotter.show(auto_close=False)
 # %%
 # What can be read in this light:
 
-print(vizlight.legibility(fibres, scene, view=plotter.camera))
+print(vizlight.legibility(fibres, scene, view=plotter.camera, line_diameter=0.22))

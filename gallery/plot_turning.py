@@ -28,7 +28,7 @@ scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9
 
 plotter = pv.Plotter(off_screen=True, window_size=(360, 340))
 plotter.background_color = "#101a2a"
-plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.45)
+plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.35)
 plotter.enable_anti_aliasing("ssaa")
 plotter.vizlight.add_key(scene, question="slope", size=0.2)
 plotter.open_gif(mkdtemp() + "/turning.gif", fps=9)

@@ -10,7 +10,7 @@ from vizlight.observers.lines import two_sides
 
 pytestmark = pytest.mark.opengl
 
-SIZE = (600, 400)
+SIZE = (300, 200)
 
 
 def strokes(count=24, times=True):
@@ -36,10 +36,10 @@ def drawn(mesh, radius, color):
     plotter.background_color = "white"
     shown = mesh.copy()
     shown["r"], shown["c"] = radius(mesh["along"]), color(mesh["along"])
-    for line in shown.split_bodies():
-        tube = line.extract_surface(algorithm="dataset_surface").tube(scalars="r", absolute=True)
-        plotter.add_mesh(tube, scalars="c", cmap="gray", clim=(0, 1), lighting=False,
-                         show_scalar_bar=False)  # fmt: skip
+    tubes = shown.tube(scalars="r", absolute=True)
+    plotter.add_mesh(
+        tubes, scalars="c", cmap="gray", clim=(0, 1), lighting=False, show_scalar_bar=False
+    )
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5, parallel=True)
     picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
     plotter.close()
@@ -47,7 +47,7 @@ def drawn(mesh, radius, color):
 
 
 def sense(mesh, picture, camera):
-    how = {"key": [], "line_width": 3, "samples": 64, "size_mm": 60}
+    how = {"key": [], "line_width": 3, "samples": 64, "size_mm": 30}
     return vizlight.legibility(mesh, picture=picture, camera=camera, **how).sense
 
 

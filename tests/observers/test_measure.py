@@ -15,6 +15,7 @@ from sheets import DIRECTION, FLAT, HOW, SHAPE, SIZE, plotter_of, sheet
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
+from vizlight.observers.eye import linear
 
 pytestmark = pytest.mark.opengl
 
@@ -148,9 +149,14 @@ def test_narrower_lines_are_read_worse_until_chance():
     for width in (4, 2, 1, 0.5, 0.25):
         # A picture of a quarter of the size has lines of a quarter of the width.
         bits.append(plotter.vizlight.legibility(samples=768, size_mm=30 * width / 4).heading.bits)
+    picture = linear(plotter.screenshot(return_img=True) / 255)
+    how = {"camera": plotter.camera.copy(), "line_width": 4, "key": presets.heading()} | HOW
     plotter.close()
     assert bits[0] > 1
     assert falls_to_chance(bits)
+    # Lines that are all darker than the key by one factor are read like the others.
+    dark = (0.5 * picture) ** (1 / 2.2)
+    assert vizlight.legibility(mesh, picture=dark, **how).heading.bits > 0.8 * bits[0]
 
 
 @pytest.mark.parametrize("question", [pytest.param("shape", marks=pytest.mark.slow), "speed"])

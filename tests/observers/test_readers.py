@@ -6,7 +6,7 @@ from vectors import unit
 
 from vizlight import Light, Material, Scene, View, presets
 from vizlight.observers import readers
-from vizlight.observers.eye import lab
+from vizlight.observers.eye import XYZ, lab, lab_of_xyz, linear
 from vizlight.observers.readers import Colors
 from vizlight.observers.samples import Sample
 from vizlight.shading.options import ShadingOptions
@@ -105,6 +105,16 @@ def test_lines_in_space_are_read_by_their_key_whichever_way_they_run(turned):
     reading = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0))
     assert np.median(reading.error) < 3
     assert readers.information([reading]) > 3
+
+
+def test_lines_darker_than_their_key_are_read_by_a_share_of_its_light():
+    ways = unit(np.random.default_rng(2).normal(size=(1000, 3)))
+    sample = places(presets.heading(), ways, kind="line")
+    light = linear(readers.shown(sample.light(sample.tangents, None)))
+    dark = Colors(lab_of_xyz(0.5 * light @ XYZ.T), np.full((1000, 3), 0.5))
+    whole, half = (readers.read_heading(sample, np.zeros(3), dark, share) for share in (1.0, 0.5))
+    assert np.median(half.error) < 3 < 0.3 * np.median(whole.error)
+    assert readers.information([half]) > 3
 
 
 def test_a_headlight_leaves_the_near_end_of_a_line_open():

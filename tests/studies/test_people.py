@@ -47,6 +47,14 @@ def test_the_page_has_all_trials_needs_no_server_and_claims_nothing():
     assert '"right"' not in page
 
 
+def test_the_page_of_readers_has_the_figures_of_the_trials():
+    text = (HERE.parents[1] / "pages" / "readers.rst").read_text(encoding="utf-8")
+    for ours, plain in zip(TRIALS[::2], TRIALS[1::2], strict=True):
+        pair = (ours, plain)
+        cells = [f"{t['bits']:.2f}" for t in pair] + [f"{t['readable']:.0%}" for t in pair]
+        assert ", ".join([ours["question"], ours["data"], *cells]) in text
+
+
 def test_right_answers_have_no_error(tmp_path):
     rows = COMPARE["rows_of"]([saved(tmp_path / "a.csv", right)], {t["trial"]: t for t in TRIALS})
     assert max(error for _, error, _ in rows) < 0.1

@@ -76,7 +76,7 @@ def test_contours_of_smooth_normals_and_of_the_solid_are_circles():
 def test_presets_are_better_than_the_default_where_they_are_asked():
     rows = {(row.way, row.parameter): row for row in legibility.lights(("nut", "childress"), 1, 64)}
     assert {question for _, question in rows} == set(legibility.ERRORS)
-    for question in ("direction", "shape"):
+    for question in ("direction", "heading", "shape"):
         row = rows[f"presets.{question}", question]
         assert row.error < 0.8 * row.cost, question
     assert rows["default", "slope"].error == rows["default", "slope"].cost

@@ -151,7 +151,8 @@ def legibility(
 
     *direction*: hues of a disc that faces the eye and has tangents in all directions; tangents
     that run toward the eye are left out. *slope*: lightness ranks steepness. *heading*: a key of
-    all directions of lines. *shape*: a ball in the same light; where there are tangents, which are
+    all directions of lines, in one share of its light for all of the picture, since smoothed edges
+    and halos darken lines. *shape*: a ball in the same light; where there are tangents, which are
     unknown, 72 of them for each normal. *value*: colours of the bar, as they are or in some light,
     whichever the whole picture fits. *speed*: lightness or chroma ranks the lengths of vectors.
     *scale*: the finest structure at which half of the answers are right beyond chance. *order*: at

@@ -373,7 +373,12 @@ class _Reader:
         groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
         if not groups:
             return None
-        found = [readers.read_heading(p.here, self.middle, p.colors) for p in groups]
+        # How much darker than the key lines are drawn is seen by the whole picture.
+        ways = (
+            [readers.read_heading(p.here, self.middle, p.colors, share) for p in groups]
+            for share in readers.SHARES
+        )
+        found = max(ways, key=readers.told)
         none = np.full(sum(len(p.here) for p in groups), np.nan)
         common = self._common("heading", groups, found, none)
         return Heading(**_angles(found, common), **common)

@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight.model.kernels import unit_rows
-from vizlight.observers.eye import OPPONENT, ROUNDING, WHITE, lab, lab_of_opponent
+from vizlight.observers.eye import (
+    OPPONENT,
+    ROUNDING,
+    WHITE,
+    XYZ,
+    lab,
+    lab_of_opponent,
+    lab_of_xyz,
+    linear,
+)
 from vizlight.observers.samples import dots
 from vizlight.shading import display
 
@@ -34,6 +43,8 @@ CLASSES, SIGNALS, EACH = 16, 32, 128
 ALONE, WITH_TANGENTS = (900, 1), (300, 72)
 #: Number of courses in the picture and of slopes of the key of lines.
 COURSES, SLOPES = 90, 180
+#: Shares of the light of a key that lines may have, since their edges are smoothed.
+SHARES = (1.0, 0.8, 0.65, 0.5, 0.4, 0.3)
 #: Number of colours of a bar, and of the amounts of light on each, for a reader of values.
 BAR, AMOUNTS = 128, 12
 #: Number of pairs of place and candidate that are matched at once.
@@ -265,8 +276,10 @@ def shown(rgb: Array) -> Array:
     return display.displayable(np.maximum(rgb, 0.0))
 
 
-def read_heading(sample: Sample, middle: Array, colors: Colors) -> Reading:
+def read_heading(sample: Sample, middle: Array, colors: Colors, share: float = 1.0) -> Reading:
     """Return the answers of a reader who knows the course of lines and a key of all directions.
+
+    Edges that are smoothed, and halos, leave less light of lines than the key has.
 
     Parameters
     ----------
@@ -276,6 +289,8 @@ def read_heading(sample: Sample, middle: Array, colors: Colors) -> Reading:
         Place of the key.
     colors : Colors
         Colours of the places.
+    share : float, default: 1.0
+        Share of the light of the key that the reader expects of all lines.
 
     Returns
     -------
@@ -286,7 +301,8 @@ def read_heading(sample: Sample, middle: Array, colors: Colors) -> Reading:
     turns, slopes = np.pi * np.arange(COURSES) / COURSES, np.radians(np.arange(SLOPES) - 90 + 0.5)
     turn, slope = (grid.ravel() for grid in np.meshgrid(turns, slopes, indexing="ij"))
     ways = np.stack([np.cos(slope) * np.cos(turn), np.cos(slope) * np.sin(turn), np.sin(slope)], 1)
-    table = lab(shown(_light_in_frame(sample, middle, ways))).reshape(COURSES, SLOPES, 3)
+    light = linear(shown(_light_in_frame(sample, middle, ways)))
+    table = lab_of_xyz(share * light @ XYZ.T).reshape(COURSES, SLOPES, 3)
     angle, toward = course(sample), dots(_single(sample), sample.eye)
     # A line has no sign: it is taken upward in the picture, and from right to left never.
     steps = np.rint(angle % np.pi / np.pi * COURSES).astype(np.intp)

@@ -142,7 +142,7 @@ def of_shape(mesh):
     ways = plain(mesh), best, lit(mesh), lit(vizlight.sky(mesh), scene, True, occlusion="sky")
     return {
         "ways": ways, "view": (-1, -0.15, 0.25), "zoom": 1.4, "background": "#10141a",
-        "measured": ("shape", mesh, scene, {}),
+        "beside the key": 0.8, "measured": ("shape", mesh, scene, {}),
     }  # fmt: skip
 
 
@@ -173,7 +173,8 @@ def of_heading(mesh):
     asked = lit(vizlight.sky(lines), scene, True, occlusion="sky", line_diameter=0.4)
     return {
         "ways": (plain(mesh, scalars="rgb", rgb=True), best, lit(lines), asked),
-        "view": (-1, -0.35, 0.3), "background": "black", "measured": ("slope", lines, scene, {}),
+        "view": (-1, -0.35, 0.3), "background": "black", "measured": ("heading", lines, scene, {}),
+        "widths": ({}, {"line_diameter": 0.7, "model": "cylinder"}, {}, {"line_diameter": 0.4}),
     }  # fmt: skip
 
 
@@ -243,6 +244,7 @@ def of_flow(mesh):
         "ways": (plain(mesh, scalars="speed"), best, lit(lines), asked),
         "view": (0.6, -1, 0.5), "background": "black", "zoom": 1.4,
         "measured": ("slope", lines, scene, {}),
+        "widths": ({}, {"line_diameter": 0.016, "model": "cylinder"}, {}, {"line_diameter": 0.012}),
     }  # fmt: skip
 
 
@@ -252,13 +254,16 @@ SETS = {
 }  # fmt: skip
 
 
-def draw(fill, look):
-    """Return the picture that a function fills a plotter with, and its plotter."""
+def draw(fill, look, share=1.0):
+    """Return the picture that a function fills a plotter with, and its plotter.
+
+    The mesh is drawn in a share of its size where a key takes a margin.
+    """
     plotter = pv.Plotter(off_screen=True, window_size=[2 * side for side in SIZE])
     plotter.set_background(look.get("background", "white"))
     fill(plotter)
     plotter.view_vector(look["view"], (0, 0, 1) if look["view"][2] < 1 else (0, 1, 0))
-    plotter.camera.zoom(look.get("zoom", 1.2))
+    plotter.camera.zoom(look.get("zoom", 1.2) * share)
     picture = Image.fromarray(plotter.screenshot(return_img=True)).reduce(2)
     return picture, plotter
 
@@ -267,15 +272,20 @@ def main(folder):
     """Do what the docstring of this file says."""
     for name, (load, describe) in SETS.items():
         look = describe(load(folder))
-        made = [draw(fill, look) for fill in look["ways"]]
+        shares = (1.0, 1.0, 1.0, look.get("beside the key", 1.0))
+        made = [draw(fill, look, share) for fill, share in zip(look["ways"], shares, strict=True)]
         kept.side_by_side(f"sheet_{name}", WAYS, [picture for picture, _ in made])
         question, mesh, scene, options = look["measured"]
-        # Of what PyVista draws the meter knows the lamps, neither tubes, arrows nor occlusion.
+        # Of what PyVista draws the meter knows the lamps, and tubes as lines that are as wide and
+        # have the mean light over their width; neither arrows nor occlusion.
         lights = (*(Scene.from_plotter(plotter) for _, plotter in made[:2]), Scene(), scene)
-        for way, light in zip(WAYS, lights, strict=True):
+        widths = look.get("widths", ({},) * len(WAYS))
+        for way, light, wide in zip(WAYS, lights, widths, strict=True):
             cmap = look.get("cmap") if way.startswith("PyVista") else None
             maps = {"cmap": cmap} if cmap else {}
-            found = vizlight.legibility(mesh, light, view=made[0][1].camera, **options, **maps)
+            found = vizlight.legibility(
+                mesh, light, view=made[0][1].camera, **options, **maps, **wide
+            )
             print(name, way, getattr(found, question))
 
 
