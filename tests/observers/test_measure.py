@@ -2,6 +2,7 @@
 
 import io
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -279,3 +280,60 @@ def test_angles_are_a_share_and_a_median_unless_they_are_chance():
     assert measure._angles(found, {"reason": ""}) == {"within_10": 0.5, "median": 10.5}
     chance = measure._angles(found, {"reason": "too fine"})
     assert chance == {"within_10": 1 / 9, "median": 45.0}
+
+
+def test_what_is_guessed_is_the_share_of_the_tolerance():
+    tolerance, guessed = measure.TOLERANCE, measure.GUESSED
+    assert tolerance == {
+        "direction": 15, "heading": 15, "shape": 20, "value": 0.1, "rank": 0.15,
+    }  # fmt: skip
+    for question in ("direction", "heading"):
+        assert guessed[question] == pytest.approx(2 * tolerance[question] / 180)
+    assert guessed["shape"] == pytest.approx(np.sin(np.radians(20)) ** 2, abs=1e-3)
+    for question in ("value", "rank"):
+        assert guessed[question] == pytest.approx(2 * tolerance[question])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"lengths": [7, 7, np.nan]}, "within 7 pixels"),
+        ({"lengths": [7, 7], "pixels": 30}, "do not follow"),
+        ({"values": 1}, "show values"),
+        ({"deviation": 7.0}, "finer than an eye"),
+        ({"deviation": 6.8, "wide": 50}, "do not follow"),
+        ({"wide": 10}, "less than an eye"),
+        ({"wide": 11}, "do not follow"),
+    ],
+)
+def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
+    """Structure below 6 arc minutes; noise of 3 times the eye's; colours that hardly differ."""
+    how = {"lengths": [], "pixels": 100, "values": None, "deviation": 2.3, "wide": 90} | change
+    colors = np.zeros((101, 3))
+    colors[:, 1] = np.linspace(0, how["wide"], 101)
+    place = SimpleNamespace(
+        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=how["values"]),
+        colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
+    )  # fmt: skip
+    reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
+    assert words in reader._reason("direction", [place], np.array(how["lengths"], float))
+
+
+def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
+    random = np.random.default_rng(0)
+    place = SimpleNamespace(
+        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=None),
+        colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
+        unit=np.full(64, 0.5),
+    )  # fmt: skip
+    for bits, error, unread in ((0.5, 5, 0), (0.2, 5, 1), (0.5, 42, 1), (0.5, 40, 0)):
+        truth = np.full((4, 64), 2.0**bits / 4)
+        reading = readers.Reading(
+            np.full(64, float(error)), truth, 4, np.full(64, 90.0), np.full((4, 64), 0.25)
+        )
+        reader = measure._Reader([place], 0, Eye(100.0), [])
+        found = reader._common("direction", [place], [reading], np.full(64, 50.0))
+        assert found["bits"] == pytest.approx(np.log2(0.98 * 2**bits + 0.02), abs=1e-9)
+        assert bool(found["reason"]) == bool(unread)
+        assert found["readable"] == (1 if error == 5 and not unread else 0)
+        assert (reader.scale.pixels, found["samples"]) == (50 if error == 5 else None, 64)

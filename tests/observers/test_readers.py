@@ -297,3 +297,6 @@ def test_lines_along_the_axes_are_read_whichever_way_they_run():
     assert reading.error.max() < 1e-4
     assert reading.truth[0].min() > 0.2
     np.testing.assert_allclose(readers.steepness(sample)[:4], np.abs(np.sin(slope)))
+    toward = places(presets.heading(), np.array([[0, 0, 1.0], [0, 0, -1.0]]), kind="line")
+    exact = Colors(lab(readers.shown(toward.light(toward.tangents, None))), np.full((2, 3), 0.1))
+    assert readers.read_heading(toward, np.zeros(3), exact).error.max() < 2

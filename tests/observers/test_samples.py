@@ -123,4 +123,4 @@ def test_cells_that_are_seen_edge_on_have_shares_too():
     origin, way = np.array([[0, 0, 5], [0.25, 0.5, 5.0]]), np.tile([0, 0, -1.0], (2, 1))
     np.testing.assert_allclose(weights(edge, origin, way), [[1, 0, 0], [0.25, 0.25, 0.5]])
     np.testing.assert_allclose(weights(edge[:, 1:], origin, way), [[1, 0], [0.375, 0.625]])
-    np.testing.assert_allclose(weights(edge[:, :1], origin, way), 1)
+    np.testing.assert_array_equal(weights(edge[:, :1], origin, way), [[1], [1]])
