@@ -135,7 +135,7 @@ def test_what_hides_a_mesh_and_what_is_nearly_clear():
         plotter = pv.Plotter(off_screen=True, window_size=(120, 80))
         plotter.add_mesh(sheet(20), scalars="height", **flat)
         front = plotter.add_mesh(pv.Plane(center=(0.5, 0, 1), j_size=2), opacity=opacity or 1.0)
-        front.visibility = opacity > 0
+        front.SetVisibility(opacity > 0)
         plotter.camera = camera_on(sheet(20), (0, 0, 1), aspect=1.5, parallel=True)
         pixels.append(plotter.vizlight.legibility(size_mm=20, samples=64).pixels)
         plotter.close()
