@@ -1,5 +1,7 @@
 """Readers give the answers that are known beforehand."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from vectors import unit
@@ -300,3 +302,17 @@ def test_lines_along_the_axes_are_read_whichever_way_they_run():
     toward = places(presets.heading(), np.array([[0, 0, 1.0], [0, 0, -1.0]]), kind="line")
     exact = Colors(lab(readers.shown(toward.light(toward.tangents, None))), np.full((2, 3), 0.1))
     assert readers.read_heading(toward, np.zeros(3), exact).error.max() < 2
+
+
+def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=MATTE)
+    normals, tangents = np.array([[0, 0, 1.0], [0, 0, -1]]), np.tile([1.0, 0, 0], (2, 1))
+    sample = places(scene, tangents, normals)
+    given = sample.given(sample.tangents, normals)
+    assert given.normals is None
+    np.testing.assert_allclose(sample.light(sample.tangents, normals), 0.9)
+    options = dataclasses.replace(sample.options, conditioned=True)
+    lit = dataclasses.replace(sample, options=options).light(sample.tangents, normals)
+    np.testing.assert_allclose(lit, [[0.9] * 3, [0.1] * 3])
+    bare = dataclasses.replace(sample, tangents=None)
+    np.testing.assert_allclose(bare.light(None, normals), [[0.9] * 3, [0.1] * 3])
