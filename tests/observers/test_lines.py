@@ -181,7 +181,7 @@ def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
     short = lines._replace(number=np.full_like(number, -1))
     short.number[20, 15:17] = 0
     assert len(strokes_of(short, seen, Eye(7.5)).ink) == 0
-    # Surroundings of 8 pixels, 4 windows of 2, have darker ground beside the last third: by 16 of 40
+    # Surroundings of 8 pixels, 4 windows of 2, have darker ground beside the last third: 16 of 40
     # in the mean of the three rows of the stroke.
     colors[:18, 60:, 0] -= 40
     wide = strokes_of(lines, seen, Eye(15))
