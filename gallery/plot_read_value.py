@@ -5,8 +5,9 @@ What is the value?
 The speed of a gas on an isosurface of its temperature. Left: PyVista's light and highlight on
 ``viridis``: many colours of the picture are on no bar. Right: light that keeps the colour
 (``vizlight.presets.value``) on a map of one lightness and one chroma (``vizlight.maps.even``). Each
-pixel is read by the colour of the bar that is nearest to it. ``viridis`` is read worse in the same
-light, because its own lightness is taken for light; both figures are printed below.
+pixel is read by the colour of the bar that is nearest to it. Half of the places are read worse with
+``viridis`` in the same light, because its own lightness is taken for light; both figures are
+printed below. Of either map some dark places are taken for the other end of the bar.
 """
 
 import numpy as np

@@ -11,6 +11,9 @@ from scipy.ndimage import gaussian_filter
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
+from vizlight.observers import crossings
+from vizlight.observers.eye import SeenPicture
+from vizlight.observers.lines import JUMP, Segments
 
 pytestmark = pytest.mark.opengl
 
@@ -217,3 +220,67 @@ def test_plain_lines_of_a_plotter_are_asked():
     plotter.close()
     assert found.order.unreadable
     assert found.heading is None
+
+
+def crossed(angle=90.0, width=3, third=None, size=(80, 120)):
+    """Return the segments of a horizontal line that another one crosses in front, as drawn."""
+    row, column = np.mgrid[: size[0], : size[1]] + 0.5
+    number = np.full(size, -1)
+    number[np.abs(row - 40) <= width / 2] = 0
+    way = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    for middle, name in ((60.0, 1), (third, 2)):
+        if middle is not None:
+            off = (column - middle) * way[1] - (row - 40) * way[0]
+            number[np.abs(off) <= width / 2] = name
+    start = np.array([[0, 40], *(np.array([x, 40]) - 50 * way for x in (60, third or 0))])
+    ways = np.array([[120, 0], 100 * way, 100 * way])
+    line = np.arange(3)
+    return Segments(number, start, ways, JUMP * line, line, np.full(3, float(width)), np.zeros(3))
+
+
+def found_in(lines):
+    return crossings.crossings_of(lines, 16, np.random.default_rng(0))
+
+
+def test_the_place_of_a_crossing_and_its_nearer_line_are_found():
+    for angle in (90, 60, -40):
+        found = found_in(crossed(angle))
+        np.testing.assert_allclose(found.at, [[60, 40]], atol=1e-9)
+        assert (found.front.tolist(), found.back.tolist()) == ([1], [0])
+
+
+@pytest.mark.parametrize(("angle", "count"), [(25, 0), (35, 1), (145, 1), (155, 0)])
+def test_lines_cross_at_thirty_degrees_or_more(angle, count):
+    assert len(found_in(crossed(angle)).at) == count
+
+
+@pytest.mark.parametrize(("third", "count"), [(66, 0), (70, 2), (54, 0), (50, 2)])
+def test_no_third_line_is_within_some_pixels(third, count):
+    """Lines of 3 pixels: their borders are 3 less apart than their middles."""
+    assert len(found_in(crossed(third=third)).at) == count
+
+
+def test_crossings_at_the_border_and_close_to_each_other():
+    at = np.array([[10.0, 10], [12, 10], [14, 10], [30, 10]])
+    np.testing.assert_array_equal(np.sort(crossings._first_of_each(at)), [0, 3])
+    lines = crossed()
+    places = np.array([[60.5, 0], [-0.5, 40], [119.5, 40], [120.5, 40], [5, -1], [5, 80.5],
+                       [np.nan, 40], [5.5, 40.2]])  # fmt: skip
+    shown = crossings._number(lines, places)
+    np.testing.assert_array_equal(shown, [1, -1, 0, -1, -1, -1, -1, 0])
+
+
+@pytest.mark.parametrize(("gap", "told"), [(0, 0), (9, 0), (11, 1), (-9, 0), (-11, -1), (40, 1)])
+def test_borders_that_differ_by_three_deviations_tell_the_nearer_line(gap, told):
+    """Beside one line the other is darker; 3 deviations of the noise of both colours are 9.84."""
+    lines = crossed()
+    colors = np.zeros((80, 120, 3))
+    colors[..., 0] = 50.0
+    across, along = (slice(38, 42), slice(56, 65)) if gap > 0 else (slice(35, 46), slice(58, 62))
+    colors[across, along, 0] -= abs(gap)
+    colors[38:42, 58:62, 0] = 50.0
+    seen = SeenPicture(colors, np.ones((80, 120, 3)), np.zeros(3))
+    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [told]
+    # A border on one side is none.
+    colors[40:, :60, 0] = colors[:40, :60, 0] = colors[:40, :, 0] = 50.0
+    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [0]

@@ -25,6 +25,50 @@ def test_a_degree_has_the_pixels_of_its_tangent():
     assert PRINT.pixels_per_degree == pytest.approx(1004 / 85 * 6.981, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("rgb", "expected"),
+    [
+        ((1, 0, 0), (53.24, 80.09, 67.20)),
+        ((0, 1, 0), (87.73, -86.18, 83.18)),
+        ((0, 0, 1), (32.30, 79.19, -107.86)),
+        ((0.02, 0.02, 0.02), (1.40, 0, 0)),
+        ((0.5, 0.5, 0.5), (53.39, 0, 0)),
+    ],
+)
+def test_colors_have_the_published_lightness_and_chroma(rgb, expected):
+    np.testing.assert_allclose(eye.lab(np.array(rgb, float)), expected, atol=0.03)
+
+
+def test_white_has_the_opponent_channels_of_the_published_matrix():
+    np.testing.assert_allclose(eye.opponent(np.ones(3)), [0.8687, -0.2206, 0.0373], atol=2e-4)
+    np.testing.assert_allclose(eye.WHITE, [0.9505, 1, 1.089], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("cycles", "expected"),
+    [(0.05, (1.0436, None, None)), (0.5, (None, 0.8243, 0.8632)), (5, (None, 0.4221, 0.2796)),
+     (10, (0.4551, None, None))],
+)  # fmt: skip
+def test_waves_keep_the_contrast_of_the_published_filters(cycles, expected):
+    """Zhang and Wandell 1997, table 1: sums of Gaussians in cycles per degree."""
+    wave = np.cos(2 * np.pi * cycles * (np.arange(800) + 0.5) / 40)
+    found = Eye(40.0).filtered(np.broadcast_to(wave[:, np.newaxis], (8, 800, 3)))
+    for channel, share in enumerate(expected):
+        if share is not None:
+            np.testing.assert_allclose(found[3, :, channel], share * wave, atol=2e-4)
+
+
+def test_what_is_drawn_covers_a_share_of_what_is_seen_and_the_rest_is_ground():
+    picture, drawn = np.full((40, 40, 3), 0.25), np.zeros((40, 40), dtype=bool)
+    picture[:, 20:], drawn[:, 20:] = 0.75, True
+    seen = Eye(60.0).look(picture, drawn)
+    np.testing.assert_allclose(seen.ground, eye.opponent(np.full(3, 0.25)))
+    np.testing.assert_allclose(seen.cover[:, 19] + seen.cover[:, 20], 1, atol=1e-9)
+    assert np.all(np.diff(seen.cover[5, 12:28, 0]) > 0)
+    whole = Eye(60.0).look(picture, np.ones((40, 40), dtype=bool))
+    np.testing.assert_allclose(whole.ground, 0)
+
+
 def contrast(first, second, width):
     """Return the difference in CIELAB of stripes of some pixels, seen by the eye."""
     stripe = (np.arange(480) // width % 2)[np.newaxis, :, np.newaxis]

@@ -6,7 +6,12 @@ import pyvista as pv
 
 import vizlight
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.lines import two_sides
+from vizlight.observers.eye import Eye, SeenPicture
+from vizlight.observers.lines import JUMP, Segments, segments_of, strokes_of, two_sides
+from vizlight.observers.pixels import visible
+from vizlight.observers.samples import part_on
+from vizlight.scene import Light, Scene, View
+from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl
 
@@ -128,3 +133,58 @@ def test_vectors_of_lines_tell_the_sense():
 )  # fmt: skip
 def test_the_bits_of_two_sides_are_those_of_the_channel(told, wrongly, total, bits):
     assert two_sides(told, wrongly, total) == pytest.approx(bits, abs=2e-3)
+
+
+def test_segments_are_in_pixels_and_each_line_is_far_from_the_others():
+    points = [[-0.5, 0, 0], [0, 0, 0], [0.5, 0, 0], [0, -0.5, 1], [0, 0.5, 1]]
+    mesh = pv.PolyData(np.array(points, float), lines=[3, 0, 1, 2, 2, 3, 4])
+    mesh["IntegrationTime"] = np.array([0, 1, 2, 5, 4.0])
+    scene = Scene(lights=Light.headlight(), view=View(direction=(0, 0, 1)))
+    ground = part_on(pv.Plane(center=(0.8, 0.8, 0), i_size=0.1), scene, LightOptions())
+    part = part_on(mesh, scene, LightOptions(), width=4.0)
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = (0, 0, 5), (0, 0, 0), (0, 1, 0)
+    camera.parallel_projection, camera.parallel_scale = True, 1.0
+    pixels = visible([ground.drawn, part.drawn], camera, (120, 80))
+    found = segments_of([ground, part], pixels, camera)
+    np.testing.assert_allclose(found.start, [[40, 40], [60, 40], [60, 60]], atol=1e-4)
+    np.testing.assert_allclose(found.way, [[20, 0], [20, 0], [0, -40]], atol=1e-4)
+    np.testing.assert_allclose(found.along, [0, 20, 40 + JUMP], atol=1e-3)
+    np.testing.assert_array_equal(found.line, [0, 0, 1])
+    np.testing.assert_array_equal(found.width, 4)
+    np.testing.assert_array_equal(found.ahead, [1, 1, -1])
+    assert (found.number[40, 45], found.number[40, 75], found.number[30, 60]) == (0, 1, 2)
+    assert found.number[5, 5] == -1
+    assert segments_of([ground], pixels, camera) is None
+
+
+@pytest.mark.parametrize("ahead", [1, -1])
+def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
+    """A stroke of 90 pixels, 3 wide: lightness rises by 30 along it, on ground of 80."""
+    number = np.full((40, 120), -1)
+    number[19:22, 15:105] = 0
+    colors = np.zeros((40, 120, 3))
+    colors[..., 0] = 80.0
+    colors[..., 1:] = 3.0
+    share = (np.arange(90) + 0.5) / 90
+    colors[19:22, 15:105, 0] = 20 + 30 * share
+    lines = Segments(
+        number, np.array([[15.0, 20.5]]), np.array([[90.0, 0]]), np.zeros(1),
+        np.zeros(1, dtype=int), np.full(1, 3.0), np.array([float(ahead)]),
+    )  # fmt: skip
+    seen = SeenPicture(colors, np.ones((40, 120, 3)), np.zeros(3))
+    # A window of a pixel: 8 arc minutes.
+    found = strokes_of(lines, seen, Eye(7.5))
+    # Middles of the two outer thirds are two thirds of the stroke apart.
+    np.testing.assert_allclose(found.light, [20 * ahead], atol=0.01)
+    np.testing.assert_allclose(found.ink, [-20 * ahead], atol=0.01)
+    short = lines._replace(number=np.full_like(number, -1))
+    short.number[20, 15:17] = 0
+    assert len(strokes_of(short, seen, Eye(7.5)).ink) == 0
+    # Surroundings of 8 pixels, 4 windows of 2, have darker ground beside the last third: 16 of 40
+    # in the mean of the three rows of the stroke.
+    colors[:18, 60:, 0] -= 40
+    wide = strokes_of(lines, seen, Eye(15))
+    np.testing.assert_allclose(wide.light, [36 * ahead], atol=0.7)
+    none = lines._replace(ahead=np.zeros(1))
+    assert len(strokes_of(none, seen, Eye(7.5)).ink) == 0

@@ -2,6 +2,7 @@
 
 import io
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,9 @@ from sheets import DIRECTION, FLAT, HOW, SHAPE, SIZE, plotter_of, sheet
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.eye import linear
+from vizlight.observers import measure, readers
+from vizlight.observers.eye import Eye, linear
+from vizlight.observers.pixels import Pixels
 
 pytestmark = pytest.mark.opengl
 
@@ -148,7 +151,9 @@ def test_narrower_lines_are_read_worse_until_chance():
     bits = []
     for width in (4, 2, 1, 0.5, 0.25):
         # A picture of a quarter of the size has lines of a quarter of the width.
-        bits.append(plotter.vizlight.legibility(samples=768, size_mm=30 * width / 4).heading.bits)
+        found = plotter.vizlight.legibility(samples=768, size_mm=30 * width / 4).heading
+        bits.append(found.bits)
+    assert "finer than an eye" in found.reason
     picture = linear(plotter.screenshot(return_img=True) / 255)
     how = {"camera": plotter.camera.copy(), "line_width": 4, "key": presets.heading()} | HOW
     plotter.close()
@@ -174,3 +179,161 @@ def test_thin_lines_on_a_surface_leave_it_readable(question):
     plotter.close()
     assert found.bits > 0.85 * bare.bits
     assert found.readable > 0.85 * bare.readable
+
+
+def places(turns_right, turns_up, apart):
+    """Return places whose data turn by some degrees to the next pixels to the right and up."""
+    angles = [np.zeros(len(apart)), np.radians(turns_right), np.radians(turns_up)]
+    here, right, up = (
+        np.stack([np.cos(a), np.sin(a)], axis=1) * np.array([1, sign])
+        for a, sign in zip(angles, (1, 1, -1), strict=True)
+    )
+    return measure.Places(None, here, right, up, np.array(apart), None, None)
+
+
+def test_structure_is_the_length_of_a_quarter_turn():
+    found = places([3, 0, 3], [4, 9, 4], [True, True, False]).structure(lambda sample: sample)
+    np.testing.assert_allclose(found, [18, 10, np.nan], rtol=1e-6)
+    double = places([3], [4], [True]).structure(lambda sample: sample, 2)
+    np.testing.assert_allclose(double, [36], rtol=1e-6)
+
+
+def test_the_finest_structure_is_the_least_octave_of_which_half_is_read():
+    lengths = np.repeat([4.0, 8.5, 20.0, 40.0, np.nan], 40)
+    unit = np.full(200, 0.5)
+    found = measure._scale("direction", lengths, unit, lengths > 8, 1 / 6)
+    assert (found.pixels, found.length, found.median) == (8.5, 4.25, 14.25)
+    # Octaves of fewer than 32 places are not judged, and what is guessed is not read.
+    few = measure._scale("direction", lengths[9:], unit[9:], lengths[9:] < 50, 1 / 6)
+    assert few.pixels == 8.5
+    half = measure._scale("direction", lengths, unit, np.arange(200) % 5 > 1, 0.5)
+    assert half.pixels is None
+    assert measure._beyond_chance(np.arange(10) < 6, 0.5) == pytest.approx(0.2)
+    assert measure._beyond_chance(np.arange(10) < 4, 0.5) == 0
+
+
+def test_a_figure_of_two_sides_counts_right_and_wrong_answers():
+    found = measure._order(np.repeat([1, -1, 0], [8, 1, 1]))
+    assert (found.told, found.wrongly, found.samples) == (0.8, 0.1, 10)
+    assert found.bits == pytest.approx(0.9 * (1 - 0.50326) - 0.07213, abs=1e-4)
+    assert found.readable == pytest.approx(0.7)
+    assert not found.unreadable
+    assert "alike" in measure._order(np.repeat([1, 0], [3, 7])).reason
+    assert "wrongly" in measure._order(np.repeat([1, -1, 0], [3, 2, 5])).reason
+    assert measure._order(np.zeros(0)) is None
+
+
+def test_ends_of_strokes_differ_by_three_deviations_of_the_noise():
+    ink = np.array([7.0] * 7 + [6.8, -7.0, 0.0])
+    found = measure._sense(ink, 0 * ink, 2.3)
+    assert (found.told, found.wrongly) == (0.7, 0.1)
+    assert measure._sense(0 * ink, -ink, 2.3) == found
+    assert measure._sense(ink[:7], ink[:7], 2.3) is None
+    assert measure._sense(ink[:8], ink[:8], 2.3) is not None
+
+
+def pixels_of(part):
+    """Return the pixels of a picture of numbers of meshes, none where -1, and their numbers."""
+    row, column = np.nonzero(part >= 0)
+    number = np.full(part.shape, -1)
+    number[row, column] = np.arange(len(row))
+    size = part.shape[1], part.shape[0]
+    return Pixels(row, column, part[row, column], np.zeros(len(row), dtype=int), size), number
+
+
+def test_a_reader_of_a_surface_looks_between_the_lines_on_it():
+    part = np.zeros((40, 60), dtype=int)
+    part[:, 30] = 1
+    pixels, number = pixels_of(part)
+    ids = number[20, [31, 29, 33, 50, 10]]
+    # A pixel is an arc minute.
+    row, column = measure._between(pixels, number, 0, ids, Eye(60.0))
+    np.testing.assert_array_equal(row, 20)
+    np.testing.assert_array_equal(column, [33, 27, 33, 50, 10])
+    # All is closer to the line than an eye sees it alone, or what is free is too far away.
+    for narrow, pixel in ((slice(28, 33), 31), (slice(14, 33), 32)):
+        part = np.full((40, 60), -1)
+        part[:, narrow] = 0
+        part[:, 30 if narrow.start > 20 else slice(17, 33)] = 1
+        part[20, pixel] = 0
+        pixels, number = pixels_of(part)
+        found = measure._between(pixels, number, 0, number[[20], [pixel]], Eye(60.0))
+        assert [int(each[0]) for each in found] == [20, pixel]
+    alone, number = pixels_of(np.zeros((4, 4), dtype=int))
+    found = measure._between(alone, number, 0, number[1], Eye(60.0))
+    np.testing.assert_array_equal(found, [[1] * 4, range(4)])
+
+
+def test_the_pixel_beside_is_of_the_same_mesh():
+    part = np.array([[0, 0, 1, -1], [0, 1, 1, 1]])
+    pixels, number = pixels_of(part)
+    for step, expected in (
+        ((0, 1), [1, 0, 2, 3, 5, 6, 5]), ((1, 0), [3, 1, 5, 0, 4, 2, 6]),
+    ):  # fmt: skip
+        found = measure._beside(pixels, number, np.arange(7), step)
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_angles_are_a_share_and_a_median_unless_they_are_chance():
+    error = np.array([2.0, 10.0, 11.0, 40.0])
+    found = [readers.Reading(part, None, 8, part, None) for part in (error[:1], error[1:])]
+    assert measure._angles(found, {"reason": ""}) == {"within_10": 0.5, "median": 10.5}
+    chance = measure._angles(found, {"reason": "too fine"})
+    assert chance == {"within_10": 1 / 9, "median": 45.0}
+
+
+def test_what_is_guessed_is_the_share_of_the_tolerance():
+    tolerance, guessed = measure.TOLERANCE, measure.GUESSED
+    assert tolerance == {
+        "direction": 15, "heading": 15, "shape": 20, "value": 0.1, "rank": 0.15,
+    }  # fmt: skip
+    for question in ("direction", "heading"):
+        assert guessed[question] == pytest.approx(2 * tolerance[question] / 180)
+    assert guessed["shape"] == pytest.approx(np.sin(np.radians(20)) ** 2, abs=1e-3)
+    for question in ("value", "rank"):
+        assert guessed[question] == pytest.approx(2 * tolerance[question])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"lengths": [7, 7, np.nan]}, "within 7 pixels"),
+        ({"lengths": [7, 7], "pixels": 30}, "do not follow"),
+        ({"values": 1}, "show values"),
+        ({"deviation": 7.0}, "finer than an eye"),
+        ({"deviation": 6.8, "wide": 50}, "do not follow"),
+        ({"wide": 10}, "less than an eye"),
+        ({"wide": 11}, "do not follow"),
+    ],
+)
+def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
+    """Structure below 6 arc minutes; noise of 3 times the eye's; colours that hardly differ."""
+    how = {"lengths": [], "pixels": 100, "values": None, "deviation": 2.3, "wide": 90} | change
+    colors = np.zeros((101, 3))
+    colors[:, 1] = np.linspace(0, how["wide"], 101)
+    place = SimpleNamespace(
+        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=how["values"]),
+        colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
+    )  # fmt: skip
+    reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
+    assert words in reader._reason("direction", [place], np.array(how["lengths"], float))
+
+
+def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
+    random = np.random.default_rng(0)
+    place = SimpleNamespace(
+        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=None),
+        colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
+        unit=np.full(64, 0.5),
+    )  # fmt: skip
+    for bits, error, unread in ((0.5, 5, 0), (0.2, 5, 1), (0.5, 42, 1), (0.5, 40, 0)):
+        truth = np.full((4, 64), 2.0**bits / 4)
+        reading = readers.Reading(
+            np.full(64, float(error)), truth, 4, np.full(64, 90.0), np.full((4, 64), 0.25)
+        )
+        reader = measure._Reader([place], 0, Eye(100.0), [])
+        found = reader._common("direction", [place], [reading], np.full(64, 50.0))
+        assert found["bits"] == pytest.approx(np.log2(0.98 * 2**bits + 0.02), abs=1e-9)
+        assert bool(found["reason"]) == bool(unread)
+        assert found["readable"] == (1 if error == 5 and not unread else 0)
+        assert (reader.scale.pixels, found["samples"]) == (50 if error == 5 else None, 64)

@@ -71,3 +71,64 @@ def test_more_cells_than_colors_take_several_pictures(monkeypatch):
     parts = seen([ball], camera)
     np.testing.assert_array_equal(whole.cell, parts.cell)
     assert len(np.unique(whole.cell)) > 300
+
+
+def above(height=2.0, parallel=False):
+    """Return a camera on the z axis that sees a square of a side of 2 at z = 0."""
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = (0, 0, height), (0, 0, 0), (0, 1, 0)
+    camera.parallel_projection, camera.parallel_scale = parallel, 1.0
+    camera.view_angle = 2 * np.degrees(np.arctan(1 / height))
+    return camera
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_pixel_is_a_share_of_what_the_camera_sees(parallel):
+    camera = above(parallel=parallel)
+    points = np.array([[0, 0, 0], [0.5, 0.2, 1.0], [0, 0, -2.0]])
+    expected = np.array([1, 1, 1]) if parallel else np.array([1, 0.5, 2])
+    np.testing.assert_allclose(pixels.footprint(camera, points, 100), 0.02 * expected)
+    toward = pixels.toward_eye(camera, points)
+    np.testing.assert_allclose(toward[0], [0, 0, 1], atol=1e-12)
+    way = [0, 0, 1] if parallel else np.array([-0.5, -0.2, 1]) / np.sqrt(1.29)
+    np.testing.assert_allclose(toward[1], way, atol=1e-12)
+
+
+def test_lines_of_a_diameter_are_bands_of_its_width_and_no_narrower_than_asked():
+    points = pv.vtk_points(np.array([[-0.5, 0, 0], [0.5, 0, 0], [0.5, 0, 1]], float))
+    lines = Cells(points, np.array([[0, 1], [2, 1]]), 3.0, 0.2)
+    camera = above(parallel=True)
+    np.testing.assert_allclose(lines.widths(camera, 100), [10, 10])
+    np.testing.assert_allclose(lines.widths(above(), 100), [10, 20])
+    np.testing.assert_allclose(lines.widths(camera, 20), [3, 3])
+    np.testing.assert_allclose(lines._replace(diameter=None).widths(camera, 100), [3, 3])
+    corners, triangles = lines.bands(camera, 100)
+    where = np.array(corners.GetData()).reshape(-1, 4, 3)[0]
+    np.testing.assert_allclose(np.abs(where[:, :2]), np.tile([0.5, 0.1], (4, 1)), atol=1e-6)
+    np.testing.assert_allclose(where[:, 2], 0.1, atol=1e-6)
+    assert triangles.shape == (4, 3)
+    found = pixels.visible([lines], camera, (100, 100))
+    assert np.count_nonzero(found.cell == 0) == pytest.approx(50 * 10, rel=0.1)
+    np.testing.assert_allclose(np.abs(found.at[:, 1]).max(), 0.09, atol=0.011)
+
+
+def test_occluders_hide_cells_and_take_no_pixels():
+    plane, front = pv.Plane(i_size=1, j_size=1), pv.Plane(center=(0.25, 0, 0.5), i_size=0.5)
+    camera = above(parallel=True)
+    part = Cells(plane.triangulate().GetPoints(), plane.triangulate().regular_faces, 1.0)
+    actor = pv.Actor(mapper=pv.DataSetMapper(front))
+    actor.prop.color, actor.prop.lighting = "black", False
+    whole, half = (pixels.visible([part], camera, (100, 100), o) for o in ((), (actor,)))
+    assert len(whole.row) == 2500
+    assert len(half.row) == 1250
+    assert half.column.max() == 49
+
+
+def test_a_line_on_a_surface_is_seen_whole():
+    plane = pv.Plane(i_size=1, j_size=1).triangulate()
+    line = Cells(pv.vtk_points(np.array([[-0.5, 0.1, 0], [0.5, 0.1, 0]])), np.array([[0, 1]]), 2.0)
+    camera = above()
+    camera.elevation = 20
+    parts = [Cells(plane.GetPoints(), plane.regular_faces, 1.0), line]
+    found = pixels.visible(parts, camera, (100, 100))
+    assert np.count_nonzero(found.part == 1) >= 2 * 48

@@ -1,5 +1,7 @@
 """Readers give the answers that are known beforehand."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from vectors import unit
@@ -201,3 +203,116 @@ def test_ranks_order_and_noise_does_not():
         readers.mutual_information(x[i : i + 256], other[i : i + 256]) for i in range(0, 4096, 256)
     ]
     assert np.mean(few) < 0.05
+
+
+def test_the_colors_of_a_bar_have_no_error_in_the_middle_of_its_classes():
+    table = bar([230, 60, 60], [60, 60, 230])
+    at = (np.arange(128) + 0.5) / 128
+    rgb = np.asarray(table.values)[(256 * at).astype(int), :3] / 255
+    seen = Colors(lab(rgb), np.full((128, 3), 0.3))
+    reading = readers.read_value(seen, at, table, lit=False)
+    assert reading.error.max() < 1e-9
+    assert reading.candidates == 128
+    ends = readers.read_value(seen, np.clip(2 * at - 0.5, 0, 1), table, lit=False)
+    np.testing.assert_allclose(ends.error, np.abs(at - np.clip(2 * at - 0.5, 0, 1)), atol=1e-9)
+
+
+def test_a_disc_is_read_without_error_whatever_its_first_candidate():
+    turn = np.radians(np.arange(0, 180, 4.5) + 0.2)
+    tangents = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    sample = places(presets.direction(), tangents, np.tile([0, 0, 1.0], (40, 1)))
+    exact = Colors(lab(readers.shown(sample.light(sample.tangents, sample.normals))),
+                   np.full((40, 3), 0.01))  # fmt: skip
+    for start in (0.2, 100.2):
+        reading = readers.read_direction(sample, np.zeros(3), exact, start)
+        # Candidates are a degree apart.
+        assert reading.error.max() < 0.51
+        assert reading.error[::2].max() < 1e-6
+        assert reading.truth[0, ::2].min() > 0.5
+    np.testing.assert_allclose(np.degrees(readers.course(sample)) % 180, np.degrees(turn))
+    np.testing.assert_allclose(readers.in_picture(sample), 1)
+
+
+def test_likelihoods_are_those_of_a_gaussian():
+    random = np.random.default_rng(0)
+    seen = Colors(random.normal(size=(5, 3)), random.uniform(0.5, 2, (5, 3)))
+    table = random.normal(size=(7, 3))
+    off = (seen.lab[:, np.newaxis] - table) / seen.deviation[:, np.newaxis]
+    found = readers.likelihood(seen, table)
+    np.testing.assert_allclose(found, -0.5 * (off**2).sum(axis=2), atol=1e-12)
+    share = readers.posterior(found, 0.4)
+    expected = np.exp(0.4 * found)
+    np.testing.assert_allclose(share, expected / expected.sum(axis=1, keepdims=True))
+
+
+def test_of_answers_that_are_alike_the_middle_one_is_taken():
+    rows = np.array([[0, 5, 5, 5, 0.0], [1, 0, 0, 0, 0], [0, 3, 3, 3, 3], [2, 2, 2, 2, 2]])
+    np.testing.assert_array_equal(readers._drawn(rows), [2, 0, 2, 2])
+
+
+def test_colors_lead_back_to_light_also_in_the_dark():
+    rgb = np.random.default_rng(0).uniform(size=(50, 3)) ** 4
+    rgb = np.vstack([rgb, np.linspace(0, 0.12, 60)[:, np.newaxis].repeat(3, axis=1)])
+    found = readers._xyz_of_lab(lab(rgb))
+    np.testing.assert_allclose(found, linear(rgb) @ XYZ.T, atol=1e-6)
+
+
+def test_candidates_of_a_normal_are_even_on_a_disc_and_have_their_tangents():
+    normals, tangents = readers.candidates(300, 4, 0.7)
+    assert normals.shape == tangents.shape == (1200, 3)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+    np.testing.assert_allclose(np.linalg.norm(tangents, axis=1), 1)
+    np.testing.assert_allclose((normals * tangents).sum(axis=1), 0, atol=1e-12)
+    square = (normals[:300, :2] ** 2).sum(axis=1)
+    np.testing.assert_allclose(square, (np.arange(300) + 0.5) / 300)
+    # The mean of points that are even on a disc is its middle.
+    np.testing.assert_allclose(normals[:300, :2].mean(axis=0), 0, atol=0.005)
+    turned = tangents.reshape(4, 300, 3)
+    cosine = np.abs((turned[0] * turned[1:]).sum(axis=2))
+    expected = np.abs(np.cos(np.pi * np.arange(1, 4) / 4))
+    np.testing.assert_allclose(cosine, np.repeat(expected[:, np.newaxis], 300, axis=1), atol=1e-9)
+
+
+def test_a_channel_of_halves_tells_a_bit_and_equal_ranks_are_shared():
+    np.testing.assert_allclose(readers.ranks(np.array([3.0, 1, 3, 0])), [3.5, 2, 3.5, 1])
+    assert readers.rank_correlation(np.arange(9.0), np.arange(9.0) % 3) == pytest.approx(
+        0.3162, 1e-3
+    )
+    x = np.arange(4096) / 4096
+    half = readers.mutual_information(x, (x > 0.5).astype(float))
+    # Of 16 classes and 2: a bit, less 1 or 2 of 16 + 2 classes by the bias of the sample.
+    assert half == pytest.approx(1, abs=0.01)
+    assert readers.mutual_information(x, np.zeros(4096)) == 0
+    error = readers.ranked_error(x, (x >= 0.5).astype(float))
+    # The answer of either half is its median.
+    np.testing.assert_allclose(error, np.abs(x % 0.5 - 0.25), atol=2e-4)
+
+
+def test_lines_along_the_axes_are_read_whichever_way_they_run():
+    turn, slope = np.radians([0.0, 179.9, 90.0, 45.0]), np.radians([30.5, -20.5, 89.5, 0.5])
+    ways = np.stack(
+        [np.cos(slope) * np.cos(turn), np.cos(slope) * np.sin(turn), np.sin(slope)], axis=1
+    )
+    sample = places(presets.heading(), np.vstack([ways, -ways]), kind="line")
+    exact = Colors(lab(readers.shown(sample.light(sample.tangents, None))), np.full((8, 3), 0.1))
+    reading = readers.read_heading(sample, np.zeros(3), exact)
+    assert reading.error.max() < 1e-4
+    assert reading.truth[0].min() > 0.2
+    np.testing.assert_allclose(readers.steepness(sample)[:4], np.abs(np.sin(slope)))
+    toward = places(presets.heading(), np.array([[0, 0, 1.0], [0, 0, -1.0]]), kind="line")
+    exact = Colors(lab(readers.shown(toward.light(toward.tangents, None))), np.full((2, 3), 0.1))
+    assert readers.read_heading(toward, np.zeros(3), exact).error.max() < 2
+
+
+def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
+    scene = Scene(lights=Light(direction=(0, 0, 1)), material=MATTE)
+    normals, tangents = np.array([[0, 0, 1.0], [0, 0, -1]]), np.tile([1.0, 0, 0], (2, 1))
+    sample = places(scene, tangents, normals)
+    given = sample.given(sample.tangents, normals)
+    assert given.normals is None
+    np.testing.assert_allclose(sample.light(sample.tangents, normals), 0.9)
+    options = dataclasses.replace(sample.options, conditioned=True)
+    lit = dataclasses.replace(sample, options=options).light(sample.tangents, normals)
+    np.testing.assert_allclose(lit, [[0.9] * 3, [0.1] * 3])
+    bare = dataclasses.replace(sample, tangents=None)
+    np.testing.assert_allclose(bare.light(None, normals), [[0.9] * 3, [0.1] * 3])

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 from sheets import DIRECTION, FLAT, HOW, SHAPE, plotter_of, sheet
 
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.whole import moved
+from vizlight.observers.whole import moved, read_picture, reading
 from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl
@@ -79,3 +80,64 @@ def test_a_direction_up_near_the_line_of_sight_turns_no_answer():
         medians.append(plotter.vizlight.legibility(**HOW).direction.median)
         plotter.close()
     assert max(medians) < 6
+
+
+def test_pictures_are_read_upright_and_without_their_opacity(tmp_path):
+    picture = np.random.default_rng(0).integers(0, 256, (9, 12, 4), dtype=np.uint8)
+    Image.fromarray(picture[..., :3]).save(tmp_path / "picture.png")
+    expected = picture[..., :3] / 255
+    for given in (picture, picture / 255, expected, tmp_path / "picture.png"):
+        np.testing.assert_allclose(read_picture(given), expected)
+    assert read_picture(np.zeros((8, 8, 3))).shape == (8, 8, 3)
+    wrong = np.full((9, 9, 3), np.nan)
+    for given in (
+        picture[..., :2],
+        picture[..., 0],
+        picture[:7],
+        picture[:, :7],
+        wrong,
+        1.1 + wrong,
+    ):
+        with pytest.raises(ValueError, match="picture: expected"):
+            read_picture(given)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [((None, None, None), (85, 400)), ((50, None, None), (50, 400)), ((None, 250, None), (85, 250)),
+     ((None, None, 96), (254, 600)), ((None, 500, 96), (254, 500))],
+)  # fmt: skip
+def test_a_picture_has_the_size_of_a_column_or_of_a_screen(given, expected):
+    found = reading(960, *given, 2.3, 10, 3)
+    assert (found["size_mm"], found["distance_mm"]) == pytest.approx(expected)
+    assert (found["noise"], found["samples"], found["seed"]) == (2.3, 10, 3)
+
+
+def test_the_active_part_of_a_window_is_read_alone():
+    plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(240, 160), border=False)
+    plotter.add_mesh(pv.Plane(), color="black")
+    for row, column in ((1, 0), (0, 1)):
+        plotter.subplot(row, column)
+        how = {"cmap": "coolwarm", "lighting": False, "show_scalar_bar": False}
+        plotter.add_mesh(sheet(30), scalars="height", **how)
+        plotter.camera = camera_on(sheet(30), (0, 0, 1), aspect=1.5)
+        found = plotter.vizlight.legibility(size_mm=20, samples=256)
+        assert found.size == (120, 80)
+        assert found.value.median < 0.03
+        assert (found.size_mm, found.noise, found.seed) == (20, 2.3, 0)
+    plotter.close()
+
+
+def test_what_hides_a_mesh_and_what_is_nearly_clear():
+    flat = {"cmap": "coolwarm", "lighting": False, "show_scalar_bar": False}
+    pixels = []
+    for opacity in (0.4, 0.6, 0.0):
+        plotter = pv.Plotter(off_screen=True, window_size=(120, 80))
+        plotter.add_mesh(sheet(20), scalars="height", **flat)
+        front = plotter.add_mesh(pv.Plane(center=(0.5, 0, 1), j_size=2), opacity=opacity or 1.0)
+        front.SetVisibility(opacity > 0)
+        plotter.camera = camera_on(sheet(20), (0, 0, 1), aspect=1.5, parallel=True)
+        pixels.append(plotter.vizlight.legibility(size_mm=20, samples=64).pixels)
+        plotter.close()
+    assert pixels[0] == pixels[2]
+    assert pixels[1] == pytest.approx(pixels[0] / 2, rel=0.03)

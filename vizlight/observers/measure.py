@@ -236,7 +236,8 @@ def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]
         column = np.clip(pixels.column[ids] + sign * step[1], 0, number.shape[1] - 1)
         other = number[row, column]
         fits = (other >= 0) & (pixels.part[np.maximum(other, 0)] == pixels.part[ids])
-        found = np.where(fits, other, found)
+        # Beyond the border of the picture there is only the pixel itself.
+        found = np.where(fits & (other != ids), other, found)
     return np.asarray(found)
 
 
@@ -340,9 +341,10 @@ class _Reader:
         colors = np.concatenate([one.colors.lab for one in groups])
         if float(np.median(deviation)) > 3 * self.eye.noise:
             return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
-        if float(np.sqrt((colors.std(axis=0) ** 2 - self.eye.noise**2).max(initial=0.0))) < (
-            self.eye.noise
-        ):
+        # The standard deviation by the 10 % and 90 % quantiles, but for places at borders.
+        spread = np.ptp(np.quantile(colors, (0.1, 0.9), axis=0), axis=0) / 2.563
+        beyond = spread**2 - np.median(deviation, axis=0) ** 2
+        if float(np.sqrt(beyond.max(initial=0.0))) < self.eye.noise:
             return "the colours differ by less than an eye tells apart"
         return "the colours do not follow the data as the key says; choose a light or a map for it"
 

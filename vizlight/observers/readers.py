@@ -305,6 +305,7 @@ def read_heading(sample: Sample, middle: Array, colors: Colors, share: float = 1
     table = lab_of_xyz(share * light @ XYZ.T).reshape(COURSES, SLOPES, 3)
     angle, toward = course(sample), dots(_single(sample), sample.eye)
     # A line has no sign: it is taken upward in the picture, and from right to left never.
+    angle = np.where(angle == np.pi, -np.pi, angle)
     steps = np.rint(angle % np.pi / np.pi * COURSES).astype(np.intp)
     down = (angle < 0) ^ (steps == COURSES)
     toward = np.degrees(np.arcsin(np.clip(np.where(down, -toward, toward), -1, 1)))

@@ -1,0 +1,55 @@
+"""Figures print what they are, and say in words what is not read."""
+
+import json
+
+import pytest
+
+from vizlight.observers.figures import Direction, Legibility, Order, Scale, Value
+
+HOW = {"size": (200, 100), "size_mm": 20.0, "distance_mm": 400.0, "toward_eye": (0.0, 0.0, 1.0)}
+HOW |= {"pixels": 5000, "noise": 2.3, "seed": 7}
+READ = Direction(bits=1.25, readable=0.5, samples=100, within_10=0.4, median=12.5)
+UNREAD = Value(
+    bits=0.125, readable=0.0, samples=100, reason="too fine", median=0.25, p95=0.475, largest=0.5
+)
+
+
+def test_figures_are_rows_with_their_chance():
+    assert READ.rows() == [
+        ("within 10 degrees", "40.0%", "11.1%"),
+        ("median error by the key", "12.5 degrees", "45"),
+        ("information", "1.25 bits", "0"),
+        ("readable share of the picture", "50%", "0%"),
+    ]
+    assert not READ.unreadable
+    assert READ.legend_median == 12.5
+    order = Order(bits=0.5, readable=0.25, samples=8, told=0.5, wrongly=0.25)
+    assert order.rows()[:2] == [("told", "50%", "0%"), ("told wrongly", "25%", "0%")]
+
+
+def test_what_is_unreadable_is_one_row_and_a_reason():
+    assert UNREAD.unreadable
+    assert UNREAD.rows() == [("unreadable", "0.12 bits", "0")]
+    found = Legibility(direction=READ, value=UNREAD, **HOW)
+    assert found.unreadable == {"value": "too fine"}
+    lines = str(found).splitlines()
+    assert lines[0].split() == ["question", "figure", "read", "chance"]
+    assert [line.split()[0] for line in lines[1:6]] == [
+        "direction", "median", "information", "readable", "value",
+    ]  # fmt: skip
+    assert lines[6] == "value is unreadable: too fine"
+    assert lines[7].startswith("5000 pixels of 200 x 100, 20 mm wide, seen from 400 mm; noise")
+    assert lines[7].endswith("2.3 in CIELAB, seed 7")
+    assert json.loads(json.dumps(found.to_dict()))["direction"]["median"] == 12.5
+
+
+@pytest.mark.parametrize(
+    ("pixels", "length", "text"),
+    [(None, None, "none"), (8.125, None, "8.12 pixels"), (16, 2.5, "16 pixels, 2.5 of the unit")],
+)
+def test_the_finest_structure_is_a_length(pixels, length, text):
+    scale = Scale(question="value", pixels=pixels, length=length, median=33.0)
+    assert scale.rows() == [
+        ("finest structure read of value", text, ""),
+        ("median structure", "33 pixels", ""),
+    ]
