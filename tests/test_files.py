@@ -691,10 +691,30 @@ def test_one_layer_of_a_grid():
         files.layer_of(grid, 3)
 
 
-def test_labels_of_what_is_no_image():
-    ball = pv.Sphere()
-    with pytest.raises(TypeError, match="mesh: expected an image, which has labels"):
-        files.surface_of(ball, labels="a")
+def test_labels_of_points_are_those_of_what_is_nearest():
+    plane = pv.Plane(i_resolution=6, j_resolution=4).triangulate()
+    plane["v"] = plane.points[:, 0].astype(float)
+    plane["k"] = np.random.default_rng(1).choice([1.0, 5.0, np.nan], plane.n_points)
+    before = plane.copy()
+    found = files.surface_of(plane, labels="k")
+    assert plane == before
+    assert found.area == pytest.approx(plane.area)
+    assert "k" not in found.point_data
+    np.testing.assert_allclose(found["v"], found.points[:, 0], atol=1e-6)
+    # The middles of triangles that are split are nearest to their corner.
+    middles = found.cell_centers().points
+    nearest = np.argmin(np.linalg.norm(middles[:, np.newaxis] - plane.points, axis=2), axis=1)
+    split = found.compute_cell_sizes()["Area"] < 0.99 * plane.area / plane.n_cells
+    np.testing.assert_array_equal(found["k"][split], plane["k"][nearest[split]])
+    # Whole triangles have one label, that of all of their corners.
+    for cell in np.flatnonzero(~split).tolist():
+        ids = found.get_cell(cell).point_ids
+        np.testing.assert_array_equal(plane["k"][ids], found["k"][cell])
+
+
+def test_labels_of_an_image():
+    with pytest.raises(ValueError, match="labels: expected an array of one component"):
+        files.surface_of(pv.Sphere(), labels="a")
     image = pv.ImageData(dimensions=(4, 4, 4))
     image.cell_data["c"] = np.arange(27) // 14 * 5
     found = files.surface_of(image, labels="c")

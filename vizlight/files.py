@@ -45,7 +45,7 @@ from vizlight.mesh import (
     series,
     short_files,
 )
-from vizlight.mesh.subdivision import simplices
+from vizlight.mesh.subdivision import by_corner, simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity
 from vizlight.vtk.topology import place_numbers
 
@@ -616,9 +616,10 @@ def surface_of(
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range.
     labels : str, optional
-        Name of an array of whole numbers of an image, such as an atlas of a brain, in which 0 is
-        the ground. The surface of all that has a label is smoothed within the size of a voxel, and
-        each of its cells has the label inside of it.
+        Name of an array of labels, which are then those of the cells. In an image that fills space,
+        such as an atlas of a brain, they are whole numbers of which 0 is the ground: the surface of
+        all others is smoothed within the size of a voxel. Elsewhere each point of the surface
+        labels what is nearest to it, so that nothing has a label between two.
 
     Returns
     -------
@@ -655,10 +656,11 @@ def surface_of(
 
 
 def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
-    """Return the smoothed surface of what has a label in an image, with labels of its cells."""
-    if not isinstance(mesh, pv.ImageData):
-        got = type(mesh).__name__
-        raise TypeError(_check.message("mesh", "an image, which has labels", got))
+    """Return the surface of what has a label, with labels of its cells."""
+    if not isinstance(mesh, pv.ImageData) or min(mesh.dimensions) == 1:
+        surface = surface_of(mesh)
+        _scalars(surface, "labels", name)
+        return by_corner(surface, name) if name in surface.point_data else surface
     if name not in mesh.point_data and name in mesh.cell_data:
         # Each cell becomes a point at its middle.
         mesh = mesh.cells_to_points(name)

@@ -27,6 +27,8 @@ _KINDS = (
     "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#332288",
     "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
 )  # fmt: skip
+#: Colour of what is missing in pictures without light.
+MISSING = "#d9d9d9"
 #: Largest difference between the numbers of kinds.
 MOST_SPAN = 1 << 16
 
@@ -129,7 +131,7 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     -------
     pyvista.LookupTable
         Table from half below the least kind to half above the largest; numbers between two kinds
-        have the colour of missing values.
+        have the colour of missing values, a light grey.
 
     Raises
     ------
@@ -153,13 +155,14 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     # VTK gives a table of one colour a second one.
     table = pv.LookupTable(n_values=max(int(np.ptp(rows)) + 1, 2))
     # A table with transparent colours would make all of a mesh translucent.
-    colors = np.full((table.n_values, 4), 255, dtype=np.uint8)
+    colors = np.tile(np.uint8(255 * np.array(to_rgba(MISSING))), (table.n_values, 1))
     for place, value in enumerate(rows):
         color = np.array(to_rgba(_KINDS[place % len(_KINDS)]))
         colors[int(value - rows[0])] = np.round(255 * color)
     if len(rows) == 1:
         colors[1] = colors[0]
     table.values = colors
+    table.nan_color = MISSING
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): f"{value:g}" for value in rows}
     return table

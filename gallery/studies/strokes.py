@@ -139,7 +139,7 @@ def lit(way, scene):
     wind, camera = winds()
     _, spent = first_frame(lambda p: p.vizlight.add_mesh(wind, scene=scene, **FIELD))
     found = vizlight.legibility(wind, scene, view=camera, **FIELD).direction
-    return [Row(way, "", found.legend_median, spent)]
+    return [Row(way, "", found.median, spent)]
 
 
 def steps(quick):

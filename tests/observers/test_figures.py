@@ -17,12 +17,11 @@ UNREAD = Value(
 def test_figures_are_rows_with_their_chance():
     assert READ.rows() == [
         ("within 10 degrees", "40.0%", "11.1%"),
-        ("median error by the key", "12.5 degrees", "45"),
+        ("median error", "12.5 degrees", "45"),
         ("information", "1.25 bits", "0"),
         ("readable share of the picture", "50%", "0%"),
     ]
     assert not READ.unreadable
-    assert READ.legend_median == 12.5
     order = Order(bits=0.5, readable=0.25, samples=8, told=0.5, wrongly=0.25)
     assert order.rows()[:2] == [("told", "50%", "0%"), ("told wrongly", "25%", "0%")]
 

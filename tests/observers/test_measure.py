@@ -97,9 +97,9 @@ def test_a_picture_of_another_mesh_is_chance(drawn):
     question, mesh, picture, camera = drawn
     mixed = picture.reshape(-1, 3).copy()
     shown = (mixed < 0.99).any(axis=1)
-    # The same colours at other places.
+    # The same colours at other places, half of the picture away, upside down.
     blocks = np.flatnonzero(shown)
-    mixed[blocks] = mixed[np.roll(blocks[::-1], len(blocks) // 3)]
+    mixed[blocks] = mixed[np.roll(blocks[::-1], len(blocks) // 2)]
     found = figure(question, mesh, mixed.reshape(picture.shape), camera)
     assert found.bits < 0.3
     assert found.unreadable

@@ -14,7 +14,7 @@ from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
 from vizlight.vtk import hull, polylines
 from vizlight.vtk.bezier import as_lagrange
-from vizlight.vtk.cells import connectivity, has_faces
+from vizlight.vtk.cells import connectivity, drawn_triangles, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
 
 if TYPE_CHECKING:
@@ -55,6 +55,28 @@ def simplices(mesh: pv.DataSet) -> Indices:
     found = origin[found]
     # Curved cells have points on their surface that are none of the mesh.
     return found[(found >= 0).all(axis=1)]
+
+
+def drawn(mesh: pv.DataSet) -> tuple[Indices, Indices | None]:
+    """Return triangles or segments as VTK draws them, and the cells of a surface they are from.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of any cells, as for :func:`simplices`.
+
+    Returns
+    -------
+    ndarray of int, shape (M, 3) or (M, 2)
+        Points of the mesh.
+    ndarray of int, shape (M,), or None
+        Cells; None unless the mesh is a surface.
+    """
+    if not (isinstance(mesh, pv.PolyData) and has_faces(mesh)):
+        return simplices(mesh), None
+    corners, cell = drawn_triangles(mesh)
+    # Cells are numbered by VTK's kinds: vertices and lines first.
+    return corners.astype(np.intp, copy=False), mesh.n_verts + mesh.n_lines + cell
 
 
 def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
@@ -308,6 +330,77 @@ def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
         # All shares are 1/2, so the mean of both ends is the new point.
         places = np.concatenate([places, places[step.corners].mean(axis=1)])
     return rebuilt(mesh, cells, origin, {})
+
+
+def by_corner(mesh: pv.PolyData, name: str) -> pv.PolyData:
+    """Return a surface whose cells have the labels of their points, as halves of their sides do.
+
+    Colours that run from one label to another would show those between them. Here each polygon
+    whose corners differ is split: every corner has the part between it, the middles of its two
+    sides and the middle of the polygon.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Surface, which is not changed.
+    name : str
+        Point array of labels, which becomes one of cells; NaN is a label.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Polygons that are whole, then the parts; other arrays as :func:`rebuilt` carries them.
+    """
+    if mesh.n_strips:
+        mesh = mesh.triangulate()
+    ids, offsets = connectivity(mesh.GetPolys())
+    # Labels as whole numbers, of which NaN is the last.
+    labels, number = np.unique(np.asarray(mesh.point_data[name]), return_inverse=True)
+    number = number.reshape(-1)[ids]
+    start, size = offsets[:-1], np.diff(offsets)
+    mixed = np.maximum.reduceat(number, start) != np.minimum.reduceat(number, start)
+    corner = np.flatnonzero(np.repeat(mixed, size))
+    polygon = np.repeat(np.arange(mixed.sum()), size[mixed])
+    first, count = np.repeat(start[mixed], size[mixed]), np.repeat(size[mixed], size[mixed])
+    following = first + (corner - first + 1) % count
+    before = first + (corner - first - 1) % count
+    sides, side = np.unique(_pairs(ids[corner], ids[following]), return_inverse=True)
+    at = np.full(len(ids), -1)
+    at[corner] = mesh.n_points + side.reshape(-1)
+    middle = mesh.n_points + len(sides) + polygon
+    parts = np.stack([ids[corner], at[corner], middle, at[before]], axis=1)
+    ends = np.column_stack([sides >> HALF, sides & ((1 << HALF) - 1)])
+    shares = scipy.sparse.csr_array(
+        scipy.sparse.vstack([
+            _means(ends.ravel(), np.full(len(sides), 2), mesh.n_points),
+            _means(ids[corner], size[mixed], mesh.n_points),
+        ], format="csr")
+    )  # fmt: skip
+    whole = np.repeat(~mixed, size)
+    out = pv.PolyData()
+    points = np.asarray(mesh.points)
+    out.points = np.concatenate([points, _interpolated(points, shares, places=True)])
+    all_ids = np.concatenate([ids[whole], parts.ravel()])
+    all_sizes = np.concatenate([size[~mixed], np.full(len(parts), 4)])
+    out.SetPolys(blocks.cell_array(all_ids, np.concatenate([[0], np.cumsum(all_sizes)])))
+    origin = np.concatenate([np.flatnonzero(~mixed), np.flatnonzero(mixed)[polygon]])
+    others = mesh.n_verts + mesh.n_lines
+    for key, array in mesh.cell_data.items():
+        out.cell_data[key] = np.asarray(array)[others + origin]
+    for key, array in mesh.point_data.items():
+        if key != name:
+            rows = np.asarray(array)
+            records.attach_rows(out, key, np.concatenate([rows, _interpolated(rows, shares)]))
+    out.GetFieldData().DeepCopy(mesh.GetFieldData())
+    out.cell_data[name] = labels[np.concatenate([number[start[~mixed]], number[corner]])]
+    return out
+
+
+def _means(ids: Indices, size: Indices, count: int) -> Sparse:
+    """Return the weights by which the means of points follow from a number of points."""
+    ends = np.concatenate([[0], np.cumsum(size)])
+    weights = np.repeat(1 / size, size)
+    return scipy.sparse.csr_array((weights, ids, ends), shape=(len(size), count))
 
 
 def _split_lines(lines: vtkCellArray, parts: Cells, shares: Sparse) -> pv.CellArray:

@@ -6,6 +6,7 @@ the filter of its contrast sensitivity, and CIELAB after that.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ import numpy as np
 from scipy import fft
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, Indices
 
 #: CIE XYZ of linear sRGB (IEC 61966-2-1), and of white D65.
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -51,6 +52,14 @@ def lab_of_xyz(xyz: Array) -> Array:
     f = np.where(ratio > 0.008856, np.cbrt(ratio), 7.787 * ratio + 16 / 116)
     x, y, z = f[..., 0], f[..., 1], f[..., 2]
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def xyz_of_lab(colors: Array) -> Array:
+    """Return XYZ of CIELAB, the inverse of :func:`lab_of_xyz`."""
+    y = (colors[..., 0] + 16) / 116
+    f = np.stack([y + colors[..., 1] / 500, y, y - colors[..., 2] / 200], axis=-1)
+    ratio = np.where(f > 0.008856 ** (1 / 3), f**3, (f - 16 / 116) / 7.787)
+    return np.asarray(ratio * WHITE)
 
 
 def lab(rgb: Array) -> Array:
@@ -113,6 +122,18 @@ class Eye:
             total += weight * np.outer(*along)
         return np.asarray(total / sum(weight for weight, _ in FILTERS[channel]))
 
+    def share(self, width: float) -> Array:
+        """Return the share that a disc of some pixels has of each channel at its middle.
+
+        The integral of the filter over it, as :meth:`filtered` has it.
+        """
+        found = []
+        for channel in FILTERS:
+            own = ((width / 2 / self.pixels_per_degree / spread) ** 2 for _, spread in channel)
+            shares = sum(-w * math.expm1(-x) for (w, _), x in zip(channel, own, strict=True))
+            found.append(shares / sum(weight for weight, _ in channel))
+        return np.array(found)
+
     def look(self, picture: Array, drawn: Bools) -> SeenPicture:
         """Return what the eye sees of a picture.
 
@@ -150,3 +171,26 @@ class SeenPicture:
     colors: Array
     cover: Array
     ground: Array
+
+    def pooled(self, row: Indices, column: Indices, group: Indices) -> SeenPicture:
+        """Return the picture with the mean of each group of pixels in place of its colours.
+
+        Parameters
+        ----------
+        row, column : ndarray of int, shape (M,)
+            Pixels.
+        group : ndarray of int, shape (M,)
+            Numbers of their groups, 0 or more.
+        """
+        count = np.maximum(np.bincount(group), 1)[:, np.newaxis]
+
+        def mean(rows: Array) -> Array:
+            sums = [np.bincount(group, rows[:, i], len(count)) for i in range(3)]
+            return np.asarray((np.stack(sums, axis=1) / count)[group])
+
+        colors, cover = self.colors.copy(), self.cover.copy()
+        # Light is mixed in linear channels.
+        channels = xyz_of_lab(colors[row, column]) @ OPPONENT.T
+        colors[row, column] = lab_of_opponent(mean(channels))
+        cover[row, column] = mean(cover[row, column])
+        return dataclasses.replace(self, colors=colors, cover=cover)

@@ -63,14 +63,14 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True)
 class Direction(Figure):
-    """Which way tangents run in the picture, as a reader finds their hues on the key.
+    """Which way tangents run in the picture, by their hues on the key or as strokes run.
 
     Attributes
     ----------
     within_10 : float
         Share of the places where the answer is wrong by 10 degrees at most; 1/9 by chance.
     median : float
-        Median error in degrees; 45 by chance. ``legend_median`` is another name of it.
+        Median error in degrees; 45 by chance.
     """
 
     within_10: float
@@ -78,13 +78,8 @@ class Direction(Figure):
 
     ROWS = (
         ("within_10", "within 10 degrees", "{:.1%}", "11.1%"),
-        ("median", "median error by the key", "{:.1f} degrees", "45"),
+        ("median", "median error", "{:.1f} degrees", "45"),
     )
-
-    @property
-    def legend_median(self) -> float:
-        """Median error in degrees of a reader who matches hues with the key."""
-        return self.median
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.ndimage import uniform_filter
+from scipy.ndimage import gaussian_filter, uniform_filter
 
 from vizlight.draw.live import matrix_of
 
@@ -57,6 +58,15 @@ class Segments(NamedTuple):
     line: Indices
     width: Array
     ahead: Array
+
+    def places(self, row: Indices, column: Indices) -> tuple[Indices, Array]:
+        """Return the segments that pixels show, and how far along the lines the pixels are."""
+        segment = self.number[row, column]
+        way = self.way[segment]
+        here = np.column_stack([column + 0.5, row + 0.5]) - self.start[segment]
+        square = np.einsum("ij,ij->i", way, way)
+        share = np.clip(np.einsum("ij,ij->i", here, way) / np.maximum(square, 1e-12), 0.0, 1.0)
+        return segment, self.along[segment] + share * np.sqrt(square)
 
 
 def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Segments | None:
@@ -133,14 +143,9 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
         Eye.
     """
     row, column = np.nonzero(lines.number >= 0)
-    segment = lines.number[row, column]
-    keep = lines.ahead[segment] != 0
-    row, column, segment = row[keep], column[keep], segment[keep]
-    way = lines.way[segment]
-    here = np.column_stack([column + 0.5, row + 0.5]) - lines.start[segment]
-    square = np.einsum("ij,ij->i", way, way)
-    share = np.clip(np.einsum("ij,ij->i", here, way) / np.maximum(square, 1e-12), 0.0, 1.0)
-    along = lines.along[segment] + share * np.sqrt(square)
+    keep = lines.ahead[lines.number[row, column]] != 0
+    row, column = row[keep], column[keep]
+    segment, along = lines.places(row, column)
     # Lines by their numbers among those with a sense that are seen.
     names, line = np.unique(lines.line[segment], return_inverse=True)
     low, high = np.full(len(names), np.inf), np.full(len(names), -np.inf)
@@ -166,6 +171,48 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
         for values in (ink[row, column], stands_out[row, column, 0])
     ]
     return Strokes(*found)
+
+
+def courses_of(
+    lines: Segments, seen: SeenPicture, eye: Eye, count: int, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """Return what a reader who follows strokes has of the course of lines.
+
+    The course is across the direction in which the colours of a window of 8 arc minutes change
+    most: the structure tensor (Bigun and Granlund 1987).
+
+    Parameters
+    ----------
+    lines : Segments
+        Lines of the picture.
+    seen : SeenPicture
+        What the eye sees of the picture.
+    eye : Eye
+        Eye, whose noise is added to each pixel.
+    count : int
+        Largest number of places.
+    random : numpy.random.Generator
+        Source of the places and of the noise.
+
+    Returns
+    -------
+    seen, true : ndarray, shape (M,)
+        Angles in radians, from right toward down, which have no sense.
+    """
+    row, column = np.nonzero(lines.number >= 0)
+    chosen = random.permutation(len(row))[:count]
+    row, column = row[chosen], column[chosen]
+    way = lines.way[lines.number[row, column]]
+    noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
+    down, right = np.gradient(gaussian_filter(noisy, (1.0, 1.0, 0.0)), axis=(0, 1))
+    # A Gaussian of the variance of the window.
+    spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
+    xx, xy, yy = (
+        gaussian_filter((a * b).sum(axis=2), spread)[row, column]
+        for a, b in ((right, right), (right, down), (down, down))
+    )
+    across = np.arctan2(2 * xy, xx - yy) / 2
+    return across + np.pi / 2, np.arctan2(way[:, 1], way[:, 0])
 
 
 def _mean(values: Array, line: Indices, rows: Bools, count: int) -> Array:

@@ -25,7 +25,7 @@ from vizlight.observers.figures import (
     Speed,
     Value,
 )
-from vizlight.observers.lines import SEEN, segments_of, strokes_of, two_sides
+from vizlight.observers.lines import SEEN, courses_of, segments_of, strokes_of, two_sides
 from vizlight.observers.pixels import Pixels, footprint, visible
 from vizlight.observers.samples import sample
 from vizlight.shading import display
@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor
 
     from vizlight._types import Array, Bools, Indices, Keywords
+    from vizlight.observers.eye import SeenPicture
     from vizlight.observers.figures import Figure
+    from vizlight.observers.lines import Segments
     from vizlight.observers.readers import Colors, Reading
     from vizlight.observers.samples import Part, Sample
 
@@ -55,6 +57,8 @@ NEAR = 0.9
 #: Distances in arc minutes: from another mesh beyond which a colour has little of it (the filter of
 #: lightness is 2.8 wide at half height), and in which a reader looks for such a place.
 BLURRED, CLOSE = 2.5, 10.0
+#: Length in arc minutes of a piece of a line that is seen as one colour.
+PIECE = 8.0
 #: Least number of strokes that are asked for their sense.
 STROKES = 8
 #: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
@@ -165,7 +169,9 @@ def measure(
         raise ValueError(_check.message("mesh", "a point that the eye sees", "none", remedy))
     number = np.full((height, width), -1, dtype=np.intp)
     number[pixels.row, pixels.column] = np.arange(len(pixels.row))
+    lines = segments_of(parts, pixels, camera)
     seen = eye.look(picture, number >= 0)
+    things = _as_things(seen, pixels, parts, lines, eye)
     random = np.random.default_rng(seed)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
@@ -174,7 +180,8 @@ def measure(
         if len(ids):
             ids = number[_between(pixels, number, i, ids, eye)]
             own = pixels.take(ids)
-            colors = readers.colors_at(seen, own.row, own.column, random, noise)
+            share = eye.share(part.width) if part.kind == "point" else None
+            colors = readers.colors_at(things, own.row, own.column, random, noise, share)
             beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
             here = sample(part, own, camera)
             right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
@@ -184,11 +191,13 @@ def measure(
     toward = -np.array(camera.GetDirectionOfProjection())
     reader = _Reader(groups, seed, eye, list(notes))
     figures = reader.figures()
-    lines = segments_of(parts, pixels, camera)
     if lines is not None:
         found = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
         figures["order"] = _order(crossings.told(found, lines, seen, noise))
         figures["sense"] = _sense(*strokes_of(lines, seen, eye), noise)
+        courses = courses_of(lines, seen, eye, samples, np.random.default_rng(seed))
+        ways = [each for each in (figures["direction"], _course(*courses)) if each is not None]
+        figures["direction"] = max(ways, key=lambda each: each.bits, default=None)
     return Legibility(
         **figures,
         scale=reader.scale,
@@ -201,6 +210,25 @@ def measure(
         seed=seed,
         notes=tuple(reader.notes),
     )
+
+
+def _as_things(
+    seen: SeenPicture, pixels: Pixels, parts: Sequence[Part], lines: Segments | None, eye: Eye
+) -> SeenPicture:
+    """Return the picture in which a point has one colour, and so has each piece of a line."""
+    point, line = (
+        np.array([part.kind == kind for part in parts])[pixels.part] for kind in ("point", "line")
+    )
+    row, column = pixels.row, pixels.column
+    if point.any():
+        _, group = np.unique((pixels.part[point] << 40) + pixels.cell[point], return_inverse=True)
+        seen = seen.pooled(row[point], column[point], group)
+    if lines is not None and line.any():
+        segment, along = lines.places(row[line], column[line])
+        piece = np.nan_to_num(along * 60 / eye.pixels_per_degree // PIECE).astype(np.intp)
+        _, group = np.unique((lines.line[segment] << 40) + piece, return_inverse=True)
+        seen = seen.pooled(row[line], column[line], group)
+    return seen
 
 
 def _between(
@@ -246,6 +274,33 @@ def _order(answers: Array) -> Order | None:
     if not len(answers):
         return None
     return Order(**_two_sided(answers, "draw halos, or lines of colours that differ"))
+
+
+def _course(read: Array, true: Array) -> Direction | None:
+    """Return the figure of the courses that strokes have."""
+    found = np.isfinite(read) & np.isfinite(true)
+    read, true = read[found], true[found]
+    if not len(read):
+        return None
+    # Also the angles to the courses at other places: what guessing gives.
+    error, guess = (
+        np.degrees(np.abs((read - other + np.pi / 2) % np.pi - np.pi / 2))
+        for other in (true, true[readers.elsewhere(len(true))])
+    )
+    bits = max(0.0, readers.sharpness(error) - readers.sharpness(guess))
+    median = float(np.median(error))
+    unread = bits < FLOOR or median > NEAR * TURN / 2
+    reason = "strokes are finer than an eye resolves, or cross; draw them wider, or fewer of them"
+    right = error <= TOLERANCE["direction"]
+    guessed = max(GUESSED["direction"], float((guess <= TOLERANCE["direction"]).mean()))
+    return Direction(
+        within_10=1 / 9 if unread else float((error <= 10).mean()),
+        median=TURN / 2 if unread else median,
+        bits=bits,
+        readable=0.0 if unread else _beyond_chance(right, guessed),
+        samples=len(read),
+        reason=reason if unread else "",
+    )
 
 
 def _sense(ink: Array, light: Array, noise: float) -> Sense | None:
@@ -297,7 +352,12 @@ class _Reader:
 
     def _with(self, question: str, has_it: Callable[[Places], bool]) -> list[Places]:
         """Return the places where a question of light has an answer, and note those without."""
-        some = [one for one in self.groups if one.part.lit and has_it(one)]
+        by_axes = question == "heading"
+        some = [
+            one
+            for one in self.groups
+            if (one.part.lit or (by_axes and one.part.by_axes)) and has_it(one)
+        ]
         kept = [one.take(one.here.valid) for one in some]
         total, left = (sum(len(one.here) for one in each) for each in (some, kept))
         if left < total:
@@ -375,11 +435,14 @@ class _Reader:
         groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
         if not groups:
             return None
+
+        def read(p: Places, share: float) -> Reading:
+            if p.part.by_axes:
+                return readers.read_axes(p.here, self.middle, p.colors)
+            return readers.read_heading(p.here, self.middle, p.colors, share)
+
         # How much darker than the key lines are drawn is seen by the whole picture.
-        ways = (
-            [readers.read_heading(p.here, self.middle, p.colors, share) for p in groups]
-            for share in readers.SHARES
-        )
+        ways = ([read(p, share) for p in groups] for share in readers.SHARES)
         found = max(ways, key=readers.told)
         none = np.full(sum(len(p.here) for p in groups), np.nan)
         common = self._common("heading", groups, found, none)

@@ -15,12 +15,12 @@ from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import (
     OPPONENT,
     ROUNDING,
-    WHITE,
     XYZ,
     lab,
     lab_of_opponent,
     lab_of_xyz,
     linear,
+    xyz_of_lab,
 )
 from vizlight.observers.samples import dots
 from vizlight.shading import display
@@ -77,28 +77,29 @@ class Colors(NamedTuple):
 
 
 def colors_at(
-    seen: SeenPicture, row: Indices, column: Indices, random: np.random.Generator, noise: float
-) -> Colors:
+    seen: SeenPicture, row: Indices, column: Indices, random: np.random.Generator, noise: float,
+    share: Array | None = None,
+) -> Colors:  # fmt: skip
     """Return the colours that a reader has of pixels, with the noise of the eye.
 
-    The eye mixes a thin line with the background. A reader knows both, and takes off the share of
-    the background, by which the noise grows.
+    The eye mixes what is small with the background and with what is beside it. A reader knows the
+    background, and takes off its share, by which the noise grows. What is beside a point adds as
+    much as colours differ in the picture, for all that is drawn but ``share``, its own share of
+    each channel. Lines run beside others like them.
     """
     found = seen.colors[row, column]
     noisy = found + random.normal(0.0, noise, found.shape)
     cover = np.maximum(seen.cover[row, column], LEAST_COVER)
-    channels = _xyz_of_lab(noisy) @ OPPONENT.T
+    channels = xyz_of_lab(noisy) @ OPPONENT.T
     alone = (channels - (1 - cover) * seen.ground) / cover
-    deviation = math.hypot(noise, ROUNDING) / np.minimum(cover, 1.0)
-    return Colors(lab_of_opponent(alone), deviation)
-
-
-def _xyz_of_lab(colors: Array) -> Array:
-    """Return XYZ of CIELAB, the inverse of :func:`vizlight.observers.eye.lab_of_xyz`."""
-    y = (colors[..., 0] + 16) / 116
-    f = np.stack([y + colors[..., 1] / 500, y, y - colors[..., 2] / 200], axis=-1)
-    ratio = np.where(f > 0.008856 ** (1 / 3), f**3, (f - 16 / 116) / 7.787)
-    return np.asarray(ratio * WHITE)
+    own = lab_of_opponent(alone)
+    # CIELAB is steeper in dark colours, by the power 2/3 of luminance that lightness is from.
+    steeper = np.maximum((found[:, :1] + 16) / (own[:, :1] + 16), 1.0) ** 2
+    deviation = math.hypot(noise, ROUNDING) / np.minimum(cover, 1.0) * steeper
+    if share is not None:
+        beside = np.clip(1 - share / cover, 0.0, 1.0)
+        deviation = np.hypot(deviation, beside * own.std(axis=0))
+    return Colors(own, deviation)
 
 
 class Reading(NamedTuple):
@@ -189,6 +190,20 @@ def information(readings: list[Reading]) -> float:
     return best
 
 
+def sharpness(error: Array) -> float:
+    """Return the bits by which angles from 0 to 90 degrees are less even than by chance.
+
+    They are counted in classes of 5 degrees, less the bias of a sample (Miller 1955).
+    """
+    classes = 18
+    share = np.bincount(np.minimum(error / (90 / classes), classes - 1).astype(np.intp)) / len(
+        error
+    )
+    share = share[share > 0]
+    even = math.log2(classes) + float((share * np.log2(share)).sum())
+    return even - (classes - 1) / (2 * len(error) * math.log(2))
+
+
 def told(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of its places, beyond what all places have in common."""
     return max(0.0, information(readings) - information([one.elsewhere for one in readings]))
@@ -259,7 +274,7 @@ def _single(sample: Sample) -> Array:
 
 
 def _nearest(sample: Sample, middle: Array, count: int) -> Sample:
-    """Return the place nearest to the middle, some times."""
+    """Return the place nearest to the middle, some times: lamps shine there as on a key."""
     nearest = np.argmin(((sample.points - middle) ** 2).sum(axis=1))
     return sample.take(np.full(count, nearest))
 
@@ -298,21 +313,58 @@ def read_heading(sample: Sample, middle: Array, colors: Colors, share: float = 1
         Angles in degrees, from 0 to 90, between the tangents and the likeliest of 180 directions
         in space that have their course in the picture.
     """
+    light = linear(shown(_light_in_frame(sample, middle, _ways())))
+    return _along(sample, middle, colors, [lab_of_xyz(share * light @ XYZ.T)])
+
+
+def read_axes(sample: Sample, middle: Array, colors: Colors) -> Reading:
+    """Return the answers of a reader who knows the course of lines, and hues of the axes.
+
+    A hue is that of up to four directions. Lightness and chroma tell nothing, since light and what
+    is between lines, dark or white, are mixed with the hues.
+
+    Parameters
+    ----------
+    sample, middle, colors
+        As for :func:`read_heading`.
+
+    Returns
+    -------
+    Reading
+        As of :func:`read_heading`.
+    """
+    place = _nearest(sample, middle, 1)
+    axes = np.stack([place.right[0], place.up[0], place.eye[0]])
+    hues = np.abs(_ways() @ axes)
+    amounts = np.linspace(0.0, 1.0, AMOUNTS, endpoint=False)
+    tables = [lab(hues), *(lab(amount * hues) for amount in amounts[1:])]
+    pale = [lab_of_xyz((amount + (1 - amount) * linear(hues)) @ XYZ.T) for amount in amounts[1:]]
+    return _along(sample, middle, colors, tables + pale)
+
+
+def _ways() -> Array:
+    """Return the directions of the key of lines in the frame of the eye: courses times slopes."""
     turns, slopes = np.pi * np.arange(COURSES) / COURSES, np.radians(np.arange(SLOPES) - 90 + 0.5)
     turn, slope = (grid.ravel() for grid in np.meshgrid(turns, slopes, indexing="ij"))
-    ways = np.stack([np.cos(slope) * np.cos(turn), np.cos(slope) * np.sin(turn), np.sin(slope)], 1)
-    light = linear(shown(_light_in_frame(sample, middle, ways)))
-    table = lab_of_xyz(share * light @ XYZ.T).reshape(COURSES, SLOPES, 3)
-    angle, toward = course(sample), dots(_single(sample), sample.eye)
+    return np.stack([np.cos(slope) * np.cos(turn), np.cos(slope) * np.sin(turn), np.sin(slope)], 1)
+
+
+def _along(sample: Sample, middle: Array, colors: Colors, tables: list[Array]) -> Reading:
+    """Return the answers by the course of lines and by colours, in any of some lights."""
+    # The key tells slopes toward the eye from its own place.
+    eye = _nearest(sample, middle, 1).eye[0]
+    angle, toward = course(sample), _single(sample) @ eye
     # A line has no sign: it is taken upward in the picture, and from right to left never.
     angle = np.where(angle == np.pi, -np.pi, angle)
     steps = np.rint(angle % np.pi / np.pi * COURSES).astype(np.intp)
     down = (angle < 0) ^ (steps == COURSES)
     toward = np.degrees(np.arcsin(np.clip(np.where(down, -toward, toward), -1, 1)))
-    logarithms = np.empty((len(sample), SLOPES))
+    logarithms = np.full((len(sample), SLOPES), -np.inf)
     for step in np.unique(steps % COURSES):
         rows = steps % COURSES == step
-        logarithms[rows] = likelihood(colors.take(rows), table[step])
+        for table in tables:
+            found = likelihood(colors.take(rows), table.reshape(COURSES, SLOPES, 3)[step])
+            logarithms[rows] = np.logaddexp(logarithms[rows], found)
     right = np.clip(np.floor(toward + 90), 0, SLOPES - 1).astype(np.intp)
     answer = _drawn(logarithms) - 90 + 0.5
     other = elsewhere(len(toward))
@@ -355,10 +407,12 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
     assert sample.normals is not None
     count, turns = ALONE if sample.tangents is None else WITH_TANGENTS
     disc, along = candidates(count, turns, phase)
-    table = lab(shown(_ball(_nearest(sample, middle, len(disc)), disc, along)))
-    axes = np.stack([sample.right, sample.up, sample.eye], axis=1)
-    truth = np.einsum("ij,ikj->ik", sample.normals, axes)
-    truth = np.where(truth[:, 2:] < 0, -truth, truth)
+    place = _nearest(sample, middle, len(disc))
+    table = lab(shown(_ball(place, disc, along)))
+    # A ball tells normals in the frame of its own place, wherever the colour is found again.
+    axes = np.stack([place.right[0], place.up[0], place.eye[0]])
+    seen_side = np.where(dots(sample.normals, sample.eye) < 0, -1.0, 1.0)
+    truth = seen_side[:, np.newaxis] * sample.normals @ axes.T
     other = elsewhere(len(sample))
     errors, probabilities = [], []
     step = max(1, BLOCK // len(disc))

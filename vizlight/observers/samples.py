@@ -145,7 +145,8 @@ def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
             valid &= np.einsum("ij,ij->i", vectors, vectors) > 0.5
     values = magnitude = None
     if part.values is not None:
-        values = interpolated(part.values[ids].astype(np.float64), places)
+        rows = part.values[pixels.cell if part.flat else ids].astype(np.float64)
+        values = rows if part.flat else np.asarray(interpolated(rows, places))
     if part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
         rows = rows_of(part.inputs.tangents, ids).astype(np.float64)
         magnitude = interpolated(np.linalg.norm(rows, axis=1), places)
@@ -206,7 +207,9 @@ class Part:
     lit : bool
         Whether the colours of the picture mean light.
     values : ndarray, shape (N,), or None
-        Values of the points that colours show.
+        Values of the points that colours show; of the cells if they are flat.
+    flat : bool
+        Whether the colours of a cell are one.
     table : pyvista.LookupTable or None
         Colours of the values.
     width : float
@@ -216,6 +219,8 @@ class Part:
     ahead : ndarray, shape (C,), or None
         1 for segments that run in the sense of the data, -1 against it, 0 without; None where the
         data have no sense.
+    by_axes : bool
+        Whether the hues of lines are those of the axes along which they run.
     """
 
     kind: Kind
@@ -226,10 +231,12 @@ class Part:
     scene: Scene
     lit: bool = True
     values: Raw | None = None
+    flat: bool = False
     table: pv.LookupTable | None = None
     width: float = 1.0
     diameter: float | None = None
     ahead: Array | None = None
+    by_axes: bool = False
 
     @property
     def drawn(self) -> Cells:
@@ -266,7 +273,9 @@ def part_on(
     """
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
-    cells = subdivision.simplices(mesh)
+    cells, owner = subdivision.drawn(mesh)
+    if more.get("flat"):
+        more["values"] = more["values"][owner]
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]

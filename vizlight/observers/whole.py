@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,19 +15,22 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.live import Live, items, matrix_of
 from vizlight.draw.strokes import SUPERSAMPLED, has_pass
 from vizlight.filters.tint import values_of
+from vizlight.mesh.polylines import direction_colors
+from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.measure import measure
 from vizlight.observers.samples import part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.cells import has_faces
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
+    from vtkmodules.vtkRenderingCore import vtkMapper, vtkProperty, vtkRenderer
 
-    from vizlight._types import Array, Foreign, Keywords
+    from vizlight._types import Array, Foreign, Keywords, Raw
     from vizlight.observers.figures import Legibility
     from vizlight.observers.samples import Part
 
@@ -144,10 +148,18 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
             own = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
             part = _lit(live, renderer, actor, own)
         if part is not None:
+            if part.kind == "point":
+                part = dataclasses.replace(part, width=_point_width(style, pixel))
             shown.parts.append(part)
         elif style.GetOpacity() >= HIDES:
             shown.occluders.append(_occluder(actor, pixel))
     return shown
+
+
+def _point_width(style: vtkProperty, pixel: float) -> float:
+    """Return the width in pixels of the square that a point fills, or as large as its ball."""
+    share = math.sqrt(math.pi / 4) if style.GetRenderPointsAsSpheres() else 1.0
+    return max(1.0, share * style.GetPointSize() / pixel)
 
 
 def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Part | None:
@@ -160,7 +172,7 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Pa
     options = live.source.named or LightOptions.of(vars(live.source.options))
     colors = _values(mesh, live.given, table)
     # Colours that were given mean nothing that a key tells; crossings of lines are still read.
-    lit = live.scalars is None or bool(colors)
+    lit = live.scalars is None or "values" in colors
     if not lit and not has_lines_only(mesh):
         return None
     placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
@@ -225,13 +237,33 @@ def _colored(
 
 
 def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
-    """Return the values that an array gives colours, and their table; nothing for colours."""
+    """Return what the colours of an array mean: values and their table, axes, or nothing."""
     if name is None or name not in (*mesh.point_data, *mesh.cell_data):
         return {}
-    if not isinstance(table, pv.LookupTable):
-        return {}
     values = values_of(mesh, name)
-    return {} if values.ndim != 1 else {"values": values, "table": table}
+    if isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data:
+        of_cells = np.asarray(mesh.cell_data[name])
+        if of_cells.ndim == 1 and isinstance(table, pv.LookupTable):
+            return {"values": of_cells, "table": table, "flat": True}
+    if values.ndim == 1 and not isinstance(table, pv.LookupTable):
+        return {}
+    if values.ndim == 1:
+        return {"values": values, "table": table}
+    return {"by_axes": True} if _by_axes(mesh, values) else {}
+
+
+def _by_axes(mesh: pv.DataSet, colors: Raw) -> bool:
+    """Return whether lines have the colours of the axes along which they run, in any light.
+
+    Colours that are seen are compared with :func:`vizlight.direction_colors`: the median of their
+    angle is less than that of a change of a channel by 1 in 30.
+    """
+    if not has_lines_only(mesh) or colors.shape[1] < 3:
+        return False
+    found, own = (unit_rows(a[:, :3].astype(np.float64)) for a in (colors, direction_colors(mesh)))
+    seen = (found.any(axis=1)) & (own.any(axis=1))
+    cosine = np.einsum("ij,ij->i", found[seen], own[seen])
+    return len(cosine) > 0 and float(np.median(cosine)) > np.cos(1 / 30)
 
 
 def _occluder(actor: vtkActor, pixel: float) -> vtkActor:

@@ -222,7 +222,7 @@ def tori():
 
 #: Scripts, questions, figures with their units, and what compares them, in the order of the page.
 PICTURES = {
-    "winds": ("which way on the screen?", "median error by the key, degrees", winds),
+    "winds": ("which way on the screen?", "median error, degrees", winds),
     "read_slope": (
         "how steep are fibres?", "rank correlation with lightness",
         lambda: tubes("read_slope", 0.11, "slope", "spearman"),

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Contents, Named
     from vizlight.looks.wishes import Wishes
 
-#: Colour map where nothing is lit, and the colour of what is missing there.
-LIGHTNESS, MISSING = "viridis", "#d9d9d9"
+#: Colour map where nothing is lit.
+LIGHTNESS = "viridis"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)

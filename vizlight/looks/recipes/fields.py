@@ -17,7 +17,6 @@ from vizlight.draw.render import KEY_SIZE
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
-    MISSING,
     Drawing,
     Layer,
     range_of,
@@ -26,6 +25,7 @@ from vizlight.looks.recipes.drawing import (
 )
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
+from vizlight.maps import MISSING
 from vizlight.mesh import records
 from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only

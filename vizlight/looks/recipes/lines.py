@@ -72,7 +72,7 @@ def _width(case: Case) -> float:
 
 
 def points(case: Case) -> Drawing:
-    """Draw points as small balls, in the colours of values where there are some."""
+    """Draw points as small balls, or as discs in the colours of values where there are some."""
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
@@ -105,6 +105,9 @@ def points(case: Case) -> Drawing:
             drawn |= colors
             # No light follows these points, so the key is that of the scene and its colours.
             keys = [case.bar(array, colors) | {"scene": scene}]
+    if array is not None:
+        # Light on balls would change the colours by which they are read.
+        drawn["lighting"] = False
     lit = case.lit(mesh, scene)
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
 

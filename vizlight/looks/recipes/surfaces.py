@@ -12,7 +12,6 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
-    MISSING,
     Drawing,
     Layer,
     colors_of,
@@ -20,6 +19,7 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.steps import Step
+from vizlight.maps import MISSING
 from vizlight.mesh import blocks
 from vizlight.mesh.nspace import POSITION
 
@@ -39,10 +39,12 @@ MOST_IN_KEY = 16
 def values(case: Case) -> Drawing:
     """Draw a sheet or a surface in the colours of values, with their bar."""
     array = case.needed_array
-    mesh = _labels(case, array) if array.role == "kinds" else case.surface
+    mesh = smooth = _of_labels(case, array) if array.role == "kinds" else None
+    if mesh is None:
+        mesh = _by_corner(case, array) if array.role == "kinds" else case.surface
     if array.role == "kinds" and case.contents.dimension == 3:
         kinds = kinds_of(mesh.run(), array.name)
-        if len(kinds) == 1 and mesh is not case.surface:
+        if len(kinds) == 1 and smooth is not None:
             # The surface of a single label is a shape.
             drawing = surface(replace(case, question="shape", data=mesh))
             return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}")
@@ -60,7 +62,7 @@ def values(case: Case) -> Drawing:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
     if array.role == "kinds":
-        keywords = {"nan_color": MISSING} | colors_of_kinds(mesh, array, case.wishes.colors)
+        keywords = colors_of_kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":
         keywords = {"rgb": True}
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
@@ -167,12 +169,18 @@ def _inside(case: Case, array: Named, kinds: Sequence[float]) -> Step | None:
     return inner if left.n_cells and kinds[0] not in kinds_of(left, array.name) else None
 
 
-def _labels(case: Case, array: Named) -> Step:
+def _of_labels(case: Case, array: Named) -> Step | None:
     """Return the step that takes the surface of the labels of an image, without its ground, 0."""
     grid, contents = case.data.run(), case.contents
-    of_image = isinstance(grid, pv.ImageData) and contents.dimension == 3
-    if not of_image or contents.flat_axis is not None or array.low != 0 or not array.high:
-        return case.surface
-    if grid[array.name].dtype.kind not in "iu":
-        return case.surface
+    fills = contents.dimension == 3 and contents.flat_axis is None and array.low == 0 and array.high
+    if not fills or not isinstance(grid, pv.ImageData) or grid[array.name].dtype.kind not in "iu":
+        return None
     return Step("surface", "files.surface_of", case.data, labels=array.name)
+
+
+def _by_corner(case: Case, array: Named) -> Step:
+    """Return the step that takes a surface whose cells have the labels of the nearest points."""
+    surface = case.surface
+    if array.of_cells or array.name not in surface.run().point_data:
+        return surface
+    return Step("surface", "files.surface_of", surface, labels=array.name)

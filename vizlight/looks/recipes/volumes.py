@@ -11,8 +11,9 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import surfaces
-from vizlight.looks.recipes.drawing import LIGHTNESS, MISSING, Drawing, Layer
+from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer
 from vizlight.looks.steps import Step
+from vizlight.maps import MISSING
 
 if TYPE_CHECKING:
     from vizlight.looks.contents import Named
