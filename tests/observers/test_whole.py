@@ -6,6 +6,7 @@ import pyvista as pv
 from PIL import Image
 from sheets import DIRECTION, FLAT, HOW, SHAPE, plotter_of, sheet
 
+import vizlight
 from vizlight.draw.cameras import camera_on
 from vizlight.observers.whole import moved, read_picture, reading
 from vizlight.shading.options import LightOptions
@@ -141,3 +142,87 @@ def test_what_hides_a_mesh_and_what_is_nearly_clear():
         plotter.close()
     assert pixels[0] == pixels[2]
     assert pixels[1] == pytest.approx(pixels[0] / 2, rel=0.03)
+
+
+def read_plain(mesh, way=(0, 0, 1), **drawing):
+    """Return what is read of a mesh in PyVista's plain colours, seen along a direction."""
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.add_mesh(mesh, lighting=False, show_scalar_bar=False, **drawing)
+    plotter.camera = camera_on(mesh, way, aspect=1.5)
+    found = plotter.vizlight.legibility(**HOW)
+    plotter.close()
+    return found
+
+
+@pytest.mark.parametrize("place", ["point_data", "cell_data"])
+def test_quadrilaterals_are_read_as_they_are_drawn(place):
+    # Values of neighbours have nothing in common, so that the wrong diagonal would be read wrongly.
+    mesh = pv.Plane(i_resolution=6, j_resolution=4)
+    data = getattr(mesh, place)
+    data["v"] = np.random.default_rng(0).random(mesh.n_points if "p" in place else mesh.n_cells)
+    # Grays, which the eye mixes with those beside them less than hues.
+    assert read_plain(mesh, scalars="v", cmap="gray").value.median < 0.04
+
+
+def test_a_point_is_as_wide_as_it_is_drawn():
+    random = np.random.default_rng(0)
+    across = np.stack(np.meshgrid(np.arange(6.0), np.arange(4.0)), axis=-1).reshape(-1, 2)
+    mesh = pv.PolyData(np.insert(across, 2, 0.0, axis=1))
+    mesh["v"] = random.random(mesh.n_points)
+    found = [
+        read_plain(mesh, scalars="v", point_size=size, render_points_as_spheres=ball)
+        for size, ball in ((24, False), (24, True), (2, True))
+    ]
+    assert found[0].pixels == pytest.approx(24 * 24**2, rel=0.05)
+    assert found[1].pixels == pytest.approx(24 * 24**2 * np.pi / 4, rel=0.1)
+    assert max(one.value.median for one in found[:2]) < 0.04
+    assert found[2].value.bits < found[1].value.bits / 2
+
+
+def spokes():
+    """Return straight lines from one point into half of all directions."""
+    i = np.arange(60) + 0.5
+    turn, height = i * np.pi * (3 - 5**0.5), 1 - 2 * i / 60
+    radius = np.sqrt(1 - height**2)
+    ends = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
+    points = np.concatenate([ends * 0.25, ends])
+    cells = np.stack([np.full(60, 2), np.arange(60), np.arange(60) + 60], axis=1)
+    return pv.PolyData(points, lines=cells.ravel())
+
+
+def test_colours_of_the_axes_tell_the_direction_of_lines():
+    lines = spokes()
+    lines["axes"] = (255 * vizlight.direction_colors(lines)).astype(np.uint8)
+    found = read_plain(lines, (1, 0.6, 0.4), scalars="axes", rgb=True, line_width=6)
+    assert found.heading.median < 15
+    assert found.heading.bits > 0.8
+    # Other colours mean nothing.
+    lines["axes"] = lines["axes"][::-1].copy()
+    assert read_plain(lines, (1, 0.6, 0.4), scalars="axes", rgb=True, line_width=6).heading is None
+
+
+def test_strokes_tell_the_direction_until_they_are_too_thin():
+    lines = spokes()
+    found = [read_plain(lines, color="black", line_width=w).direction for w in (6, 2)]
+    assert max(one.median for one in found) < 4
+    # Read from afar the strokes are grey.
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.add_mesh(lines, color="black", line_width=1)
+    far = plotter.vizlight.legibility(**HOW | {"size_mm": 4.0}).direction
+    plotter.close()
+    assert far.unreadable
+    assert far.median == 45
+
+
+def test_a_ball_tells_normals_in_its_own_frame_wherever_the_eye_is():
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    medians = []
+    for angle in (5.0, 60.0):
+        plotter, _ = plotter_of(ball, scene=vizlight.presets.shape())
+        plotter.camera = camera_on(ball, (1, 0.4, 0.3), aspect=1.5)
+        plotter.camera.view_angle = angle
+        plotter.camera.position = np.array([1, 0.4, 0.3]) * 0.65 / np.sin(np.radians(angle / 2))
+        plotter.renderer.reset_camera_clipping_range()
+        medians.append(plotter.vizlight.legibility(**HOW).shape.median)
+        plotter.close()
+    assert max(medians) < 7

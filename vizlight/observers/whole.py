@@ -209,10 +209,12 @@ def moved(
 
 
 def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
-    """Return the mesh of a mapper of PyVista whose colours may mean values."""
+    """Return the mesh of a mapper of PyVista whose colours may mean values, or axes of lines."""
     mesh = pv.wrap(mapper.GetInput())
+    if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
+        return None
     direct = mapper.GetColorMode() == 2 and bool(mapper.GetScalarVisibility())
-    return mesh if isinstance(mesh, pv.DataSet) and mesh.n_points and not direct else None
+    return mesh if not direct or has_lines_only(mesh) else None
 
 
 def _colored(
