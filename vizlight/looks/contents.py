@@ -22,8 +22,6 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
-#: Most distinct values of an array of kinds, such as materials or labels.
-MOST_KINDS = 12
 #: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
 EQUAL = 0.5
 #: Extent across a flat surface, and across a slab of cells, as a share of its second side.
@@ -267,7 +265,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return None
     distinct = len(np.unique(finite))
     whole = bool(np.all(finite == np.round(finite)))
-    if whole and (distinct <= MOST_KINDS or of_kinds or _are_labels(values)):
+    if whole and (distinct <= meaning.MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
         ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)

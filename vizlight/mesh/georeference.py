@@ -241,6 +241,8 @@ SUFFIXES = (
     ".tif", ".tiff", ".gtiff", ".asc", ".hgt", ".bil", ".dt0", ".dt1", ".dt2", ".adf", ".vrt",
     ".flt", ".grd", ".kea",
 )  # fmt: skip
+#: Pixels whose values are looked at.
+SAMPLE = 100_000
 #: Channels of a picture in colour.
 _COLORS = ("red", "green", "blue")
 
@@ -249,8 +251,10 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     """Return the bands of a raster at the centres of its pixels, x east and y north.
 
     A band is a point array of its description, or ``elevation`` where it is the only one, else
-    ``band_1``, ``band_2``, ...; red, green and blue are ``rgb``. What the file marks as missing is
-    NaN. The field data have its reference system as ``crs``, and its unit.
+    ``band_1``, ``band_2``, ...; red, green and blue are ``rgb``. A single band that can be no
+    heights, since its unit is no length or it has a few whole numbers, is named like its file. What
+    the file marks as missing is NaN. The field data have its reference system as ``crs``, and its
+    unit.
 
     Parameters
     ----------
@@ -275,10 +279,10 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # A raster without a place is a grid of pixels.
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         with rasterio.open(path) as file:
-            arrays = _bands(file)
+            arrays = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
             crs = file.crs
-            units = dict(zip(arrays, file.units, strict=False))
+            units = {name: _unit(file, i) for i, name in enumerate(arrays)}
     words, said = [], meaning.Meaning(axes=["x east", "y north"])
     for name, rows in arrays.items():
         said.add_array(name, {"units": units.get(name)})
@@ -314,7 +318,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     return grid
 
 
-def _bands(file: Foreign) -> dict[str, Raw]:
+def _bands(file: Foreign, stem: str) -> dict[str, Raw]:
     """Return the bands by name, each with the shape (rows, columns) or (rows, columns, 3)."""
     count = file.count
     found: dict[str, Raw] = {}
@@ -322,9 +326,14 @@ def _bands(file: Foreign) -> dict[str, Raw]:
         if np.dtype(file.dtypes[i]).kind not in "iuf":
             # Complex numbers, as of radar, are no heights.
             continue
-        name = file.descriptions[i] or ("elevation" if count == 1 else f"band_{i + 1}")
+        rows = _band(file, i)
+        name = file.descriptions[i] or file.tags(i + 1).get("NETCDF_VARNAME") or f"band_{i + 1}"
+        if count == 1 and name == "band_1":
+            unit = _unit(file, i)
+            is_length = not unit or meaning.metres(unit) is not None
+            name = "elevation" if is_length and not _of_classes(rows) else stem
         # Two bands may have one description.
-        found[f"{name}_{i + 1}" if name in found else name] = _band(file, i)
+        found[f"{name}_{i + 1}" if name in found else name] = rows
     if not found:
         raise ValueError("no band of numbers")
     kinds = [kind.name for kind in file.colorinterp[:3]]
@@ -335,6 +344,19 @@ def _bands(file: Foreign) -> dict[str, Raw]:
         rgb: Raw = np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)
         return {"rgb": rgb} | rest
     return found
+
+
+def _unit(file: Foreign, i: int) -> str:
+    """Return the unit of a band, empty without one."""
+    return str(file.units[i] or file.tags(i + 1).get("units", ""))
+
+
+def _of_classes(rows: Raw) -> bool:
+    """Return whether a band has a few whole numbers alone, as classes have."""
+    sample = rows.ravel()[:: max(rows.size // SAMPLE, 1)]
+    known = np.unique(sample[np.isfinite(sample)]).astype(np.float64)
+    few = len(known) <= meaning.MOST_KINDS < len(sample) / 100
+    return few and bool(np.all(known == np.round(known)))
 
 
 def _band(file: Foreign, i: int) -> Raw:

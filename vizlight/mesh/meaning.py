@@ -27,6 +27,8 @@ __all__ = [
     "only_vectors", "say", "seconds", "vectors", "with_named", "without_missing",
 ]  # fmt: skip
 
+#: Most distinct values of an array of kinds, such as materials or labels.
+MOST_KINDS = 12
 #: Name of vectors, names of components, or the two names of a cross field.
 Named: TypeAlias = str | tuple[str, str]
 #: Field array with the meaning of a mesh, as JSON.
