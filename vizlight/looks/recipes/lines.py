@@ -21,13 +21,17 @@ if TYPE_CHECKING:
 DIRECTION = "direction"
 
 #: Largest width of lines in pixels, and the share of a picture that they may fill.
-WIDEST, COVERED = 4.0, 0.08
+WIDEST, COVERED = 6.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 
 
 def lines(case: Case) -> Drawing:
-    """Draw lines, lit by their heading: in the colours of their direction, or of values."""
+    """Draw lines lit by their heading or in the colours of their direction, or of values.
+
+    Values are drawn without light, so that lightness tells them too: hues alone are little seen in
+    what is thin.
+    """
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
@@ -46,11 +50,14 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
         array = case.needed_array
-        colors = case.wishes.colors
+        # What is fast or large stands out from the ground.
+        default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
+        colors = {"cmap": default} | case.wishes.colors
         if array.role == "kinds":
-            colors = colors_of_kinds(mesh, array, colors)
-        drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
-        keys = [case.bar(array, colors)]
+            colors = colors_of_kinds(mesh, array, case.wishes.colors)
+        scene = case.wishes.scene("none", camera)
+        drawn |= {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+        keys = [case.bar(array, colors) | {"scene": scene}]
         words = f"lines in the colours of {array.name}"
     lit = case.lit(mesh, scene, **light)
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
