@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 from lamps import far
 from vectors import unit
+from vtkmodules.vtkFiltersSources import vtkCellTypeSource
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -192,3 +193,24 @@ def test_hidden_cells_and_thick_grids_are_read_as_a_whole():
     assert not hull.in_parts(pv.ImageData(dimensions=(110, 110, 110)))
     mesh.cell_data["vtkGhostType"] = np.zeros(mesh.n_cells, np.uint8)
     assert not hull.in_parts(mesh)
+
+
+@pytest.mark.parametrize("kind", [24, 25, 26, 27, 29])
+def test_the_faces_of_curved_cells_share_their_points_and_face_outward(kind):
+    source = vtkCellTypeSource()
+    source.SetCellType(kind)
+    source.SetBlocksDimensions(2, 2, 2)
+    source.Update()
+    grid = source.GetOutput()
+    surface, ids = hull.outer_surface(grid)
+    found = pv.PolyData(surface)
+    assert len(np.unique(ids)) == len(ids) == found.n_points
+    np.testing.assert_array_equal(found.points, pv.wrap(grid).points[ids])
+    middles = found.cell_centers().points - np.asarray(found.center)
+    # Faces between cells of which VTK finds the two different do not count.
+    outer = np.isclose(np.abs(middles).max(axis=1), np.abs(middles).max())
+    assert outer.sum() > 20
+    faces = found.regular_faces
+    a, b, c = found.points[faces.T]
+    outward = np.einsum("ij,ij->i", np.cross(b - a, c - a), middles)
+    assert (outward[outer] > 0).all()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray,
     vtkGenericCell,
     vtkImageData,
     vtkPolyData,
@@ -23,7 +24,16 @@ from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.bezier import as_lagrange
-from vizlight.vtk.cells import GHOSTS, POLYDATA, as_numpy, as_vtk, dimensions, finite_faces
+from vizlight.vtk.cells import (
+    GHOSTS,
+    POLYDATA,
+    as_numpy,
+    as_vtk,
+    connectivity,
+    dimensions,
+    finite_faces,
+    places,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -35,7 +45,7 @@ if TYPE_CHECKING:
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
-#: Name of a temporary point array, chosen not to clash with a user's array.
+#: Name of temporary arrays of points and of cells, chosen not to clash with a user's array.
 NUMBERS = "vizlight numbers"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
@@ -91,6 +101,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         numbered.ShallowCopy(mesh)
         numbers = np.arange(mesh.GetNumberOfPoints(), dtype=np.float64)
         numbered.GetPointData().AddArray(as_vtk(numbers, NUMBERS))
+        numbered.GetCellData().AddArray(as_vtk(np.arange(mesh.GetNumberOfCells()), NUMBERS))
         take: Foreign = vtkDataSetSurfaceFilter()
         # Level 1 cuts a curved face by all of its nodes; 0 would drop those between its corners,
         # and more would add points that the mesh does not have.
@@ -105,7 +116,55 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     surface: vtkPolyData = take.GetOutput()
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
-    return surface, ids
+    if not curved:
+        return surface, ids
+    own = as_numpy(surface.GetCellData().GetArray(NUMBERS))
+    surface.GetCellData().RemoveArray(NUMBERS)
+    if isinstance(mesh, vtkUnstructuredGrid) and dimension(mesh) == 3:
+        surface.SetPolys(_outward(surface, mesh, own))
+    return _merged(surface, ids)
+
+
+def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, own: Indices) -> vtkCellArray:
+    """Return triangles of curved cells wound so that they face away from the middles of the cells.
+
+    VTK winds the faces of quadratic wedges and hexahedra now this way, now that way.
+    """
+    ids, offsets = connectivity(grid.GetCells())
+    size = np.maximum(np.diff(offsets), 1)[:, np.newaxis]
+    middles = np.add.reduceat(places(grid)[ids].astype(np.float64), offsets[:-1], axis=0) / size
+    corners = connectivity(surface.GetPolys())[0].reshape(-1, 3)
+    a, b, c = places(surface)[corners.T].astype(np.float64)
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles[own]) < 0
+    found = vtkCellArray()
+    turned = np.where(inward[:, np.newaxis], corners[:, ::-1], corners)
+    found.SetData(3, as_vtk(np.ascontiguousarray(turned).ravel()))
+    return found
+
+
+def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
+    """Return a surface whose faces share their points: VTK gives each curved face its own."""
+    own, first, number = np.unique(ids, return_index=True, return_inverse=True)
+    found = vtkPolyData()
+    found.SetPoints(vtkPoints())
+    found.GetPoints().SetData(as_vtk(places(surface)[first]))
+    for get, put in (
+        (surface.GetVerts, found.SetVerts),
+        (surface.GetLines, found.SetLines),
+        (surface.GetPolys, found.SetPolys),
+    ):
+        corners, offsets = connectivity(get())
+        cells = vtkCellArray()
+        cells.SetData(as_vtk(offsets), as_vtk(number.reshape(-1)[corners]))
+        put(cells)
+    found.GetCellData().ShallowCopy(surface.GetCellData())
+    found.GetFieldData().ShallowCopy(surface.GetFieldData())
+    data = surface.GetPointData()
+    for i in range(data.GetNumberOfArrays()):
+        # Arrays of words have no rows of numbers, and are no data of a point of a picture.
+        if (array := data.GetArray(i)) is not None:
+            found.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
+    return found, own
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
