@@ -226,3 +226,13 @@ def test_a_ball_tells_normals_in_its_own_frame_wherever_the_eye_is():
         medians.append(plotter.vizlight.legibility(**HOW).shape.median)
         plotter.close()
     assert max(medians) < 7
+
+
+def test_what_has_no_key_is_not_read_and_said_so():
+    plotter = pv.Plotter(off_screen=True, window_size=(90, 60))
+    plotter.add_mesh(pv.PolyData(np.eye(3)), color="red")
+    found = plotter.vizlight.legibility()
+    plotter.close()
+    assert found.pixels == 0
+    assert found.notes == ("nothing that is shown has a key by which it could be read",)
+    assert "nothing that is shown" in str(found)

@@ -244,11 +244,12 @@ class Legibility:
     Attributes
     ----------
     direction : Direction or None
-        Which way tangents run; None without single tangents on a surface or at points.
+        Which way tangents run by hues, or lines as strokes; None without lines, and without single
+        tangents on a surface or at points.
     slope : Slope or None
         How steeply lines run toward the eye; None without lines.
     heading : Heading or None
-        Direction of lines in space; None without lines.
+        Direction of lines in space, lit or in the colours of its axes; None without lines.
     sense : Sense or None
         Which of two opposite ways strokes run; None without lines whose vectors or time of
         integration tell a sense, and for fewer than 8 of them.

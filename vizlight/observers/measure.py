@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkActor
 
-    from vizlight._types import Array, Bools, Indices, Keywords
+    from vizlight._types import Array, Bools, Indices, Keywords, Vector
     from vizlight.observers.eye import SeenPicture
     from vizlight.observers.figures import Figure
     from vizlight.observers.lines import Segments
@@ -188,7 +188,6 @@ def measure(
             apart = (beside[0] != ids) & (beside[1] != ids)
             unit = footprint(camera, here.points, height)
             groups.append(Places(part, here, right, up, apart, colors, unit))
-    toward = -np.array(camera.GetDirectionOfProjection())
     reader = _Reader(groups, seed, eye, list(notes))
     figures = reader.figures()
     if lines is not None:
@@ -205,11 +204,17 @@ def measure(
         size=(width, height),
         size_mm=size_mm,
         distance_mm=distance_mm,
-        toward_eye=(float(toward[0]), float(toward[1]), float(toward[2])),
+        toward_eye=toward(camera),
         noise=noise,
         seed=seed,
         notes=tuple(reader.notes),
     )
+
+
+def toward(camera: pv.Camera) -> Vector:
+    """Return the direction from the middle of a picture toward the eye."""
+    x, y, z = camera.GetDirectionOfProjection()
+    return -x, -y, -z
 
 
 def _as_things(

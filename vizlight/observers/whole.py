@@ -18,7 +18,8 @@ from vizlight.filters.tint import values_of
 from vizlight.mesh.polylines import direction_colors
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
-from vizlight.observers.measure import measure
+from vizlight.observers.figures import Legibility
+from vizlight.observers.measure import measure, toward
 from vizlight.observers.samples import part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkMapper, vtkProperty, vtkRenderer
 
     from vizlight._types import Array, Foreign, Keywords, Raw
-    from vizlight.observers.figures import Legibility
     from vizlight.observers.samples import Part
 
 #: Width in mm, pixels per inch and distance in mm of a picture in print.
@@ -99,12 +99,19 @@ def legibility_of(
     top = len(whole) - low - high
     picture = whole[top : top + high, left : left + wide]
     shown = shown_by(renderer, live_of)
-    if not shown.parts:
+    how = reading(wide, size_mm, distance_mm, screen, noise, samples, seed)
+    camera = renderer.GetActiveCamera()
+    if shown.parts:
+        return measure(
+            picture, shown.parts, camera, occluders=shown.occluders, notes=shown.notes, **how
+        )
+    if not shown.occluders:
         remedy = "add a mesh by plotter.vizlight.add_mesh, or with scalars"
         raise ValueError(_check.message("plotter", "a mesh that can be read", "none", remedy))
-    return measure(
-        picture, shown.parts, renderer.GetActiveCamera(), occluders=shown.occluders,
-        notes=shown.notes, **reading(wide, size_mm, distance_mm, screen, noise, samples, seed),
+    del how["samples"]
+    return Legibility(
+        pixels=0, size=(wide, high), toward_eye=toward(camera), **how,
+        notes=("nothing that is shown has a key by which it could be read",),
     )  # fmt: skip
 
 
