@@ -58,7 +58,7 @@ def test_the_side_that_shows_most_of_the_values_is_seen():
         # Values on one side alone, which alternate along it.
         on = points[:, axis] == (sign > 0)
         box["v"] = np.where(on, np.sin(9 * points[:, 1 - axis]), 0.0)
-        toward = framing.eye_of(box, Contents(box), "v").toward
+        toward = eye_of(box, Contents(box), "v").toward
         assert toward[axis] * sign > 0.3
     # A few large faces hide what is behind them too.
     coarse = pv.Cube().triangulate()
@@ -66,3 +66,13 @@ def test_the_side_that_shows_most_of_the_values_is_seen():
     way = np.array([0.8, 0.5, 0.33])
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert np.array_equal(framing._in_front(corners, way / np.linalg.norm(way)), normals @ way > 0)
+
+
+@pytest.mark.parametrize(("axis", "toward"), [(0, (1, 0, 0)), (1, (0, -1, 0)), (2, (0, 0, 1))])
+def test_a_slab_is_seen_across(axis, toward):
+    spacing = np.full(3, 0.1)
+    spacing[axis] = 0.01
+    slab = pv.ImageData(dimensions=(8, 9, 8), spacing=spacing).cast_to_structured_grid()
+    assert eye_of(slab, Contents(slab)).toward == toward
+    thick = pv.ImageData(dimensions=(8, 9, 8)).cast_to_structured_grid()
+    assert np.abs(eye_of(thick, Contents(thick)).toward).max() < 0.99

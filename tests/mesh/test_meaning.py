@@ -106,3 +106,22 @@ def test_a_mesh_without_meaning():
     assert meaning.line(mesh) == ""
     mesh.field_data["meaning"] = ["42"]
     assert meaning.of(mesh) == Meaning()
+
+
+@pytest.mark.parametrize(
+    ("time", "unit", "expected"),
+    [
+        (0, "hours since 1900-01-01", "1900-01-01 00:00"),
+        (1054152, "hours since 1900-01-01 00:00:0.0", ""),
+        (1054152, "hours since 1900-01-01 00:00:00.0", "2020-04-04 00:00"),
+        (1.5e9, "seconds since 1970-1-1T0:00:00Z", "2017-07-14 02:40"),
+        (0.5, "days since 2000-02-28 18:30", "2000-02-29 06:30"),
+        (3, "days since 0001-01-01", ""),
+        (3, "months since 2000-01-01", ""),
+        (3, "days since 2000-01-01, noleap calendar", ""),
+        (1e12, "days since 2000-01-01", ""),
+        (3, "", ""),
+    ],
+)
+def test_a_time_is_a_date_where_its_unit_names_a_day(time, unit, expected):
+    assert meaning.date(time, unit) == expected

@@ -411,6 +411,9 @@ class _Reader:
         ticks = np.arange(sizes[clock]) if along is None else along.values
         ticking = [float(tick) for tick in ticks]
         self.said.time = "" if along is None else str(along.attrs.get("units", ""))
+        calendar = "" if along is None else str(along.attrs.get("calendar", ""))
+        if calendar not in ("", "standard", "gregorian", "proleptic_gregorian"):
+            self.said.time += f", {calendar} calendar"
         single[clock] = series.chosen(ticking, time)
         return ticking, single[clock], single
 

@@ -7,6 +7,7 @@ import math
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -50,7 +51,8 @@ class Meaning:
     notes : list of str
         What is missing, and what was assumed or left out.
     time : str
-        Unit of the times of its steps, such as "hours since 1900-01-01".
+        Unit of the times of its steps, such as "hours since 1900-01-01", and their calendar if it
+        is not the usual one.
     """
 
     axes: list[str] = field(default_factory=list)
@@ -317,6 +319,13 @@ def metres(unit: str) -> float | None:
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
 
 
+#: Unit of times from a day on.
+_SINCE = re.compile(
+    r"(\w+) since (\d{4})-(\d\d?)-(\d\d?)"
+    r"(?:[T ](\d\d?):(\d\d)(?::\d\d(?:\.\d+)?)?)?(?: ?(?:UTC|Z))?"
+)
+#: First year in which all dates are those of the Gregorian calendar.
+GREGORIAN = 1583
 #: Seconds of the units of times, by their first letters.
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
@@ -331,6 +340,28 @@ def seconds(unit: str) -> float:
     """
     name = unit.strip().lower()
     return next((size for word, size in _SECONDS.items() if name.startswith(word)), 1.0)
+
+
+def date(time: float, unit: str) -> str:
+    """Return the date of a time in words, empty where the unit names no day of our calendar.
+
+    Parameters
+    ----------
+    time : float
+        Time.
+    unit : str
+        Its unit, such as "hours since 1900-01-01 06:00".
+    """
+    known = _SINCE.fullmatch(unit.strip())
+    # Before 1583 the calendars of files differ.
+    if known is None or int(known[2]) < GREGORIAN or not known[1].startswith(tuple(_SECONDS)):
+        return ""
+    year, month, day, hour, minute = (int(part or 0) for part in known.groups()[1:])
+    try:
+        start = datetime(year, month, day, hour, minute)
+        return f"{start + timedelta(seconds=time * seconds(unit)):%Y-%m-%d %H:%M}"
+    except (ValueError, OverflowError):
+        return ""
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

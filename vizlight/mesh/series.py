@@ -261,7 +261,8 @@ def note(mesh: pv.DataSet) -> str:
     times = of(mesh)
     if len(times) < 2:
         return ""
-    last = f"time {times[-1]:g}, the last of {len(times)} steps"
+    when = meaning.date(times[-1], meaning.of(mesh).time)
+    last = f"time {times[-1]:g}{f' ({when})' * bool(when)}, the last of {len(times)} steps"
     return f"{last}; --time takes another, --times all of them one by one"
 
 
