@@ -42,8 +42,9 @@ SPACING = 1 / 40
 TURN, TURN_HUE = 0.6, 0.8
 #: Least distance between strokes, and size of a place whose hue is seen, in least widths of lines.
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
-#: Length of a stroke in distances between strokes, and its largest width and halo.
-LONG, WIDE, HALO = 3.5, 2.4, 0.35
+#: Length of a stroke in distances between strokes, and its largest width: wider ones darken what is
+#: beside them for the eye.
+LONG, WIDE = 3.5, 1.7
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
 #: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
@@ -108,7 +109,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
     if strokes is not None:
-        layers.append(_inked(case, strokes, camera, halo=False))
+        layers.append(_inked(case, strokes, camera))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
 
@@ -125,7 +126,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     layers = [Layer(mesh, shown | case.wishes.drawn(light))]
     if strokes is not None:
-        layers.append(_inked(case, strokes, camera, halo=HALO))
+        layers.append(_inked(case, strokes, camera))
     finite = _lengths(mesh.run(), array.name)
     sense = "" if strokes is None else "; strokes run from thin to thick"
     title = f"length of {titled(mesh.run(), array.name)}{sense}"
@@ -148,14 +149,14 @@ def _is_even(mesh: pv.DataSet, name: str) -> bool:
     return bool(least > (1 - EVEN) * median)
 
 
-def _inked(case: Case, strokes: Step, camera: Step, *, halo: float | bool) -> Layer:
+def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
     scene = even_light(camera)
     wide = round(WIDE * case.width, 1)
     return Layer(
         strokes,
-        {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": halo},
+        {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},
     )
 
 
