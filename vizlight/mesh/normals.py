@@ -25,6 +25,7 @@ from vizlight.vtk.cells import (
     triangles,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
+from vizlight.vtk.memory import once
 from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
 from vizlight.vtk.topology import coincident
 
@@ -179,26 +180,41 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
     points; the mesh itself is not changed, and one that is split shares no memory with it.
     """
-    return split_or_normals(mesh, angle)[0]
+    if not has_faces(mesh) or not mesh.n_points:
+        return mesh
+    if angle == "auto":
+        # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
+        if not (kept(mesh) or computed_normals(mesh)).sharp:
+            return mesh
+        angle = SHARP
+    split = once(mesh, f"points split at {angle!r}", lambda: _split(mesh, angle))
+    if split is None:
+        return mesh
+    corners, origin = split
+    # A copy: what is kept is not the memory of a mesh.
+    return _at(mesh, np.array(corners, dtype=np.intp), _corners(mesh)[1].copy(), origin)
 
 
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
 ) -> tuple[pv.PolyData, Sided | None]:
-    """Return what :func:`split_edges` does, and the normals that told that nothing is split."""
+    """Return what :func:`split_edges` does, and its normals, None for a mesh without faces."""
+    split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
-        return mesh, None
-    if angle == "auto":
-        found = kept(mesh) or computed_normals(mesh)
-        # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
-        if not found.sharp:
-            return mesh, found
-        angle = SHARP
+        return split, None
+    return split, kept(split) or computed_normals(split, owner=mesh)
+
+
+def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices] | None:
+    """Return corners of faces at points that are split, and what each point was.
+
+    None where nothing is split.
+    """
     ids, ends = _corners(mesh)
     twins = first_twins(blocks.cell_array(ids, ends))
     corners, origin, turned = split_faces(places(mesh), ids, ends, angle, twins)
     if len(origin) == mesh.n_points:
-        return mesh, None
+        return None
     if turned.any():
         # Pieces that are taken apart would not know that they had a side in common.
         size = np.diff(ends)
@@ -206,7 +222,7 @@ def split_or_normals(
         last = np.repeat(ends[:-1] + ends[1:] - 1, size)
         at = np.arange(len(ids))
         corners = corners[np.where(np.repeat(turned, size), last - at, at)]
-    return _at(mesh, corners, ends, origin), None
+    return corners, origin
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:

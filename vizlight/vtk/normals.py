@@ -35,6 +35,7 @@ from vizlight.vtk.corners import (
     surface_normals,
 )
 from vizlight.vtk.hull import dimension, scattered, surface_of
+from vizlight.vtk.memory import once
 from vizlight.vtk.orientation import (
     MOST_LEAN,
     PartShape,
@@ -383,6 +384,7 @@ def computed_normals(
     as_wound: bool = False,
     sides: bool = True,
     told: Told | None = None,
+    owner: vtkPolyData | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
@@ -407,12 +409,41 @@ def computed_normals(
         Whether lean and share of sharp edges are found.
     told : Told, optional
         What the whole, of which this is a part, decides of the pieces.
+    owner : vtkPolyData, optional
+        Surface as long as whose points the normals are kept; by default the mesh.
 
     Raises
     ------
     ValueError
         If the mesh has no surface.
+
+    Notes
+    -----
+    Normals of a surface with the defaults are computed once, see :func:`~vizlight.vtk.memory.once`,
+    and may not be changed.
     """
+    if view is None and sides and told is None and not as_wound:
+        return once(mesh, "normals", lambda: _frozen(_computed(mesh)), owner)
+    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told)
+
+
+def _frozen(sided: Sided) -> Sided:
+    """Return normals whose arrays cannot be written."""
+    for array in (sided.vectors, sided.lean, sided.open):
+        if isinstance(array, np.ndarray):
+            array.setflags(write=False)
+    return sided
+
+
+def _computed(
+    mesh: Dataset,
+    *,
+    view: View | None = None,
+    as_wound: bool = False,
+    sides: bool = True,
+    told: Told | None = None,
+) -> Sided:
+    """Compute normals; see :func:`computed_normals`."""
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
