@@ -100,9 +100,9 @@ def test_a_function_that_fails_leaves_nothing(shapes):
         memory.once(mesh, "x", fails)
     assert memory.once(mesh, "x", lambda: 3) == 3
     assert memory.once(mesh, "x", fails) == 3
-    small = pv.Cube()
-    assert memory.once(small, "x", lambda: 1) == 1
-    assert memory.once(small, "x", lambda: 2) == 2
+    grid = pv.ImageData(dimensions=(2, 2, 2))
+    assert memory.once(grid, "x", lambda: 1) == 1
+    assert memory.once(grid, "x", lambda: 2) == 2
 
 
 @pytest.mark.parametrize(("make", "count"), [(ball, 1), (box, 2)])

@@ -26,7 +26,7 @@ from vizlight.vtk.cells import (
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
 from vizlight.vtk.memory import once
-from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
+from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
@@ -184,7 +184,8 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
         return mesh
     if angle == "auto":
         # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
-        if not (kept(mesh) or computed_normals(mesh)).sharp:
+        known = kept(mesh)
+        if not (creases(mesh) if known is None else known.sharp):
             return mesh
         angle = SHARP
     split = once(mesh, f"points split at {angle!r}", lambda: _split(mesh, angle))

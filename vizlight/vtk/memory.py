@@ -19,10 +19,8 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-#: Number of points from which something is kept. For fewer it is sooner found again than looked up.
-FEWEST = 1 << 8
 #: Number of things that are kept at most, the last ones.
-MOST = 64
+MOST = 1 << 8
 
 
 class _Kept(NamedTuple):
@@ -45,7 +43,7 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     Parameters
     ----------
     mesh : vtkDataSet
-        Surface; for another kind of mesh, or a small one, nothing is kept.
+        Surface; for another kind of mesh nothing is kept.
     name : str
         Name of what is computed.
     compute : callable
@@ -53,7 +51,7 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     owner : vtkPolyData, optional
         Surface in place of the mesh whose points bound the time.
     """
-    if not isinstance(mesh, vtkPolyData) or mesh.GetNumberOfPoints() < FEWEST:
+    if not isinstance(mesh, vtkPolyData):
         return compute()
     # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
     key = name, *_digests(mesh)
