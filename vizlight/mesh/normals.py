@@ -25,7 +25,6 @@ from vizlight.vtk.cells import (
     triangles,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
-from vizlight.vtk.memory import once
 from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
 from vizlight.vtk.topology import coincident
 
@@ -188,12 +187,9 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
         if not (creases(mesh) if known is None else known.sharp):
             return mesh
         angle = SHARP
-    split = once(mesh, f"points split at {angle!r}", lambda: _split(mesh, angle))
-    if split is None:
-        return mesh
-    corners, origin = split
-    # A copy: what is kept is not the memory of a mesh.
-    return _at(mesh, np.array(corners, dtype=np.intp), _corners(mesh)[1].copy(), origin)
+    # Not kept, as normals are: corners take more memory than a filter may.
+    split = _split(mesh, angle)
+    return mesh if split is None else _at(mesh, *split)
 
 
 def split_or_normals(
@@ -206,8 +202,8 @@ def split_or_normals(
     return split, kept(split) or computed_normals(split, owner=mesh)
 
 
-def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices] | None:
-    """Return corners of faces at points that are split, and what each point was.
+def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices, Indices] | None:
+    """Return corners and ends of faces at points that are split, and what each point was.
 
     None where nothing is split.
     """
@@ -223,7 +219,7 @@ def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices] | None:
         last = np.repeat(ends[:-1] + ends[1:] - 1, size)
         at = np.arange(len(ids))
         corners = corners[np.where(np.repeat(turned, size), last - at, at)]
-    return corners, origin
+    return corners, ends, origin
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:

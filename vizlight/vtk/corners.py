@@ -187,8 +187,6 @@ def crease_share(counts: Indices) -> float:
     return float(share) if apart or nearly - share <= STAND_APART * share else 0.0
 
 
-#: Number of ranges of points whose edges are sorted at once, where there are many points.
-RANGES = 8
 #: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are
 #: those of 30 degrees, are split together or not at all.
 BEYOND = 0.01
@@ -274,8 +272,7 @@ def _neighbours(
     """
     sizes = np.diff(ends)
     size = int(sizes[0]) if len(sizes) and sizes.min() == sizes.max() else 0
-    # Each range takes a pass over all corners.
-    for block in _pool.blocks(count, max(EDGES // 16, count // RANGES)):
+    for block in _pool.blocks(count, EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
         # With as many corners each, faces begin at regular places.
         face = own // size if size else np.searchsorted(ends, own, side="right") - 1
