@@ -183,7 +183,9 @@ def test_points_along_a_row_of_slivers_keep_their_own_normals():
     lower = np.stack([i, i + 1, i + 2001], axis=1)
     faces = np.concatenate([lower, np.stack([i + 1, i + 2002, i + 2001], axis=1)])
     fan = pv.PolyData.from_regular_faces(points, faces)
-    assert corners.joined(fan.points, fan) is not None
+    assert (
+        corners.joined(fan.points, corners.all_slivers(fan.points, fan.regular_faces)) is not None
+    )
     found = computed_normals(fan).vectors[:2001]
     assert np.einsum("ij,ij->i", np.abs(found), np.abs(rim)).min() > 1 - 1e-6
 

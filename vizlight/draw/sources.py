@@ -132,6 +132,8 @@ def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
     split = split_where_computed(surface, asked.feature_angle)
     if split is surface:
         return mesh
+    # Known as long as the mesh is there, though the split points are made for each picture.
+    computed_normals(split, owner=surface)
     averaged = given is None or asked.feature_angle != "auto" or _fit_no_face(split, given)
     return split if averaged else mesh
 

@@ -308,6 +308,8 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataS
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
         got = _check.describe(given)
         raise TypeError(where + _check.message("tangents", expected, got, remedy))
+    if options.facing == "as given":
+        return normals.split_edges(mesh, angle), None
     return normals.split_or_normals(mesh, angle)
 
 

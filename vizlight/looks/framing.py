@@ -138,7 +138,8 @@ def eye_around(surface: pv.PolyData) -> Eye:
 
 def _around(corners: Array, normals: Array, areas: Array, values: Array | None = None) -> Eye:
     """Return the eye from which most of some triangles is seen, and most of their values."""
-    scores = [(_seen(corners, normals, areas, way, values), way) for way in _ways()]
+    places = _places(corners)
+    scores = [(_seen(corners, places, normals, areas, way, values), way) for way in _ways()]
     best = max(scores, key=lambda pair: pair[0])[1]
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
@@ -158,7 +159,14 @@ def _of_points(points: Array) -> Eye:
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
 
 
-def _seen(corners: Array, normals: Array, areas: Array, way: Array, values: Array | None) -> float:
+def _seen(
+    corners: Array,
+    places: Array,
+    normals: Array,
+    areas: Array,
+    way: Array,
+    values: Array | None,
+) -> float:
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 
     Of values, the area counts up to twice where their spread in the picture is that of all.
@@ -166,11 +174,12 @@ def _seen(corners: Array, normals: Array, areas: Array, way: Array, values: Arra
     right, up = _plane(way)
     # Open surfaces are seen from both sides.
     cosines = np.abs(normals @ way) / np.where(areas > 0, areas, 1)
-    front = areas * _in_front(corners, way) * (cosines > 0.15)
+    front = areas * _in_front(places, len(corners), way) * (cosines > 0.15)
     seen = float(front.sum())
     if values is not None:
         seen *= 1 + min(_spread(values, front * cosines) / (_spread(values, areas) or 1.0), 1.0)
-    tall = max(np.ptp(corners @ up), np.ptp(corners @ right) / ASPECT)
+    rows = corners.reshape(-1, 3)
+    tall = max(np.ptp(rows @ up), np.ptp(rows @ right) / ASPECT)
     return seen * math.sqrt((front * cosines).sum()) / (float(tall) or 1.0)
 
 
@@ -185,25 +194,30 @@ def _spread(values: Array, weights: Array) -> float:
     return float(np.sqrt((weights * (values - mean) ** 2).sum() / total))
 
 
-def _in_front(corners: Array, way: Array) -> Bools:
-    """Return whether an eye at infinity sees the middle of each triangle."""
-    right, up = _plane(way)
+def _places(corners: Array) -> Array:
+    """Return the middles of triangles, and after them places of these that hide what is behind."""
     middles = corners.mean(axis=1)
     # Large triangles hide what is behind more than their middles.
     count = math.ceil(SPLATS / max(len(corners), 1))
     shares = np.random.default_rng(0).dirichlet(np.ones(3), count)
-    places = np.concatenate([middles, np.einsum("sk,nkx->nsx", shares, corners).reshape(-1, 3)])
-    flat = np.stack([places @ right, places @ up], axis=1)
-    size = max(np.ptp(flat, axis=0)) or 1.0
-    x, y = np.round((flat - flat.min(axis=0)) / size * (PIXELS - 1)).astype(np.int64).T + 1
+    return np.concatenate([middles, np.einsum("sk,nkx->nsx", shares, corners).reshape(-1, 3)])
+
+
+def _in_front(places: Array, count: int, way: Array) -> Bools:
+    """Return whether an eye at infinity sees the first of some places, which hide one another."""
+    flat = [places @ axis for axis in _plane(way)]
+    size = max(np.ptp(axis) for axis in flat) or 1.0
+    x, y = (
+        np.round((axis - axis.min()) / size * (PIXELS - 1)).astype(np.int64) + 1 for axis in flat
+    )
     nearest = np.full((PIXELS + 2, PIXELS + 2), -np.inf)
-    np.maximum.at(nearest, (x, y), places @ way)
+    pixel, depth = x * (PIXELS + 2) + y, places @ way
+    np.maximum.at(nearest.reshape(-1), pixel, depth)
     # Pixels that no place fell into are covered by their neighbours.
     nearest[1:-1] = np.maximum(np.maximum(nearest[:-2], nearest[2:]), nearest[1:-1])
     nearest[:, 1:-1] = np.maximum(np.maximum(nearest[:, :-2], nearest[:, 2:]), nearest[:, 1:-1])
     # Cells in neighbouring pixels differ by a slope of up to two.
-    count = len(corners)
-    front: Bools = middles @ way >= nearest[x[:count], y[:count]] - 4 * size / PIXELS
+    front: Bools = depth[:count] >= nearest.reshape(-1)[pixel[:count]] - 4 * size / PIXELS
     return front
 
 
@@ -226,7 +240,7 @@ def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     if not len(faces):
         return faces
-    share = np.abs(normals @ way) * _in_front(corners, way)
+    share = np.abs(normals @ way) * _in_front(_places(corners), len(corners), way)
     total = share.sum()
     if not total > 0:
         return faces[:0]

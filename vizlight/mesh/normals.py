@@ -25,7 +25,7 @@ from vizlight.vtk.cells import (
     triangles,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
-from vizlight.vtk.normals import Sided, computed_normals, given_normals, sided_normals
+from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
@@ -179,26 +179,39 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     ``"auto"`` is 30 degrees on a surface whose sharp edges are creases. All arrays go with the
     points; the mesh itself is not changed, and one that is split shares no memory with it.
     """
-    return split_or_normals(mesh, angle)[0]
+    if not has_faces(mesh) or not mesh.n_points:
+        return mesh
+    if angle == "auto":
+        # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
+        known = kept(mesh)
+        if not (creases(mesh) if known is None else known.sharp):
+            return mesh
+        angle = SHARP
+    # Not kept, as normals are: corners take more memory than a filter may.
+    split = _split(mesh, angle)
+    return mesh if split is None else _at(mesh, *split)
 
 
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
 ) -> tuple[pv.PolyData, Sided | None]:
-    """Return what :func:`split_edges` does, and the normals that told that nothing is split."""
+    """Return what :func:`split_edges` does, and its normals, None for a mesh without faces."""
+    split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
-        return mesh, None
-    if angle == "auto":
-        found = kept(mesh) or computed_normals(mesh)
-        # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
-        if not found.sharp:
-            return mesh, found
-        angle = SHARP
+        return split, None
+    return split, kept(split) or computed_normals(split, owner=mesh)
+
+
+def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices, Indices] | None:
+    """Return corners and ends of faces at points that are split, and what each point was.
+
+    None where nothing is split.
+    """
     ids, ends = _corners(mesh)
     twins = first_twins(blocks.cell_array(ids, ends))
     corners, origin, turned = split_faces(places(mesh), ids, ends, angle, twins)
     if len(origin) == mesh.n_points:
-        return mesh, None
+        return None
     if turned.any():
         # Pieces that are taken apart would not know that they had a side in common.
         size = np.diff(ends)
@@ -206,7 +219,7 @@ def split_or_normals(
         last = np.repeat(ends[:-1] + ends[1:] - 1, size)
         at = np.arange(len(ids))
         corners = corners[np.where(np.repeat(turned, size), last - at, at)]
-    return _at(mesh, corners, ends, origin), None
+    return corners, ends, origin
 
 
 def split_values(mesh: pv.PolyData, name: str) -> tuple[pv.PolyData, Indices]:

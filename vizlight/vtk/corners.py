@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.vtk.cells import connectivity, places, triangles
+from vizlight.vtk import loops
+from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
 from vizlight.vtk.topology import BLOCK, EDGES, components, double_cover
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -39,6 +40,10 @@ def corners_by_size(surface: vtkPolyData) -> Iterator[Indices]:
     if surface.GetNumberOfStrips():
         yield triangles(surface)
         return
+    size = surface.GetPolys().IsHomogeneous()
+    if size > 2:
+        yield as_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, size)
+        return
     for _, corners in _by_size(*connectivity(surface.GetPolys())):
         yield corners
 
@@ -46,7 +51,10 @@ def corners_by_size(surface: vtkPolyData) -> Iterator[Indices]:
 def _by_size(ids: Indices, ends: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Yield the faces of three corners or more that have equally many, and their corners."""
     size = np.diff(ends)
-    for s in np.unique(size[size > 2]):
+    # Mostly all faces have equally many corners, which a pass tells that is faster than a sort.
+    alike = len(size) > 0 and size.min() == size.max()
+    kinds = size[:1] if alike else np.unique(size)
+    for s in kinds[kinds > 2]:
         faces = np.flatnonzero(size == s)
         whole = len(faces) == len(size)
         yield faces, ids.reshape(-1, s) if whole else ids[ends[faces, np.newaxis] + np.arange(s)]
@@ -72,9 +80,19 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
         Unit normals, zero at points of no face, or of faces without area.
     """
     total = np.zeros((3, len(points)))
+    by_points = np.zeros(0)
     for corners in faces:
+        if loops.add_corners.pays(loops.CORNER_SAVED * corners.size):
+            by_points = by_points if len(by_points) else np.zeros(total.size)
+            loops.add_corners(
+                by_points, np.ascontiguousarray(points).reshape(-1), corners.reshape(-1),
+                corners.shape[1], FLAT, LEAST,
+            )  # fmt: skip
+            continue
         for block in _pool.blocks(len(corners), max(CORNERS // max(corners.shape[1], 1), 1)):
             _add(total, points, corners[block])
+    if len(by_points):
+        total += by_points.reshape(-1, 3).T
     return np.ascontiguousarray(kernels.unit(total)[0].T, dtype=np.float32)
 
 
@@ -217,10 +235,12 @@ def split_faces(
         # them.
         cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         smooth = np.where(against, cosine, -cosine) > least
-        # Both corners of a pair are at the same point, so that each point is split by itself.
-        joins = np.sort([one[smooth], other[smooth]], axis=0)
-        root[own] = own[components(joins[0], joins[1], len(own))]
         alike = alike and bool(against[sided(a, b)].all())
+        # Both corners of a pair are at the same point, so that each point is split by itself.
+        a, b = one[smooth], other[smooth]
+        root[own] = own[
+            components(np.minimum(a, b), np.maximum(a, b), len(own), kind=root.dtype.type)
+        ]
     if twins is not None:
         # A twin may begin at another corner or run the other way round: only the first face of its
         # points and the point itself tell which corner goes with which.
@@ -250,9 +270,12 @@ def _neighbours(
     Places of the two faces' corners per pair, the two faces, and whether these are wound alike. By
     ranges of points: a sort of all edges at once would take more memory.
     """
+    sizes = np.diff(ends)
+    size = int(sizes[0]) if len(sizes) and sizes.min() == sizes.max() else 0
     for block in _pool.blocks(count, EDGES // 16):
         own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
-        face = np.searchsorted(ends, own, side="right") - 1
+        # With as many corners each, faces begin at regular places.
+        face = own // size if size else np.searchsorted(ends, own, side="right") - 1
         begin, end = ends[face], ends[face + 1]
         after = ids[np.where(own + 1 < end, own + 1, begin)]
         before = ids[np.where(own > begin, own, end) - 1]
@@ -269,9 +292,11 @@ def _neighbours(
         key, rows = key[order], rows[order]
         new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
         pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
-        one, other = rows[pair] % len(own), rows[pair + 1] % len(own)
+        one, other = rows[pair], rows[pair + 1]
+        ahead, onward = one < len(own), other < len(own)
+        one, other = np.where(ahead, one, one - len(own)), np.where(onward, other, other - len(own))
         # Faces that are wound alike run along their common edge against each other.
-        against = (rows[pair] < len(own)) != (rows[pair + 1] < len(own))
+        against = ahead != onward
         yield own, one, other, face[one], face[other], against
 
 
@@ -317,7 +342,64 @@ def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]
 NEAR = 1e-3
 
 
-def joined(points: Raw, surface: vtkPolyData) -> Indices | None:
+class Slivers(NamedTuple):
+    """Short sides of triangles.
+
+    Attributes
+    ----------
+    lower, upper : ndarray of int, shape (n,)
+        Ends of the sides.
+    squares : ndarray, shape (n,)
+        Square of the longest side of the triangle of each.
+    """
+
+    lower: Indices
+    upper: Indices
+    squares: Array
+
+
+def slivers_of(rows: Indices, squares: Sequence[Array], longest: Array) -> Slivers:
+    """Return the sides of triangles of at most :data:`NEAR` of the longest.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (n, 3)
+        Corners.
+    squares : sequence of ndarray
+        Squares of the side before each corner.
+    longest : ndarray, shape (n,)
+        Largest of them.
+    """
+    limit = NEAR * NEAR * longest
+    near = [np.flatnonzero(square <= limit) for square in squares]
+    one = np.concatenate([rows[at, i] for i, at in enumerate(near)])
+    other = np.concatenate([rows[at, i - 1] for i, at in enumerate(near)])
+    return Slivers(np.minimum(one, other), np.maximum(one, other), longest[np.concatenate(near)])
+
+
+def faces_of_three(surface: vtkPolyData) -> Indices:
+    """Return the corners of the polygons of three corners, shape (n, 3)."""
+    ids, offsets = connectivity(surface.GetPolys())
+    first = offsets[:-1][np.diff(offsets) == 3]
+    found: Indices = ids[first[:, np.newaxis] + np.arange(3)]
+    return found
+
+
+def all_slivers(points: Raw, triangles: Indices) -> list[Slivers]:
+    """Return the slivers among triangles."""
+    found = []
+    for block in _pool.blocks(len(triangles), BLOCK):
+        rows = triangles[block]
+        corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
+        with np.errstate(invalid="ignore", over="ignore", under="ignore"):
+            sides = [corners[i] - corners[i - 1] for i in range(3)]
+            squares = [kernels.dot(side, side) for side in sides]
+            longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
+            found.append(slivers_of(rows, squares, longest))
+    return found
+
+
+def joined(points: Raw, found: list[Slivers]) -> Indices | None:
     """Return the first of the points that slivers join with each.
 
     A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
@@ -327,27 +409,13 @@ def joined(points: Raw, surface: vtkPolyData) -> Indices | None:
     Parameters
     ----------
     points : ndarray, shape (n_points, 3)
-    surface : vtkPolyData
+    found : list of Slivers
 
     Returns
     -------
     ndarray of int, shape (n_points,), or None
         None where no points are joined.
     """
-    ids, offsets = connectivity(surface.GetPolys())
-    first = offsets[:-1][np.diff(offsets) == 3]
-    found: list[tuple[Indices, Indices, Array]] = []
-    for block in _pool.blocks(len(first), BLOCK):
-        rows = np.stack([ids[first[block] + i] for i in range(3)], axis=1)
-        corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
-        with np.errstate(invalid="ignore", over="ignore", under="ignore"):
-            sides = [corners[i] - corners[i - 1] for i in range(3)]
-            squares = [kernels.dot(side, side) for side in sides]
-            longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
-            for i, square in enumerate(squares):
-                near = np.flatnonzero(square <= NEAR * NEAR * longest)
-                one, other = rows[near, i], rows[near, i - 1]
-                found.append((np.minimum(one, other), np.maximum(one, other), longest[near]))
     if not found:
         return None
     lower, upper, longest = (np.concatenate(each) for each in zip(*found, strict=True))

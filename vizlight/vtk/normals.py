@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,9 +18,11 @@ from vizlight.vtk import hull
 from vizlight.vtk.arrays import vectors_of
 from vizlight.vtk.cells import (
     as_numpy,
+    bare_faces,
     connectivity,
     faces_only,
     finite_faces,
+    first_twins,
     has_faces,
     places,
     triangles,
@@ -27,14 +30,17 @@ from vizlight.vtk.cells import (
 )
 from vizlight.vtk.corners import (
     SHARP,
+    all_slivers,
     common_normals,
     corner_normals,
     corners_by_size,
     crease_share,
+    faces_of_three,
     joined,
     surface_normals,
 )
 from vizlight.vtk.hull import dimension, scattered, surface_of
+from vizlight.vtk.memory import once
 from vizlight.vtk.orientation import (
     MOST_LEAN,
     PartShape,
@@ -383,6 +389,7 @@ def computed_normals(
     as_wound: bool = False,
     sides: bool = True,
     told: Told | None = None,
+    owner: vtkPolyData | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
@@ -407,12 +414,42 @@ def computed_normals(
         Whether lean and share of sharp edges are found.
     told : Told, optional
         What the whole, of which this is a part, decides of the pieces.
+    owner : vtkPolyData, optional
+        Surface as long as whose points the normals are kept; by default the mesh.
 
     Raises
     ------
     ValueError
         If the mesh has no surface.
+
+    Notes
+    -----
+    Normals of a surface with the defaults are computed once, see :func:`~vizlight.vtk.memory.once`,
+    and may not be changed.
     """
+    if view is None and sides and told is None and not as_wound:
+        return once(mesh, "normals", lambda: _frozen(_computed(mesh)), owner)
+    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told)
+
+
+def _frozen(sided: Sided) -> Sided:
+    """Return normals whose arrays cannot be written."""
+    for array in (sided.vectors, sided.lean, sided.open):
+        if isinstance(array, np.ndarray):
+            array.setflags(write=False)
+    return sided
+
+
+def _computed(
+    mesh: Dataset,
+    *,
+    view: View | None = None,
+    as_wound: bool = False,
+    sides: bool = True,
+    told: Told | None = None,
+    outer: Outer | None = None,
+) -> Sided:
+    """Compute normals; see :func:`computed_normals`."""
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
@@ -421,7 +458,7 @@ def computed_normals(
     part = None if told is None else told.side
     # First normals that agree with each other on each piece, then the side of each piece as a
     # whole.
-    found = wound_normals(mesh, as_wound=as_wound, side=part)
+    found = wound_normals(mesh, as_wound=as_wound, side=part, outer=outer)
     if found is None and is_scan(mesh):
         return _of_cloud(mesh, view)
     if found is None:
@@ -461,6 +498,7 @@ def wound_normals(
     *,
     as_wound: bool = False,
     side: NDArray[np.int8] | None = None,
+    outer: Outer | None = None,
 ) -> tuple[Shape, Array, Indices | None, Indices | None] | None:
     """Return the outer surface of a mesh and the normals of its points, None where it has none.
 
@@ -468,32 +506,86 @@ def wound_normals(
     the first of the points that slivers join with each, None where there are no slivers, and the
     point of the mesh that each point of the surface is, None for a surface.
 
-    With ``side`` the mesh is a part of another, see :attr:`Shape.side`.
+    With ``side`` the mesh is a part of another, see :attr:`Shape.side`. ``outer`` is
+    :func:`outer_shape` where that is known.
     """
-    surface, origin = _skin(mesh)
-    if surface is None:
+    outer = outer or outer_shape(mesh, side)
+    if outer is None:
+        return None
+    shape, surface, origin = outer
+    wound = _wound(surface, shape, as_wound=as_wound)
+    vectors = surface_normals(wound)
+    if shape.seam.any() and not as_wound:
+        _mend_seams(wound, shape, vectors)
+    # Isosurfaces have points a rounding apart; each would have the normal of its own sliver.
+    slivers = shape.slivers
+    if not shape.triangular:
+        slivers = all_slivers(shape.points, faces_of_three(surface))
+    first = joined(shape.points, slivers)
+    if first is not None:
+        least = float(np.cos(np.radians(SHARP)))
+        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
+        # The faces around joined points meet at the first of them, where the survey then looks at
+        # all of them for one lean.
+        shape.join(first)
+    return shape, vectors, first, origin
+
+
+class Outer(NamedTuple):
+    """The outer surface of a mesh.
+
+    Attributes
+    ----------
+    shape : Shape
+    surface : vtkPolyData
+        Its faces.
+    origin : ndarray of int, or None
+        Point of the mesh that each point of the surface is, None for a surface.
+    """
+
+    shape: Shape
+    surface: vtkPolyData
+    origin: Indices | None
+
+
+def outer_shape(mesh: Dataset, side: NDArray[np.int8] | None = None) -> Outer | None:
+    """Return the outer surface of a mesh, None where it has none; see :func:`wound_normals`."""
+    if side is None:
+        surface, origin = surface_of(mesh)
+        if not has_faces(surface):
+            return None
+        # Faces that are there twice are rare, and the edges tell that there are none.
+        bare = finite_faces(bare_faces(surface))
+        shape = Shape(bare)
+        if not shape.doubtful or first_twins(surface.GetPolys()) is None:
+            return Outer(shape, bare, origin)
+    skin, origin = _skin(mesh)
+    if skin is None:
         return None
     if side is not None and origin is not None:
         # From here on the points are those of the surface, which may have others or another order.
         side = side[origin]
         if dimension(mesh) == 3:
             # Where the part is cut from the others faces arise that join what is apart.
-            outer = finite_faces(surface, side == 0)
-            surface = outer if has_faces(outer) else surface
-    shape = Shape(surface, side)
-    wound = _wound(surface, shape, as_wound=as_wound)
-    vectors = surface_normals(wound)
-    if shape.seam.any() and not as_wound:
-        _mend_seams(wound, shape, vectors)
-    # Isosurfaces have points a rounding apart; each would have the normal of its own sliver.
-    first = joined(shape.points, surface)
-    if first is not None:
-        least = float(np.cos(np.radians(SHARP)))
-        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
-        # The faces around joined points meet at the first of them, where the survey then looks at
-        # all of them for one lean.
-        shape.triangles = first[shape.triangles]
-    return shape, vectors, first, origin
+            around = finite_faces(skin, side == 0)
+            skin = around if has_faces(around) else skin
+    return Outer(Shape(skin, side), skin, origin)
+
+
+def creases(mesh: vtkPolyData) -> float:
+    """Return the share of edges that are creases, see :func:`~.corners.crease_share`.
+
+    Where there are none normals are computed beside it, and found by :func:`computed_normals`.
+    """
+    return once(mesh, "creases", lambda: _creases(mesh))
+
+
+def _creases(mesh: vtkPolyData) -> float:
+    outer = outer_shape(mesh)
+    share = 0.0 if outer is None else crease_share(outer.shape.edges)
+    if not share:
+        once(mesh, "normals", lambda: _frozen(_computed(mesh, outer=outer)))
+    return share
 
 
 def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
@@ -608,17 +700,29 @@ def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData
     """
     if as_wound or shape.alike:
         return surface
-    rewind = vtkPolyDataNormals()
-    # Split points would be new ones, and the faces no longer those of the points here.
-    rewind.SplittingOff()
-    # Across an edge of three faces or more there is no winding to carry on.
-    rewind.NonManifoldTraversalOff()
+    rewind = _orienter()
     rewind.SetInputData(surface)
     rewind.Update()
     found: vtkPolyData = rewind.GetOutput()
     if not _same_cells(surface, found):
         shape.rewind(found)
     return found
+
+
+def _orienter() -> Foreign:
+    """Return a filter of VTK that winds faces alike, the one without normals where VTK has it."""
+    orient: Foreign = vtkPolyDataNormals()
+    # Split points would be new ones, and the faces no longer those of the points here.
+    orient.SplittingOff()
+    # ParaView's VTK may be older than the one of 9.4 that brought the other class.
+    with contextlib.suppress(ImportError):
+        from vtkmodules.vtkFiltersCore import vtkOrientPolyData
+
+        orient = vtkOrientPolyData()
+        orient.AutoOrientNormalsOff()
+    # Across an edge of three faces or more there is no winding to carry on.
+    orient.NonManifoldTraversalOff()
+    return orient
 
 
 def _inside_out(surface: vtkPolyData) -> bool:

@@ -9,8 +9,9 @@ import numpy as np
 
 from vizlight import _pool
 from vizlight.model import kernels
-from vizlight.vtk.cells import faces, places, triangles
-from vizlight.vtk.corners import SHARP
+from vizlight.vtk import loops
+from vizlight.vtk.cells import faces, finite_points, places, triangles
+from vizlight.vtk.corners import NEAR, SHARP, Slivers, all_slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 NEARLY_CLOSED = 0.2
 #: Least height of a triangle that has a direction, as a share of its longest side.
 NARROWEST = 1e-5
+#: Number of corners of a triangle.
+CORNERS = 3
+#: Number of triangles that are worked on at once, such that their corners fit in the cache.
+FEW = 1 << 14
 #: Most that a normal may lean, as a sine, but on height fields. Where faces around a point differ
 #: by more, its surface is too rough or too coarse to tell bumps from hollows: of the pixels of a
 #: noisy isosurface, lit from the side, 26 % are off by more than a tenth of white without the
@@ -103,9 +108,13 @@ class Shape:
         #: points of the one before. Cells belong to the part in which they begin.
         self.side = side
         self.points = places(surface)
-        self.finite: Bools = np.all(np.isfinite(self.points), axis=1)
+        self.finite = finite_points(self.points)
         self.triangles = triangles(surface)
-        self._start_count()
+        #: Number of edges of two faces, and of sharp ones by three limits.
+        self.edges = np.zeros(4, dtype=np.intp)
+        #: Whether faces may be there twice: these are folded upon each other.
+        self.doubtful = False
+        self._find_directions()
         self._find_pieces(surface)
 
     def _find_pieces(self, surface: vtkPolyData) -> None:
@@ -114,7 +123,12 @@ class Shape:
         found = topology(self.triangles, self.points, own, self._count)
         self.piece, self.open, self.alike, folded, self.same = found
         # A polygon and a strip have two triangles less than corners.
-        if len(self.triangles) != sum(len(ids) - 2 * len(ends) for ids, ends in faces(surface)):
+        self.triangular = (
+            not surface.GetNumberOfStrips() and surface.GetPolys().IsHomogeneous() == CORNERS
+        )
+        if not self.triangular and len(self.triangles) != sum(
+            len(ids) - 2 * len(ends) for ids, ends in faces(surface)
+        ):
             # A polygon that cannot be split is wound in a way that is not known.
             self.alike = False
         self.count = len(self.open)
@@ -123,8 +137,14 @@ class Shape:
     def rewind(self, surface: vtkPolyData) -> None:
         """Take the faces of a surface at the same points that are wound in another way."""
         self.triangles = triangles(surface)
+        self._find_directions()
         edges = sorted_edges(self.triangles, len(self.points), self.same)
         self._note_folded([part.folded() for part in edges])
+
+    def join(self, first: Indices) -> None:
+        """Let the faces around points that are joined meet at the first of them."""
+        self.triangles = first[self.triangles]
+        self._find_directions()
 
     def _note_folded(self, folded: list[Indices]) -> None:
         """Note the pieces whose faces have no common side, as in a Klein bottle, and where."""
@@ -136,18 +156,30 @@ class Shape:
         if self.same is not None:
             self.seam = self.seam[self.same]
 
-    def _start_count(self) -> None:
-        """Find the directions of the triangles, between which :meth:`_count` counts sharp edges."""
+    def _find_directions(self) -> None:
+        """Find the directions of the triangles, and which of them have one."""
         self._unit = np.zeros((3, len(self.triangles)), dtype=np.float32)
         self._full = np.zeros(len(self.triangles), dtype=np.bool_)
-        #: Number of edges of two faces, and of sharp ones by three limits.
-        self.edges = np.zeros(4, dtype=np.intp)
-        for block in _pool.blocks(len(self.triangles), BLOCK):
-            corners = [self.points.take(at, axis=0).T for at in self.triangles[block].T]
+        #: Short sides of the triangles.
+        self.slivers: list[Slivers] = []
+        if loops.find_directions.pays(loops.DIRECTION_SAVED * len(self.triangles)):
+            count = loops.find_directions(
+                self._unit, self._full, np.ascontiguousarray(self.points).reshape(-1),
+                self.triangles.reshape(-1), NARROWEST, NEAR,
+            )  # fmt: skip
+            self.slivers = all_slivers(self.points, self.triangles) if count else []
+            return
+        for block in _pool.blocks(len(self.triangles), FEW):
+            rows = self.triangles[block]
+            corners = [self.points.take(at, axis=0).T for at in rows.T]
             a, b, c = (at.astype(np.float64) for at in corners)
+            sides = a - c, b - a, c - b
             with np.errstate(all="ignore"):
-                self._unit[:, block], size = kernels.unit(kernels.cross(b - a, c - a))
-                self._full[block] = _wide(size, b - a, c - a, c - b)
+                self._unit[:, block], size = kernels.unit(kernels.cross(sides[1], c - a))
+                squares = [kernels.dot(side, side) for side in sides]
+                longest = np.maximum.reduce(squares)
+                self._full[block] = size > NARROWEST * longest
+                self.slivers.append(slivers_of(rows, squares, longest))
 
     def _count(self, edges: SortedEdges) -> None:
         """Count edges of two faces, and sharp ones.
@@ -161,6 +193,8 @@ class Shape:
         # The limits of corners, of sharp edges and of nearly sharp ones; 2.0 below counts all
         # edges.
         least = np.cos(np.radians([2 * SHARP, SHARP, SHARP / 2]))
+        # Edges of three faces.
+        self.doubtful |= bool(np.any(first[1:] == first[:-1] + 1))
         for block in _pool.blocks(len(first), BLOCK):
             at = first[block]
             # Corners are numbered triangle by triangle.
@@ -170,7 +204,9 @@ class Shape:
             against = edges.forward[at] != edges.forward[at + 1]
             cosine = kernels.dot(self._unit.take(one, axis=1), self._unit.take(other, axis=1))
             cosine = np.where(against, cosine, -cosine)
-            self.edges += [np.count_nonzero(full & (cosine < beyond)) for beyond in (2.0, *least)]
+            found = [np.count_nonzero(full & (cosine < beyond)) for beyond in (2.0, *least)]
+            self.edges += found
+            self.doubtful |= bool(found[0] < len(full) or found[1])
 
     @cached_property
     def frame(self) -> tuple[Array, float]:
@@ -222,37 +258,56 @@ class Shape:
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
-        for block in _pool.blocks(len(self.triangles), BLOCK):
+        middle, largest = self.frame
+        if self.side is None and loops.survey.pays(loops.SURVEY_SAVED * len(self.triangles)):
+            found = np.zeros((self.count, 5))
+            loops.survey(
+                found, bend, least, np.ascontiguousarray(self.points).reshape(-1),
+                self.triangles.reshape(-1), np.ascontiguousarray(normals).reshape(-1),
+                self.finite, self._full, piece, middle.T, largest,
+            )  # fmt: skip
+            sums = Sums(sums.score, found[:, 2:], found[:, 1], found[:, 0])
+            return sums, self._lean(bend, least)
+        for block in _pool.blocks(len(self.triangles), FEW):
             rows: Indices = self.triangles[block]
+            wide = self._full[block]
             if not self.all_finite:
-                rows = rows[self.finite[rows].all(axis=1)]
+                known = self.finite[rows].all(axis=1)
+                rows, wide = rows[known], wide[known]
             corners = [np.ascontiguousarray(at) for at in rows.T]
-            a, b, c = (self.away(at) for at in corners)
+            a, b, c = (self.points.take(at, axis=0).T.astype(np.float64) for at in corners)
             u, v = b - a, c - a
+            u /= largest
+            v /= largest
             across = kernels.cross(u, v)
             unit, size = kernels.unit(across)
-            wide = _wide(size, u, v, c - b)
             own = slice(None)
             if self.side is not None:
                 own = self.side[rows].min(axis=1) == 0
-            sums.add(piece[corners[0][own]], a[:, own], across[:, own], size[own])
+            start = corners[0][own]
+            sums.add(piece[start], self.away(start), across[:, own], size[own])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
                 normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
                 with np.errstate(invalid="ignore"):
                     # The direction of a sliver is rounding, which must not count as a face that is
                     # averted.
-                    cosine = np.where(wide, kernels.dot(normal, unit), 1.0)
+                    cosine = kernels.dot(normal, unit)
+                    cosine[~wide] = 1.0
                     np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
+        return sums, self._lean(bend, least)
+
+    def _lean(self, bend: Array, least: Array) -> Array:
+        """Return what :meth:`survey` does, in the place of the least cosines."""
         lean = least
-        for block in _pool.blocks(n, BLOCK):
+        for block in _pool.blocks(len(least), BLOCK):
             near = least[block]
             sine = np.where(near > 0, np.sqrt(np.clip(1 - near * near, 0, 1)), 1)
             bent = bend[block]
             # Where the surroundings of a point lie above its tangent plane the surface is concave.
             lean[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
-        return sums, lean
+        return lean
 
     def orient(self, normals: Array, sums: Sums, lean: Array, view: View | None) -> None:
         """Flip normals, with their lean, of pieces where they point inward or away from the eye."""
@@ -292,13 +347,6 @@ def toward_eye(view: View, points: Raw) -> Array:
         return np.array(view.direction, dtype=np.float64)[:, np.newaxis]
     eye = np.array(view.position, dtype=np.float64)[:, np.newaxis]
     return np.asarray(eye - np.asarray(points).T.astype(np.float64))
-
-
-def _wide(size: Array, *sides: Array) -> Bools:
-    """Return which triangles have a direction, given the lengths of their area vectors."""
-    longest = np.maximum.reduce([kernels.dot(side, side) for side in sides])
-    found: Bools = size > NARROWEST * longest
-    return found
 
 
 class PartShape(Shape):
@@ -347,7 +395,14 @@ def sides_of(
         middle = middles(vectors, piece, border, total)
         for block in _pool.blocks(len(vectors), BLOCK):
             own, of = _normals_of(vectors, piece, block, border)
-            for i, along in enumerate((np.einsum("ij,ij->i", own, middle[of]), *own.T)):
+            if not len(own):
+                continue
+            toward = middle[of] if len(middle) > 1 else middle
+            for i, along in enumerate((np.einsum("ij,ij->i", own, toward), *own.T)):
+                if len(middle) == 1:
+                    low[i] = min(low[i, 0], along.min())
+                    high[i] = min(high[i, 0], -along.max())
+                    continue
                 np.minimum.at(low[i], of, along)
                 np.minimum.at(high[i], of, -along)
         found = ((low > 0) | (high > 0)).any(axis=0) & np.isfinite(low[0])
@@ -361,8 +416,15 @@ def _normals_of(
     """Return the normals of some points of the pieces with a border, and their pieces."""
     own = vectors[rows]
     of = np.zeros(len(own), dtype=np.intp) if piece is None else piece[rows]
-    has = np.isfinite(own).all(axis=1) & own.any(axis=1) & border[of]
-    return own[has].astype(np.float64), of[has]
+    x, y, z = own.T
+    has = (x != 0) | (y != 0) | (z != 0)
+    if not np.isfinite(own).all():
+        has &= np.isfinite(own).all(axis=1)
+    if not border.all():
+        has &= border[of]
+    if not has.all():
+        own, of = own[has], of[has]
+    return own.astype(np.float64), of
 
 
 def middles(
@@ -377,7 +439,10 @@ def middles(
     total = np.zeros((len(border), 3)) if total is None else total
     for block in () if known else _pool.blocks(len(vectors), BLOCK):
         own, of = _normals_of(vectors, piece, block, border)
-        total += np.stack([np.bincount(of, axis, len(border)) for axis in own.T], axis=1)
+        if len(border) == 1:
+            total += own.sum(axis=0)
+        else:
+            total += np.stack([np.bincount(of, axis, len(border)) for axis in own.T], axis=1)
     middle = kernels.unit_rows(total)
     some = slice(None, None, max(len(vectors) // SEARCHED, 1))
     own, of = _normals_of(vectors, piece, some, border)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
+from vizlight.vtk import loops
 from vizlight.vtk.cells import firsts, mixed, places, triangles
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    from vizlight._types import Bools, Indices, Raw
+    from vizlight._types import Bools, Indices, Raw, Slice
 
 
 #: Least number of edges that are sorted at once, and largest number of parts of these.
@@ -95,39 +96,52 @@ def sorted_edges(
         for block in blocks:
             rows = corners[block] if same is None else same[corners[block]]
             ranges.append((int(rows.min()), int(rows.max())))
+    compiled = loops.sort_edges.pays(loops.EDGE_SAVED * corners.size)
+    flat = (corners if same is None or not compiled else same[corners]).reshape(-1)
     for part in range(parts):
         low, high = part * count // parts, (part + 1) * count // parts
-        keys, places, forward = [], [], []
-        for number, block in enumerate(blocks):
-            # A block of triangles whose points all lie beside this range has no edge in it.
-            if ranges and not (ranges[number][0] < high and ranges[number][1] >= low):
-                continue
-            rows = corners[block] if same is None else same[corners[block]]
-            a = rows.ravel()
-            # An edge ends at the next corner of its triangle, the third one at the first corner.
-            b = np.empty_like(a)
-            b[:-1], b[2::3] = a[1:], a[::3]
-            lower = np.minimum(a, b)
-            kept = a != b
-            if parts > 1:
-                kept &= (lower >= low) & (lower < high)
-            place = np.arange(3 * block.start, 3 * block.stop)
-            if not kept.all():
-                a, b, lower, place = a[kept], b[kept], lower[kept], place[kept]
-            # Both ends in one integer: a plain sort puts the faces of an edge side by side,
-            # whichever way each of them runs along it.
-            keys.append(lower.astype(np.int64) << 32 | np.maximum(a, b))
-            places.append(place)
-            forward.append(lower == a)
-        if keys:
-            key = np.concatenate(keys)
-            # The pieces are freed before the sort takes memory of its own.
-            keys.clear()
-            # Keys of neighbouring faces are in order, which other sorts do not use.
-            order = np.argsort(key, kind="stable")
-            yield SortedEdges(
-                key[order], np.concatenate(places)[order], np.concatenate(forward)[order]
-            )
+        # A block of triangles whose points all lie beside this range has no edge in it.
+        near = [
+            block
+            for number, block in enumerate(blocks)
+            if not ranges or (ranges[number][0] < high and ranges[number][1] >= low)
+        ]
+        if near and compiled:
+            spans = np.array([(block.start, block.stop) for block in near])
+            yield SortedEdges(*loops.sort_edges(flat, spans, low, high))
+        elif near:
+            yield _sorted(corners, same, near, (low, high) if parts > 1 else None)
+
+
+def _sorted(
+    corners: Indices, same: Indices | None, blocks: list[Slice], ends: tuple[int, int] | None
+) -> SortedEdges:
+    """Return the edges of some triangles, with a range those whose lower end is in it."""
+    keys, places, forward = [], [], []
+    for block in blocks:
+        rows = corners[block] if same is None else same[corners[block]]
+        a = rows.ravel()
+        # An edge ends at the next corner of its triangle, the third one at the first corner.
+        b = np.empty_like(a)
+        b[:-1], b[2::3] = a[1:], a[::3]
+        lower = np.minimum(a, b)
+        kept = a != b
+        if ends is not None:
+            kept &= (lower >= ends[0]) & (lower < ends[1])
+        place = np.arange(3 * block.start, 3 * block.stop)
+        if not kept.all():
+            a, b, lower, place = a[kept], b[kept], lower[kept], place[kept]
+        # Both ends in one integer: a plain sort puts the faces of an edge side by side, whichever
+        # way each of them runs along it.
+        keys.append(lower.astype(np.int64) << 32 | np.maximum(a, b))
+        places.append(place)
+        forward.append(lower == a)
+    key = np.concatenate(keys)
+    # The pieces are freed before the sort takes memory of its own.
+    keys.clear()
+    # Keys of neighbouring faces are in order, which other sorts do not use.
+    order = np.argsort(key, kind="stable")
+    return SortedEdges(key[order], np.concatenate(places)[order], np.concatenate(forward)[order])
 
 
 def topology(

@@ -1,0 +1,87 @@
+"""What was found out of a surface, kept as long as its points are."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from vtkmodules.vtkCommonCore import vtkWeakReference
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from vizlight.shading.results import digest
+from vizlight.vtk.cells import POLYDATA, as_numpy, places
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeVar
+
+    from vizlight._types import Dataset
+
+    T = TypeVar("T")
+
+#: Number of things that are kept at most, the last ones.
+MOST = 1 << 8
+
+
+class _Kept(NamedTuple):
+    """A value, and the points as long as which it is kept."""
+
+    points: vtkWeakReference
+    value: object
+
+
+_KEPT: dict[tuple[str, ...], _Kept] = {}
+_LOCK = threading.Lock()
+
+
+def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData | None = None) -> T:
+    """Return what a function computes of the points and cells of a surface, computed once.
+
+    It is kept for any mesh of the same points and cells, until the points of the surface are
+    deleted, and nobody may change it.
+
+    Parameters
+    ----------
+    mesh : vtkDataSet
+        Surface; for another kind of mesh nothing is kept.
+    name : str
+        Name of what is computed.
+    compute : callable
+        Function without arguments that computes it of points and cells alone.
+    owner : vtkPolyData, optional
+        Surface in place of the mesh whose points bound the time.
+    """
+    if not isinstance(mesh, vtkPolyData):
+        return compute()
+    # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
+    key = name, *_digests(mesh)
+    with _LOCK:
+        found = _KEPT.get(key)
+    if found is not None:
+        return cast("T", found.value)
+    value = compute()
+    points = vtkWeakReference()
+    points.Set((mesh if owner is None else owner).GetPoints())
+    with _LOCK:
+        for old in [old for old, kept in _KEPT.items() if kept.points.Get() is None]:
+            del _KEPT[old]
+        while len(_KEPT) >= MOST:
+            del _KEPT[next(iter(_KEPT))]
+        _KEPT[key] = _Kept(points, value)
+    return value
+
+
+def _digests(mesh: vtkPolyData) -> list[str]:
+    """Return digests of the points and of the cells of each kind."""
+    points = places(mesh)
+    found = [points.dtype.str, digest(points)]
+    for count, cells in POLYDATA:
+        if count(mesh):
+            own = cells(mesh)
+            size = own.IsHomogeneous()
+            found.append(digest(as_numpy(own.GetConnectivityArray())))
+            # Cells of one size need no offsets, which VTK may hold as a rule alone.
+            found.append(f"{size}" if size > 0 else digest(as_numpy(own.GetOffsetsArray())))
+        else:
+            found.append("")
+    return found
