@@ -264,7 +264,7 @@ def drawn_triangles(surface: vtkPolyData) -> tuple[Indices, Indices]:
     number = np.append(
         np.flatnonzero(~is_quad), len(is_quad) + np.arange(surface.GetNumberOfStrips())
     )
-    rest = _faces(surface, ~is_quad)
+    rest = bare_faces(surface, ~is_quad)
     rest.GetCellData().AddArray(as_vtk(number, "number"))
     split = vtkTriangleFilter()
     split.SetInputData(rest)
