@@ -117,3 +117,25 @@ def test_a_line_that_is_mixed_with_the_background_is_unmixed():
     np.testing.assert_allclose(found.lab[0], eye.lab(RED), atol=1)
     assert np.linalg.norm(seen.colors[30, 31] - eye.lab(RED)) > 10
     assert found.deviation[0, 1] > 1.2 * found.deviation[0, 0] > 0.3
+
+
+def test_a_disc_has_the_share_of_the_filter_over_it():
+    looking = Eye.at(400, 60, 400, 0)
+    y, x = np.mgrid[:401, :401] - 200.0
+    for width in (4.0, 21.0, 120.0):
+        disc = np.repeat((np.hypot(x, y) <= width / 2)[..., np.newaxis].astype(float), 3, axis=2)
+        found = looking.filtered(disc)[200, 200]
+        np.testing.assert_allclose(looking.share(width), found, atol=0.03)
+
+
+def test_pixels_of_a_group_have_their_mean_in_linear_light():
+    picture = np.zeros((6, 8, 3))
+    picture[:, 4:] = 1.0
+    seen = Eye.at(8, 60, 400, 0).look(picture, np.ones((6, 8), dtype=bool))
+    row, column = np.nonzero(np.ones((6, 8)))
+    found = seen.pooled(row[:16], column[:16], np.repeat([0, 1], 8))
+    before = eye.xyz_of_lab(seen.colors)
+    for line in (0, 1):
+        after = eye.xyz_of_lab(found.colors[line])
+        np.testing.assert_allclose(after, np.tile(before[line].mean(axis=0), (8, 1)), atol=1e-9)
+    assert np.array_equal(found.colors[2:], seen.colors[2:])

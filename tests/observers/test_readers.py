@@ -7,7 +7,7 @@ import pytest
 from vectors import unit
 
 from vizlight import Light, Material, Scene, View, presets
-from vizlight.observers import readers
+from vizlight.observers import eye, readers
 from vizlight.observers.eye import XYZ, lab, lab_of_xyz, linear, xyz_of_lab
 from vizlight.observers.readers import Colors
 from vizlight.observers.samples import Sample
@@ -316,3 +316,30 @@ def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
     np.testing.assert_allclose(lit, [[0.9] * 3, [0.1] * 3])
     bare = dataclasses.replace(sample, tangents=None)
     np.testing.assert_allclose(bare.light(None, normals), [[0.9] * 3, [0.1] * 3])
+
+
+def test_even_angles_tell_nothing_and_equal_ones_all_classes():
+    random = np.random.default_rng(0)
+    assert readers.sharpness(random.uniform(0, 90, 5000)) == pytest.approx(0, abs=0.01)
+    assert readers.sharpness(np.full(5000, 2.0)) == pytest.approx(np.log2(18), abs=0.01)
+    # Half of the classes are one bit less than all.
+    assert readers.sharpness(random.uniform(0, 45, 5000)) == pytest.approx(1, abs=0.01)
+
+
+def test_dark_colours_are_known_less_than_the_bright_ones_around_them():
+    class Seen:  # a picture of two pixels, half of each covered
+        colors = lab(np.full((1, 2, 3), 0.9))
+        cover = np.full((1, 2, 3), 0.5)
+        ground = eye.opponent(np.ones((1, 1, 3)))[0, 0]
+
+    at = np.zeros(2, dtype=int), np.arange(2)
+    found = readers.colors_at(Seen, *at, np.random.default_rng(0), 0.0)
+    # Half of the light is the background's, so that the thing itself has 2 Y - 1.
+    y = 2 * linear(np.array(0.9)) - 1
+    np.testing.assert_allclose(found.lab[:, 0], 116 * np.cbrt(y) - 16, atol=1e-6)
+    steeper = ((lab(np.full(3, 0.9))[0] + 16) / (116 * np.cbrt(y))) ** 2
+    np.testing.assert_allclose(found.deviation, eye.ROUNDING / 0.5 * steeper, rtol=1e-6)
+    # What is beside a point that has a quarter of the light adds half of what colours differ.
+    some = readers.colors_at(Seen, *at, np.random.default_rng(0), 0.0, np.full(3, 0.25))
+    own = found.deviation**2 + (0.5 * found.lab.std(axis=0)) ** 2
+    np.testing.assert_allclose(some.deviation**2, own, rtol=1e-6)
