@@ -264,6 +264,8 @@ def test_a_disc_softens_the_edge_and_keeps_the_middle():
 def test_in_place_again_and_the_users_own_array():
     grid, _ = grids()["ImageData"]
     assert relief_shadow(grid, SCENE, inplace=True) is grid
+    several = pv.MultiBlock([grid, grid.copy()])
+    assert relief_shadow(several, SCENE, inplace=True) is several
     first = np.array(grid["t"])
     relief_shadow(grid, SCENE, depth=0.5, elevation="height", inplace=True)
     assert not np.array_equal(first, grid["t"])

@@ -196,7 +196,8 @@ def relief_shadow(
     if isinstance(mesh, pv.MultiBlock):
         given: Keywords = asked.changed()
         given |= {"sun": sun, "progress_bar": progress_bar}
-        return blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
+        found = blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
+        return mesh if inplace else found
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
         mesh = blocks.surface(mesh, "mesh")
     check_whole(mesh, "mesh")
