@@ -108,3 +108,12 @@ def test_heights_in_kelvin_are_values():
     said.add_array("elevation", {"units": "K"})
     meaning.attach(image, said)
     assert Contents(image).arrays[0].role == "values"
+
+
+@pytest.mark.parametrize(("layers", "axis"), [(1, 2), (2, None)])
+def test_one_layer_of_cells_is_flat_though_it_is_thick(layers, axis):
+    grid = pv.ImageData(dimensions=(11, 11, layers + 1), spacing=(1, 1, 1.4 / layers))
+    grid = grid.cast_to_unstructured_grid()
+    assert Contents(grid).flat_axis == axis
+    thicker = pv.ImageData(dimensions=(11, 11, 2), spacing=(1, 1, 2)).cast_to_unstructured_grid()
+    assert Contents(thicker).flat_axis is None

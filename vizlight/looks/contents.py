@@ -24,8 +24,9 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 SAMPLE = 20_000
 #: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
 EQUAL = 0.5
-#: Extent across a flat surface, and across a slab of cells, as a share of its second side.
-FLAT, SLAB = 1e-6, 0.01
+#: Extent across a flat surface, across a slab of cells, and across one layer of them, as a share of
+#: the second side.
+FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
 #: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
 #: bounds, masks.
 _NO_DATUM = {
@@ -129,10 +130,21 @@ class Contents:
 
     @cached_property
     def flat_axis(self) -> int | None:
-        """Axis across which a surface or a slab has no extent, None where it has one."""
-        share = {2: FLAT, 3: SLAB}.get(self.dimension, -1.0)
+        """Axis across which a surface or a slab has no extent, None where it has one.
+
+        A slab of one layer of cells, as of a flow in two dimensions, may be thicker.
+        """
+        share = {2: FLAT, 3: LAYER}.get(self.dimension, -1.0)
         thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
-        return int(thin[-1]) if len(thin) else None
+        if not len(thin):
+            return None
+        axis = int(thin[-1])
+        if self.dimension == 2 or self.sides[axis] <= SLAB * np.sort(self.sides)[1]:
+            return axis
+        along: Array = np.asarray(self.mesh.points)[:, axis].astype(np.float64)
+        low, high = np.nanmin(along), np.nanmax(along)
+        between = (along > low + FLAT * (high - low)) & (along < high - FLAT * (high - low))
+        return None if between.any() else axis
 
     @cached_property
     def is_part(self) -> bool:

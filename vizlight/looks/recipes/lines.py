@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 
-#: Largest width of lines in pixels, and the share of a picture that they may fill.
-WIDEST, COVERED = 6.0, 0.08
+#: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a picture
+#: that they may fill.
+THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 
@@ -75,7 +76,7 @@ def _width(case: Case) -> float:
     columns, rows = case.wishes.size
     length = float(np.nansum(steps)) / (mesh.length or 1.0) * np.hypot(columns, rows)
     widest = COVERED * columns * rows / max(length, 1e-9)
-    return round(float(np.clip(widest, case.width, max(WIDEST, case.width))), 1)
+    return round(float(np.clip(widest, THINNEST * case.width, WIDEST)), 1)
 
 
 def points(case: Case) -> Drawing:
