@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 
-#: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a picture
-#: that they may fill.
+#: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a
+#: picture that they may fill.
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
