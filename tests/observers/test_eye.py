@@ -40,8 +40,30 @@ def test_colors_have_the_published_lightness_and_chroma(rgb, expected):
 
 
 def test_white_has_the_opponent_channels_of_the_published_matrix():
-    np.testing.assert_allclose(eye.opponent(np.ones(3)), [0.8687, -0.2206, 0.0373], atol=2e-4)
+    np.testing.assert_allclose(eye.POIRSON @ eye.WHITE, [0.8687, -0.2206, 0.0373], atol=2e-4)
+    np.testing.assert_allclose(eye.opponent(np.ones(3)), [0.8687, 0, 0], atol=2e-4)
     np.testing.assert_allclose(eye.WHITE, [0.9505, 1, 1.089], atol=1e-9)
+
+
+def test_channels_of_chroma_differ_from_the_published_ones_by_gray_alone():
+    """Differences of two colours of one lightness keep their channels."""
+    xyz = np.random.default_rng(1).normal(size=(3, 20))
+    xyz -= np.linalg.pinv(eye.POIRSON[:1]) @ eye.POIRSON[:1] @ xyz
+    np.testing.assert_allclose(eye.OPPONENT @ xyz, eye.POIRSON @ xyz, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["edge", "ramp", "spot", "noise"])
+def test_what_is_gray_stays_gray(kind):
+    y, x = np.mgrid[:60, :90]
+    gray = {
+        "edge": x > 45,
+        "ramp": x / 90,
+        "spot": (x - 45) ** 2 + (y - 30) ** 2 < 30,
+        "noise": np.random.default_rng(2).uniform(size=x.shape),
+    }[kind].astype(float)
+    seen = PRINT.look(np.repeat(gray[..., np.newaxis], 3, axis=2), np.ones(x.shape, dtype=bool))
+    np.testing.assert_allclose(seen.colors[..., 1:], 0, atol=0.02)
+    assert np.ptp(seen.colors[..., 0]) > 10
 
 
 @pytest.mark.parametrize(
@@ -62,7 +84,7 @@ def test_what_is_drawn_covers_a_share_of_what_is_seen_and_the_rest_is_ground():
     picture, drawn = np.full((40, 40, 3), 0.25), np.zeros((40, 40), dtype=bool)
     picture[:, 20:], drawn[:, 20:] = 0.75, True
     seen = Eye(60.0).look(picture, drawn)
-    np.testing.assert_allclose(seen.ground, eye.opponent(np.full(3, 0.25)))
+    np.testing.assert_allclose(seen.ground, eye.opponent(np.full(3, 0.25)), atol=1e-12)
     np.testing.assert_allclose(seen.cover[:, 19] + seen.cover[:, 20], 1, atol=1e-9)
     assert np.all(np.diff(seen.cover[5, 12:28, 0]) > 0)
     whole = Eye(60.0).look(picture, np.ones((40, 40), dtype=bool))

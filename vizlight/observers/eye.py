@@ -1,7 +1,7 @@
 """The eye of the meter: which contrasts of a picture are left at a size and a distance.
 
 S-CIELAB (Zhang and Wandell 1997): linear light in an opponent space, each of whose channels passes
-the filter of its contrast sensitivity, and CIELAB after that.
+the filter of its contrast sensitivity, and CIELAB after that. What is gray stays gray.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1
 WHITE = XYZ.sum(axis=1)
 #: Opponent channels of XYZ: light and dark, red and green, blue and yellow (Poirson and Wandell
 #: 1993, as Zhang and Wandell 1997 use them).
-OPPONENT = np.array([[0.279, 0.72, -0.107], [-0.449, 0.29, -0.077], [0.086, -0.59, 0.501]])
+POIRSON = np.array([[0.279, 0.72, -0.107], [-0.449, 0.29, -0.077], [0.086, -0.59, 0.501]])
+#: The same without what the channels of chroma have of gray: filtered by themselves they would give
+#: gray edges a hue (Johnson, Song, Montag and Fairchild, Color Res. Appl. 35, 2010).
+OPPONENT = POIRSON - np.outer([0, *(POIRSON[1:] @ WHITE)], POIRSON[0]) / (POIRSON[0] @ WHITE)
 #: Weights and spreads in degrees of the Gaussians whose sum filters each channel (Zhang and Wandell
 #: 1997, table 1).
 FILTERS = (
