@@ -125,3 +125,23 @@ def test_a_mesh_without_meaning():
 )
 def test_a_time_is_a_date_where_its_unit_names_a_day(time, unit, expected):
     assert meaning.date(time, unit) == expected
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [
+        ("m s**-1", "m/s"),
+        ("m s-1", "m/s"),
+        ("kg m^-3", "kg/m³"),
+        ("m2 s-2", "m²/s²"),
+        ("K", "K"),
+        ("m/s", "m/s"),
+        ("s-1", "s-1"),
+        ("kg m-2 s-1", "kg m-2 s-1"),
+        ("degrees_north", "degrees_north"),
+        ("%", "%"),
+        ("", ""),
+    ],
+)
+def test_a_unit_is_printed_as_a_quotient(unit, expected):
+    assert meaning.written(unit) == expected

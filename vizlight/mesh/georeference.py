@@ -285,7 +285,9 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
             units = {name: _unit(file, i) for i, name in enumerate(arrays)}
     words, said = [], meaning.Meaning(axes=["x east", "y north"])
     for name, rows in arrays.items():
-        said.add_array(name, {"units": units.get(name)})
+        # Heights without a unit on a map are taken for metres, as lengths are.
+        metres = "m" if name == "elevation" and crs is not None else None
+        said.add_array(name, {"units": units.get(name) or metres})
         if name != "rgb":
             rows, missing = meaning.without_missing(name, rows, nodata)
             words += [missing] if missing else []

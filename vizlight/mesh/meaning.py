@@ -324,6 +324,28 @@ _SINCE = re.compile(
     r"(\w+) since (\d{4})-(\d\d?)-(\d\d?)"
     r"(?:[T ](\d\d?):(\d\d)(?::\d\d(?:\.\d+)?)?)?(?: ?(?:UTC|Z))?"
 )
+#: A factor of a unit, such as m, s-1, s**-1 or m^2.
+_FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
+
+
+def written(unit: str) -> str:
+    """Return a unit as it is printed: m/s for "m s**-1"; what is no product of factors as it is.
+
+    Parameters
+    ----------
+    unit : str
+        Unit as files have it, by UDUNITS.
+    """
+    factors = [_FACTOR.fullmatch(word) for word in unit.split()]
+    known = [(found[1], int(found[2] or 1)) for found in factors if found is not None]
+    below = [name + " ²³"[-power - 1].strip() for name, power in known if power < 0]
+    above = [name + " ²³"[power - 1].strip() for name, power in known if power > 0]
+    # Without a factor above or with several below no shorter form is usual.
+    if len(known) < len(factors) or not above or len(below) > 1:
+        return unit
+    return " ".join(above) + "".join(f"/{name}" for name in below)
+
+
 #: First year in which all dates are those of the Gregorian calendar.
 GREGORIAN = 1583
 #: Seconds of the units of times, by their first letters.

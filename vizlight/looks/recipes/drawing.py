@@ -220,7 +220,13 @@ def titled(mesh: pv.DataSet, name: str) -> str:
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
     title = name if "," in name else attributes.get("long_name") or name
-    return f"{title} [{unit}]" if unit not in ("", "1") else title
+    return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
+
+
+def titled_length(mesh: pv.DataSet, name: str) -> str:
+    """Return the title of the lengths of vectors: their speed, if their unit is that of one."""
+    title = titled(mesh, name)
+    return f"{'speed' if title.endswith('/s)') else 'length'} of {title}"
 
 
 def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:

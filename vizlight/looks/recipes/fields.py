@@ -21,6 +21,7 @@ from vizlight.looks.recipes.drawing import (
     Layer,
     range_of,
     titled,
+    titled_length,
     unlit,
 )
 from vizlight.looks.steps import Step
@@ -129,7 +130,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
         layers.append(_inked(case, strokes, camera))
     finite = _lengths(mesh.run(), array.name)
     sense = "" if strokes is None else "; strokes run from thin to thick"
-    title = f"length of {titled(mesh.run(), array.name)}{sense}"
+    title = f"{titled_length(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
     bar |= {} if bent else {"scene": scene}
     bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
@@ -210,7 +211,7 @@ def flow(case: Case) -> Drawing:
         default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
         colors = {"cmap": default} | case.wishes.colors
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
-        title = f"length of {titled(mesh.run(), array.name)}; strokes run from thin to thick"
+        title = f"{titled_length(mesh.run(), array.name)}; strokes run from thin to thick"
         bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
         bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
         keys = [bar]

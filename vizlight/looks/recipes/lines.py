@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.filters.tint import RGB
-from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled
+from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.vtk.cells import connectivity
@@ -99,7 +99,7 @@ def points(case: Case) -> Drawing:
         colors: Keywords = {"cmap": LIGHTNESS, "clim": ends} | case.wishes.colors
         drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
         bar: Keywords = {"question": "value", "scene": scene, **colors}
-        keys = [bar | {"title": f"length of {titled(mesh.run(), array.name)}"}]
+        keys = [bar | {"title": titled_length(mesh.run(), array.name)}]
         words = f"points in the colours of the length of {array.name}"
     elif array is not None:
         drawn |= {"scalars": array.name, "show_scalar_bar": False}
