@@ -3,11 +3,10 @@ What is the shape?
 ==================
 
 The left half of the mean brain of 152 people. Left: PyVista's light. Right: three coloured lamps
-half way between the eye and the picture plane, and a white one at the eye
-(``vizlight.presets.shape``): each slope has a colour, which the ball shows at the place of the same
-slope. The light of the sky (``vizlight.sky``) darkens the folds. How well the normal is read in
-either light is printed below: in a column of print the folds are too fine for hues, and PyVista's
-light tells more.
+half way between the eye and the picture plane (``vizlight.presets.shape``): each slope has a
+colour, which the ball shows at the place of the same slope. The light of the sky
+(``vizlight.sky``) darkens the folds. How well the normal is read in either light is printed below:
+in a column of print the folds are nearly too fine for hues.
 """
 
 import pyvista as pv
