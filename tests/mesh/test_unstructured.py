@@ -52,16 +52,15 @@ TABLES = {
 def test_spellings(tmp_path, table, topology):
     path = written(tmp_path, table, topology=topology)
     mesh = vizlight.read(path, time="first")
-    assert mesh.n_cells == len(FACES)
     assert mesh.field_data["unit"][0] == "degree"
-    # Faces across the meridian of 180 degrees are whole, with some nodes twice.
-    lon, lat = np.asarray(mesh.points)[:, :2].T
-    assert (
-        np.ptp(lon[mesh.regular_faces], axis=1)[np.abs(lat[mesh.regular_faces]).max(1) < 80].max()
-        < 90
-    )
-    np.testing.assert_allclose(mesh["warmth"], lat, atol=1e-5)
-    np.testing.assert_array_equal(mesh.cell_data["rain"], 2.0 * np.arange(len(FACES)))
+    # The whole map is covered once: faces across 180 degrees are cut, those at poles reach along.
+    assert mesh.compute_cell_sizes()["Area"].sum() == pytest.approx(360 * 180, rel=1e-5)
+    assert mesh.bounds[:4] == pytest.approx((-180, 180, -90, 90), abs=1e-4)
+    np.testing.assert_allclose(mesh["warmth"], mesh.points[:, 1], atol=1e-4)
+    rain = mesh.cell_data["rain"]
+    np.testing.assert_array_equal(rain[: len(FACES)], 2.0 * np.arange(len(FACES)))
+    lat = LAT[FACES].mean(axis=1)[(rain / 2).astype(int)]
+    assert np.abs(mesh.cell_centers().points[:, 1] - lat).max() < 5
     assert "first of level" in mesh.field_data["meaning"][0]
 
 
