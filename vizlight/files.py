@@ -159,7 +159,9 @@ def read(
         header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
         group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable:
         an image, a rectilinear grid where its steps are unequal, or a structured grid where each
-        point has a longitude and a latitude of its own. Which axis is x (east), y (north) and z
+        point has a longitude and a latitude of its own, a surface of faces where cells have nodes
+        or bounds, points where only places are known; components at the sides of cells are averaged
+        to their middles. Which axis is x (east), y (north) and z
         (up) its attributes say, else its names, else the order. Lengths of axes and heights are in
         metres, pressures in hPa and negative, depths below 0. Longitudes go on across the meridian
         where they begin anew, and around the earth they close. A raster is an image

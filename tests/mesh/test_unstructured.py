@@ -64,6 +64,19 @@ def test_spellings(tmp_path, table, topology):
     assert "first of level" in mesh.field_data["meaning"][0]
 
 
+def test_tables_of_a_mesh_are_no_data(tmp_path):
+    path = written(tmp_path, TABLES["from 0"], topology=UGRID | {"edge_node_connectivity": "edges"})
+    roles = {"face_edges": "face_edge_connectivity", "face_links": "face_face connectivity"}
+    with xr.open_dataset(path) as file:
+        data = file.load()
+    for name, role in roles.items():
+        data[name] = (("face", "three"), FACES.astype(float), {"cf_role": role})
+    data["edges"] = (("face", "two"), FACES[:, :2])
+    data.to_netcdf(tmp_path / "b.nc")
+    mesh = vizlight.read(tmp_path / "b.nc")
+    assert {*mesh.point_data, *mesh.cell_data} == {"warmth", "rain"}
+
+
 def test_radians(tmp_path):
     path = written(
         tmp_path, TABLES["from 1"], names=("lonVertex", "latVertex"),

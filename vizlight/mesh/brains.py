@@ -41,10 +41,7 @@ _MAGIC = b"MZ"
 #: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
 _TT = 32
 #: What is said of values at the points of a surface, such as its curvature.
-NO_SURFACE = (
-    "values over a surface, without one: read the surface, with this file as its overlay by "
-    "overlay="
-)
+NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
 
 def is_freesurfer(path: Path) -> bool:

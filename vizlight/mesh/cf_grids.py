@@ -32,10 +32,9 @@ if TYPE_CHECKING:
 
 __all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 
-#: File name extensions of netCDF, of GRIB and of Zarr, and of xarray's engines for them.
+#: File name extensions of netCDF, of GRIB and of Zarr.
 NETCDF, GRIB, ZARR = (".nc", ".nc4", ".cdf"), (".grib", ".grib2", ".grb", ".grb2"), (".zarr",)
 SUFFIXES = (*NETCDF, *GRIB, *ZARR)
-_ENGINES = dict.fromkeys(GRIB, "cfgrib") | dict.fromkeys(ZARR, "zarr")
 
 #: Largest deviation from equal steps, as a share of a step, of the axes of an image.
 EQUAL = 1e-4
@@ -162,15 +161,16 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
-        engine = _ENGINES.get(path.suffix.lower())
+        if path.suffix.lower() in GRIB:
+            group, along, note = grib_groups.opened(path, at or {})
+            with group as file:
+                reader = _Reader(file, [note] if note else [])
+                return reader.grid(time, along, nodata, str(path))
+        engine = "zarr" if path.suffix.lower() in ZARR else None
         options: Keywords = {"engine": engine, "decode_times": False}
         try:
             opened = xarray.open_dataset(path, decode_coords="all", **options)
         except ValueError as error:
-            # cfgrib says so of a file of several grids.
-            if engine == "cfgrib" and "multiple values for unique key" in str(error):
-                group, along, note = grib_groups.first_group(path, at or {})
-                return _Reader(group, [note]).grid(time, along, nodata, str(path))
             if "cannot decode" not in str(error):
                 raise
             # A mapping that is written in another way names no coordinates.
@@ -209,7 +209,9 @@ def of_dataset(
     -------
     pyvista.DataSet
         Image, rectilinear grid where steps are unequal, structured grid where each point has a
-        longitude and a latitude of its own, or unstructured one where some have none.
+        longitude and a latitude of its own, or unstructured one where some have none. Faces of a
+        mesh, of cells with bounds and of a grid around a pole are a surface; values in a list
+        without cells are points.
 
     Raises
     ------
@@ -350,7 +352,7 @@ class _Reader:
             else (_of_axes(axes), np.ones((2, 2), np.bool_))
         )
         words, averaged = [], []
-        for name, field in fields.items():
+        for name, field in sorted(fields.items(), key=lambda one: {*one[1].dims} != {*dims}):
             values = field
             if {*values.dims} != {*dims}:
                 values = staggered.to_middles(values, dims, middles, self.file.sizes)

@@ -113,8 +113,8 @@ _STANDARD = (
     ("eastward", "northward", "upward"),
     ("x_", "y_", "z_"),
 )
-#: Names such as urot, with whatever word, of which both must have one unit.
-_ANY = r"(|.*[_\-. ])([uvw])([a-z]\w*)"
+#: Names such as urot, with whatever word, of which both must have one unit; uv is u times v.
+_ANY = r"(|.*[_\-. ])([uvw])([a-tx-z]\w+)"
 #: Usual names of components, and their words in the order x, y, z. The rest of a name, before and
 #: after, is the same for all components.
 _USUAL = (

@@ -115,6 +115,7 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     lon: Array = np.unwrap(x[filled], period=360.0, axis=1)
     around = np.abs(lon[:, -1] - lon[:, 0]) > 180
     odd = around | ((at_pole[ids] & there).sum(axis=1) == 1)
+    odd |= _over_pole(lon, np.roll(lon, -1, axis=1)).any(axis=1)
     middles = np.mean(lon, axis=1, where=there)
     lon -= 360.0 * np.ceil((middles - 180.0) / 360.0 - 1e-9)[:, np.newaxis]
     odd |= (lon.min(axis=1) < -180 - BEYOND) | (lon.max(axis=1) > 180 + BEYOND)
@@ -180,21 +181,35 @@ def _joined(x: Array, y: Array, every: _Ring, ends: Indices, faces: Indices) -> 
 
 def _at_pole(x: Array, y: Array, corners: Indices, at_pole: Bools) -> _Ring:
     """Return the corners of a face, those at a pole at the longitudes of their neighbours."""
+    nodes, shares, lat = np.column_stack([corners, corners]), np.zeros(len(corners)), y[corners]
+    over = np.flatnonzero(_over_pole(x[corners], np.roll(x[corners], -1)))
+    pole = np.copysign(90.0, lat.mean())
+    if len(over) and not at_pole.any():
+        # An edge over the pole has a corner there.
+        first, after = int(over[0]), (int(over[0]) + 1) % len(corners)
+        far = 90 - np.abs(lat[[first, after]])
+        nodes = np.insert(nodes, first + 1, corners[[first, after]], axis=0)
+        shares = np.insert(shares, first + 1, far[0] / (far.sum() or 1.0))
+        lat = np.insert(lat, first + 1, pole).astype(np.float64)
+        at_pole = np.abs(lat) > 90 - AT_POLE
     if at_pole.sum() == 1:
-        corners = np.roll(corners, -int(np.argmax(at_pole)))
-        ring: Array = np.unwrap(x[corners[1:]], period=360.0)
-        corners = np.append(corners, corners[0])
-        lon, lat = np.concatenate([ring[:1], ring, ring[-1:]]), y[corners]
-    else:
-        lon, lat = np.unwrap(x[np.append(corners, corners[0])], period=360.0), y[corners]
-        if abs(lon[-1] - lon[0]) > 180:
-            pole = np.copysign(90.0, lat.mean())
-            lon = np.concatenate([lon, [lon[-1], lon[0]]])
-            lat = np.concatenate([lat, lat[:1], [pole, pole]])
-            corners = np.append(corners, [corners[0]] * 3)
-        else:
-            lon = lon[:-1]
-    return _Ring(np.column_stack([corners, corners]), np.zeros(len(corners)), lon, lat)
+        turned = np.roll(np.arange(len(lat)), -int(np.argmax(at_pole)))
+        ring: Array = np.unwrap(x[nodes[turned[1:], 0]], period=360.0)
+        turned = np.append(turned, turned[0])
+        lon = np.concatenate([ring[:1], ring, ring[-1:]])
+        return _Ring(nodes[turned], shares[turned], lon, lat[turned])
+    lon = np.unwrap(x[np.append(corners, corners[0])], period=360.0)
+    if abs(lon[-1] - lon[0]) < 180:
+        return _Ring(nodes, shares, lon[:-1], lat)
+    turned = np.append(np.arange(len(lat)), [0, 0, 0])
+    lat = np.append(lat, [lat[0], pole, pole])
+    return _Ring(nodes[turned], shares[turned], np.append(lon, [lon[-1], lon[0]]), lat)
+
+
+def _over_pole(lon: Array, after: Array) -> Bools:
+    """Return whether edges between two longitudes go over a pole: they are half a turn apart."""
+    away = np.abs((after - lon + 180.0) % 360.0 - 180.0)
+    return np.asarray(np.abs(away - 180.0) < AT_POLE)
 
 
 def _parts(ring: _Ring) -> list[_Ring]:
