@@ -64,7 +64,7 @@ def test_a_surface_has_the_values_over_it(name, tmp_path):
         vizlight.read(tmp_path / other)
 
 
-@pytest.mark.parametrize("name", ["lh.sig.nii.gz", "lh.sig.mgz", "lh.aparc.annot"])
+@pytest.mark.parametrize("name", ["lh.sig.nii.gz", "lh.sig.mgz", "aparc.annot"])
 def test_values_alone_say_how_they_are_given(name, tmp_path):
     path, values = tmp_path / name, np.arange(BALL.n_points, dtype=np.float32)
     if name.endswith(".annot"):

@@ -157,15 +157,17 @@ def test_coordinates_of_each_point_and_winds_along_the_grid(name, along):
     np.testing.assert_allclose(rows, np.tile(way, (lon.size, 1)), atol=1e-3)
 
 
-def test_a_description_tells_of_winds_along_the_grid():
+@pytest.mark.parametrize("words", ["{}-wind component", "{} at 10 M"])
+def test_winds_of_wrf_are_along_the_grid(words):
     lon, lat = turned(0.5)
     place = ("south_north", "west_east")
     data = {"XLONG": (place, lon, {"units": "degree_east"}),
             "XLAT": (place, lat, {"units": "degree_north"})}  # fmt: skip
     for name, value in (("U", 2.0), ("V", 0.0)):
-        words = {"description": f"{'xy'[name == 'V']}-wind component", "units": "m s-1"}
-        data[name] = (place, np.full(lon.shape, value), words)
-    rows = files.with_vectors(grid(data, {}), "U,V")["U,V"]
+        said = {"description": words.format("xy"[name == "V"]), "units": "m s-1"}
+        data[name] = (place, np.full(lon.shape, value), said)
+    mesh = vizlight.read(xr.Dataset(data, attrs={"MAP_PROJ": 1}))
+    rows = files.with_vectors(mesh, "U,V")["U,V"]
     np.testing.assert_allclose(rows[:, :2], np.tile([2 * np.cos(0.5), 2 * np.sin(0.5)], (96, 1)),
                                atol=1e-3)  # fmt: skip
 

@@ -66,6 +66,15 @@ def test_points_where_no_cells_are_known():
     assert "from above, north up" in look.reason
 
 
+def test_stations_of_several_times():
+    places = {"lon": ("station", LON, {"units": "degrees_east"}),
+              "lat": ("station", LAT, {"units": "degrees_north"})}  # fmt: skip
+    data = xr.Dataset({"t": (("time", "station"), [LAT, LON]), **places}, {"time": [0.0, 6.0]})
+    mesh = vizlight.read(data, time="first")
+    np.testing.assert_array_equal(mesh["t"], LAT)
+    assert mesh.field_data["TimeSteps"].tolist() == [0, 6]
+
+
 def test_angles_without_a_unit_are_radians_where_they_go_around_the_globe():
     x, y = np.radians(LON), np.radians(LAT) * 90 / 75
     data = xr.Dataset({"p": (("Time", "nCells"), [LAT]), "lonCell": ("nCells", x),

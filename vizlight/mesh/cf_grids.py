@@ -319,7 +319,9 @@ class _Reader:
         elif fields := self._fields(single):
             mesh = self._on_axes(fields, single, nodata, source)
         elif self.listed is not None:
-            return self._points(self.listed, single, nodata, source)
+            mesh = self._points(self.listed, single, nodata, source)
+            if self.letters[self.listed.dim][0] == "t":
+                return mesh
         else:
             raise ValueError("no variable on a grid of two or three axes")
         return series.marked(mesh, ticking, step) if len(ticking) > 1 else mesh
@@ -769,6 +771,8 @@ class _Reader:
         turn = np.tile(np.ravel(angle), volume)
         for group in meaning.components(grid):
             along = meaning.along_grid(self.said.arrays.get(group[0], {}))
+            # So are all of WRF, of which only some say it.
+            along = True if along is None and "MAP_PROJ" in self.file.attrs else along
             # On a map in degrees vectors point east and north, else along the axes.
             if along is None or along != mapped or group[0] not in grid.point_data:
                 continue

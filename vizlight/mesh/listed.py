@@ -95,9 +95,10 @@ def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
         Whether they are longitude and latitude, in degrees.
     """
     there = np.isfinite(x) & np.isfinite(y)
-    turned = np.where(x < 0, x + 360, x) if degrees else x
-    places = np.stack([turned, y], axis=-1)[there]
-    nodes, number = np.unique(np.round(places, _SAME), axis=0, return_inverse=True)
+    x, y = np.round(x % 360.0 if degrees else x, _SAME), np.round(y, _SAME)
+    x = x % 360.0 if degrees else x
+    # As complex numbers, which are sorted faster than rows.
+    nodes, number = np.unique(x[there] + 1j * y[there], return_inverse=True)
     ids: Indices = np.zeros(x.shape, dtype=np.intp)
     ids[there] = np.ravel(number)
     # A cell of fewer corners than others repeats one.
@@ -105,7 +106,7 @@ def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
     there[:, -1] &= ids[:, -1] != ids[:, 0]
     whole = there.sum(axis=1) > 2
     laid = unrolled.unrolled if degrees else unrolled.plain
-    return laid(nodes[:, 0], nodes[:, 1], ids[whole], there[whole]), whole
+    return laid(nodes.real, nodes.imag, ids[whole], there[whole]), whole
 
 
 def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:

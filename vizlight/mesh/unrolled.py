@@ -51,7 +51,13 @@ class Faces:
     faces: Indices
 
     def at_points(self, rows: AnyArray) -> AnyArray:
-        """Return the values of the points by those of the nodes, in the type of these."""
+        """Return the values of the points by those of the nodes, in the type of these.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (nodes, ...)
+            Values of the nodes; those that are no floating-point numbers are not mixed.
+        """
         if rows.dtype.kind != "f":
             return rows[np.where(self.shares > 0.5, *self.nodes.T[::-1])]
         found = rows[self.nodes[:, 0]]
@@ -84,7 +90,15 @@ class _Ring:
 
 
 def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
-    """Return faces in a plane, as :func:`unrolled` those of a globe."""
+    """Return faces in a plane, as :func:`unrolled` those of a globe.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N,)
+        Coordinates of each node.
+    ids, there : ndarray, shape (M, K)
+        Nodes of each face, and a mask of those that are there.
+    """
     ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))])
     own = np.arange(len(x))
     nodes = np.column_stack([own, own])
