@@ -42,6 +42,18 @@ def test_a_globe_covers_the_map_once(turn):
         assert faces.faces[cell] == i or abs(middle[1][i]) > 75
 
 
+@pytest.mark.parametrize("west", [-170, -20, 10, 100, 165, 179.5])
+def test_a_region_is_in_one_piece(west):
+    plane = pv.Plane(i_size=30, j_size=20, center=(west + 15, 5, 0), i_resolution=9)
+    lon, lat, _ = np.asarray(plane.points).T
+    for turned in (lon, lon % 360, (lon + 180) % 360 - 180):
+        ids = plane.regular_faces
+        mesh = unrolled.unrolled(turned, lat, ids, np.ones(ids.shape, np.bool_)).mesh()
+        assert mesh.n_cells == plane.n_cells
+        start = west - 360 * (west + 15 > 180)
+        assert mesh.bounds[:4] == pytest.approx((start, start + 30, -5, 15))
+
+
 def polar(n=24, levels=2):
     """Return a dataset on a grid around the north pole, with values that are its latitudes."""
     x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, n))

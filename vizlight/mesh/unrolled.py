@@ -21,6 +21,8 @@ AT_POLE = 1e-4
 #: Distance from the last column of a grid to the first, in steps between columns, below which the
 #: grid is closed.
 CLOSED = 2.0
+#: Degrees without a node from which a mesh is one of a region.
+GAP = 30.0
 #: Longitude in degrees by which a face may reach beyond the date line.
 BEYOND = 1e-6
 
@@ -107,7 +109,7 @@ def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
 
 
 def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
-    """Return the faces of a globe on a map from -180 to 180 degrees.
+    """Return the faces of a globe on a map from -180 to 180 degrees; a region in one piece.
 
     A face across the date line is cut there, in two parts. A face with one corner at a pole has
     that corner at the longitudes of both neighbours, and a face around a pole reaches up to it.
@@ -121,12 +123,14 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     there : ndarray of bool, shape (M, K)
         Mask of the corners that are there, three in each row at least.
     """
-    x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
     at_pole = np.abs(y) > 90 - AT_POLE
     # What is not there repeats the corner before.
     columns = np.where(there, np.arange(there.shape[1]), there.argmax(axis=1)[:, np.newaxis])
     filled = np.take_along_axis(ids, np.maximum.accumulate(columns, axis=1), axis=1)
     lon: Array = np.unwrap(x[filled], period=360.0, axis=1)
+    middle = _middle(lon)
+    x, lon = x - middle, lon - middle
+    x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
     around = np.abs(lon[:, -1] - lon[:, 0]) > 180
     odd = around | ((at_pole[ids] & there).sum(axis=1) == 1)
     odd |= _over_pole(lon, np.roll(lon, -1, axis=1)).any(axis=1)
@@ -158,7 +162,24 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
         ),
     ).part(order)
     ends = np.concatenate([[0], np.cumsum(np.bincount(of_face, minlength=count))])
-    return _joined(x, y, every, ends, np.concatenate(faces))
+    found = _joined(x, y, every, ends, np.concatenate(faces))
+    return replace(found, places=found.places + np.array([middle, 0.0]))
+
+
+def _middle(lon: Array) -> float:
+    """Return the middle of the map of a region by the corners of its faces, 0 for a globe."""
+    places = np.unique(lon % 360.0)
+    if len(places) < 2:
+        return 0.0
+    gaps = np.diff(places, append=places[0] + 360.0)
+    widest = int(np.argmax(gaps))
+    end = (float(places[widest]) + gaps[widest] / 2) % 360.0
+    # What spans the gap goes around, and a gap at the date line is at the ends of the map already.
+    spans = (end - lon.min(axis=1)) % 360.0 < np.ptp(lon, axis=1)
+    at_line = (180.0 - places[widest]) % 360.0 <= gaps[widest]
+    if gaps[widest] < GAP or at_line or spans.any():
+        return 0.0
+    return float(end - 180.0 if end > 0 else 180.0)
 
 
 def _joined(x: Array, y: Array, every: _Ring, ends: Indices, faces: Indices) -> Faces:
