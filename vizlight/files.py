@@ -57,11 +57,11 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from vizlight._types import Foreign, Raw
+    from vizlight._types import Array, Foreign, Raw
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "layer_of", "read", "read_parts", "stretched", "surface_of", "warped",
+    "FileError", "layer_of", "layers", "read", "read_parts", "stretched", "surface_of", "warped",
     "with_vectors", "write_mesh",
 ]  # fmt: skip
 
@@ -89,6 +89,8 @@ MOST_POINTS = 1 << 40
 #: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
 #: the percentage of cells that may be smaller.
 FINE, SHORT = 1e-2, 5.0
+#: Cells with a face below and one above.
+PRISMS = {pv.CellType.WEDGE, pv.CellType.HEXAHEDRON}
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
@@ -157,7 +159,9 @@ def read(
         header (RAS, in mm), with the data per point and, as cell data, those per streamline; a
         group is a cell array of 0 and 1. A netCDF file is the grid of its largest variable:
         an image, a rectilinear grid where its steps are unequal, or a structured grid where each
-        point has a longitude and a latitude of its own. Which axis is x (east), y (north) and z
+        point has a longitude and a latitude of its own, a surface of faces where cells have nodes
+        or bounds, points where only places are known; components at the sides of cells are averaged
+        to their middles. Which axis is x (east), y (north) and z
         (up) its attributes say, else its names, else the order. Lengths of axes and heights are in
         metres, pressures in hPa and negative, depths below 0. Longitudes go on across the meridian
         where they begin anew, and around the earth they close. A raster is an image
@@ -776,20 +780,45 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
 
 
-def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.StructuredGrid:
+def layers(mesh: pv.DataSet, /) -> int:
+    """Return the number of layers of a volume, 0 where it has none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Image or grid, or unstructured grid of prisms between levels.
+    """
+    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid):
+        return mesh.dimensions[2] if min(mesh.dimensions) > 1 else 0
+    return len(_levels(mesh))
+
+
+def _levels(mesh: pv.DataSet) -> Array:
+    """Return the heights of the levels between which all cells are, empty where there are none."""
+    prisms = isinstance(mesh, pv.UnstructuredGrid) and {*mesh.distinct_cell_types} <= PRISMS
+    if not prisms or not mesh.n_cells:
+        return np.empty(0)
+    levels: Array = np.unique(np.asarray(mesh.points, dtype=np.float64)[:, 2])
+    # The points of other volumes are at nearly as many heights as there are points.
+    return levels if len(levels) ** 2 < mesh.n_points else np.empty(0)
+
+
+def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.StructuredGrid | pv.PolyData:
     """Return one layer of a grid across its last axis, with its arrays.
 
     Parameters
     ----------
-    mesh : pyvista.ImageData, pyvista.RectilinearGrid or pyvista.StructuredGrid
-        Grid, which is not changed.
+    mesh : pyvista.DataSet
+        Image, rectilinear or structured grid, or unstructured one of prisms between levels, which
+        is not changed.
     at : int
         Number of the layer, from 0 where z is least.
 
     Returns
     -------
-    pyvista.RectilinearGrid or pyvista.StructuredGrid
-        Grid of one layer; values of cells are those above it, below the last layer.
+    pyvista.RectilinearGrid, pyvista.StructuredGrid or pyvista.PolyData
+        Grid of one layer, or the faces of prisms in it; values of cells are those above it, below
+        the last layer.
 
     Raises
     ------
@@ -798,6 +827,9 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
     """
     if isinstance(mesh, pv.ImageData):
         mesh = mesh.cast_to_rectilinear_grid()
+    if isinstance(mesh, pv.UnstructuredGrid) and len(levels := _levels(mesh)):
+        at = _check.integer("at", at, low=0, high=len(levels) - 1)
+        return _faces_at(mesh, levels, at)
     if not isinstance(mesh, pv.RectilinearGrid | pv.StructuredGrid):
         got = type(mesh).__name__
         raise TypeError(_check.message("mesh", "an image or a grid", got))
@@ -821,6 +853,20 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
     for name in mesh.field_data:
         found.field_data[name] = mesh.field_data[name]
     return found
+
+
+def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:
+    """Return the faces of prisms at a level, of the cells above it, below the last level."""
+    ids, ends = connectivity(mesh.GetCells())
+    heights = np.asarray(mesh.points, dtype=np.float64)[:, 2]
+    lowest = np.minimum.reduceat(heights[ids], ends[:-1])
+    chosen: Foreign = np.flatnonzero(lowest == levels[min(at, len(levels) - 2)])
+    cells = mesh.extract_cells(chosen, pass_point_ids=False, pass_cell_ids=False)
+    surface: pv.PolyData = cells.extract_surface(
+        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
+    )
+    there: Foreign = np.asarray(surface.points, dtype=np.float64)[:, 2] == levels[at]
+    return _kept_points(surface, there)
 
 
 def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:

@@ -64,6 +64,25 @@ def test_a_surface_has_the_values_over_it(name, tmp_path):
         vizlight.read(tmp_path / other)
 
 
+@pytest.mark.parametrize("name", ["lh.sig.nii.gz", "lh.sig.mgz", "aparc.annot"])
+def test_values_alone_say_how_they_are_given(name, tmp_path):
+    path, values = tmp_path / name, np.arange(BALL.n_points, dtype=np.float32)
+    if name.endswith(".annot"):
+        colors = np.zeros((BALL.n_points, 5), np.int32)
+        colors[:, 0] = colors[:, 4] = 1 + np.arange(BALL.n_points)  # 0 is no region
+        names = [str(i) for i in range(BALL.n_points)]
+        nibabel.freesurfer.write_annot(path, values.astype(np.int32), colors, names, False)
+    else:
+        kind = nibabel.Nifti1Image if ".nii" in name else nibabel.MGHImage
+        nibabel.save(kind(values.reshape(-1, 1, 1), np.eye(4)), path)
+    with pytest.raises(files.FileError, match="read the surface, and pass this file as overlay="):
+        vizlight.read(path)
+    BALL.save(tmp_path / "lh.vtp")
+    mesh = vizlight.read(tmp_path / "lh.vtp", overlay=path)
+    (key,) = {*mesh.point_data} - {*BALL.point_data}
+    np.testing.assert_array_equal(mesh[key], values)
+
+
 def test_values_for_another_surface_are_an_error(tmp_path):
     mz3(tmp_path / "a.mz3", surface=False)
     pv.Cube().save(tmp_path / "b.ply")

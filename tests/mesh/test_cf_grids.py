@@ -157,6 +157,33 @@ def test_coordinates_of_each_point_and_winds_along_the_grid(name, along):
     np.testing.assert_allclose(rows, np.tile(way, (lon.size, 1)), atol=1e-3)
 
 
+@pytest.mark.parametrize("words", ["{}-wind component", "{} at 10 M"])
+def test_winds_of_wrf_are_along_the_grid(words):
+    lon, lat = turned(0.5)
+    place = ("south_north", "west_east")
+    data = {"XLONG": (place, lon, {"units": "degree_east"}),
+            "XLAT": (place, lat, {"units": "degree_north"})}  # fmt: skip
+    for name, value in (("U", 2.0), ("V", 0.0)):
+        said = {"description": words.format("xy"[name == "V"]), "units": "m s-1"}
+        data[name] = (place, np.full(lon.shape, value), said)
+    mesh = vizlight.read(xr.Dataset(data, attrs={"MAP_PROJ": 1}))
+    rows = files.with_vectors(mesh, "U,V")["U,V"]
+    np.testing.assert_allclose(rows[:, :2], np.tile([2 * np.cos(0.5), 2 * np.sin(0.5)], (96, 1)),
+                               atol=1e-3)  # fmt: skip
+
+
+def test_a_table_of_kinds_of_values_is_no_volume():
+    random = np.random.default_rng(0)
+    rows = random.random((4, 20, 30)) + np.reshape([0, 40, -7, 900], (4, 1, 1))
+    table = xr.Dataset({"s": (("ncl0", "ncl1", "ncl2"), rows)})
+    with pytest.raises(ValueError, match="'s' is a table of 4 kinds of values along 'ncl0'"):
+        vizlight.read(table)
+    assert vizlight.read(table, at={"ncl0": 1})["s"].min() >= 40
+    assert vizlight.read(table - rows.mean(axis=(1, 2), keepdims=True)).dimensions == (30, 20, 4)
+    named = table.rename(ncl0="z", ncl1="y", ncl2="x")
+    assert vizlight.read(named).dimensions == (30, 20, 4)
+
+
 def test_cells_at_a_place_that_is_missing_are_left_out():
     lon, lat = turned(0.5)
     lon[0, 0] = lat[0, 0] = -999

@@ -35,6 +35,16 @@ def test_components_by_usual_names(group):
     assert meaning.components(mesh_with("height", *reversed(group))) == [group]
 
 
+def test_any_word_after_the_letter_needs_a_unit():
+    mesh = mesh_with("urot", "vrot", "uu", "uv", "vv")
+    assert meaning.components(mesh) == []
+    said = Meaning()
+    for name in ("urot", "vrot", "uu", "uv", "vv"):
+        said.add_array(name, {"units": "cm/s"})
+    meaning.attach(mesh, said)
+    assert meaning.components(mesh) == [("urot", "vrot")]
+
+
 @pytest.mark.parametrize(
     "names", [("u",), ("u", "V"), ("u10", "v100"), ("x", "y"), ("uu", "uv", "vv"), ("lat", "lon")]
 )

@@ -52,17 +52,29 @@ TABLES = {
 def test_spellings(tmp_path, table, topology):
     path = written(tmp_path, table, topology=topology)
     mesh = vizlight.read(path, time="first")
-    assert mesh.n_cells == len(FACES)
     assert mesh.field_data["unit"][0] == "degree"
-    # Faces across the meridian of 180 degrees are whole, with some nodes twice.
-    lon, lat = np.asarray(mesh.points)[:, :2].T
-    assert (
-        np.ptp(lon[mesh.regular_faces], axis=1)[np.abs(lat[mesh.regular_faces]).max(1) < 80].max()
-        < 90
-    )
-    np.testing.assert_allclose(mesh["warmth"], lat, atol=1e-5)
-    np.testing.assert_array_equal(mesh.cell_data["rain"], 2.0 * np.arange(len(FACES)))
+    # The whole map is covered once: faces across 180 degrees are cut, those at poles reach along.
+    assert mesh.compute_cell_sizes()["Area"].sum() == pytest.approx(360 * 180, rel=1e-5)
+    assert mesh.bounds[:4] == pytest.approx((-180, 180, -90, 90), abs=1e-4)
+    np.testing.assert_allclose(mesh["warmth"], mesh.points[:, 1], atol=1e-4)
+    rain = mesh.cell_data["rain"]
+    np.testing.assert_array_equal(rain[: len(FACES)], 2.0 * np.arange(len(FACES)))
+    lat = LAT[FACES].mean(axis=1)[(rain / 2).astype(int)]
+    assert np.abs(mesh.cell_centers().points[:, 1] - lat).max() < 5
     assert "first of level" in mesh.field_data["meaning"][0]
+
+
+def test_tables_of_a_mesh_are_no_data(tmp_path):
+    path = written(tmp_path, TABLES["from 0"], topology=UGRID | {"edge_node_connectivity": "edges"})
+    roles = {"face_edges": "face_edge_connectivity", "face_links": "face_face connectivity"}
+    with xr.open_dataset(path) as file:
+        data = file.load()
+    for name, role in roles.items():
+        data[name] = (("face", "three"), FACES.astype(float), {"cf_role": role})
+    data["edges"] = (("face", "two"), FACES[:, :2])
+    data.to_netcdf(tmp_path / "b.nc")
+    mesh = vizlight.read(tmp_path / "b.nc")
+    assert {*mesh.point_data, *mesh.cell_data} == {"warmth", "rain"}
 
 
 def test_radians(tmp_path):

@@ -61,6 +61,11 @@ _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 _NO_GROUND = re.compile(
     r"cloud|wave|swell|layer|snow|canop|tree|tropopause|mixing|mixed|optical|melt|penetration|mld|pbl"
 )
+#: What describes the grid of a model, and changes with none of its steps.
+_OF_GRID = re.compile(
+    r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
+    r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
+)
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
 _HEIGHTS = re.compile(
     r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
@@ -130,16 +135,16 @@ class Contents:
 
     @cached_property
     def flat_axis(self) -> int | None:
-        """Axis across which a surface or a slab has no extent, None where it has one.
+        """Axis across which points, a surface or a slab have no extent, None for others.
 
         A slab of one layer of cells, as of a flow in two dimensions, may be thicker.
         """
-        share = {2: FLAT, 3: LAYER}.get(self.dimension, -1.0)
+        share = {0: FLAT, 2: FLAT, 3: LAYER}.get(self.dimension, -1.0)
         thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
         if not len(thin):
             return None
         axis = int(thin[-1])
-        if self.dimension == 2 or self.sides[axis] <= SLAB * np.sort(self.sides)[1]:
+        if self.dimension != 3 or self.sides[axis] <= SLAB * np.sort(self.sides)[1]:
             return axis
         along: Array = np.asarray(self.mesh.points)[:, axis].astype(np.float64)
         low, high = np.nanmin(along), np.nanmax(along)
@@ -191,8 +196,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     """Return the arrays that are data, the best for a picture first.
 
     The active array comes first, then numbers in floating point, those of points before those of
-    cells, and kinds last, those of cells first, which are materials more often than those of
-    points; each in the order of the mesh. What a filter of light made is left out.
+    cells, those that describe the grid of a model last; then kinds, those of cells first, which are
+    materials more often than those of points; each in the order of the mesh. What a filter of light
+    made is left out.
     """
     made = records.all_made(mesh)
     described = []
@@ -224,10 +230,13 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         if ",".join(names) not in mesh.array_names and not all(map(_is_table, names))
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
+    of_file = meaning.MEANING in mesh.field_data
 
-    def rank(array: Named) -> tuple[bool, bool, bool]:
+    def rank(array: Named) -> tuple[bool, bool, bool, bool]:
         kinds = array.role == "kinds"
-        return (kinds, array.name not in active, array.of_cells != kinds)
+        words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
+        static = of_file and _OF_GRID.search(words) is not None
+        return (kinds, static, array.name not in active, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
 

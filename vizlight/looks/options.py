@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
@@ -24,6 +23,8 @@ from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions
 
 if TYPE_CHECKING:
+    import pyvista as pv
+
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
@@ -126,13 +127,11 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
     asked = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    layered = isinstance(grid, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid)
-    if asked or not layered or min(grid.dimensions) < 2 or not georeference.is_map(grid):
+    if asked or not georeference.is_map(grid):
         return mesh
-    heights = grid.bounds[4:]
+    count = files.layers(grid)
     words = meaning.of(grid).axes
-    sea = max(heights) <= 0 and "pressure" not in " ".join(words[2:])
-    count = grid.dimensions[2]
+    sea = grid.bounds[5] <= 0 and "pressure" not in " ".join(words[2:])
     order = range(count - 1, -1, -1) if sea else range(count)
     for at in order:
         taken = Step("layer", "files.layer_of", mesh, at)

@@ -24,7 +24,7 @@ __all__ = [
 ]  # fmt: skip
 
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
-SURFACES = (".gii", ".gii.gz", ".mz3")
+SURFACES = (".gii", ".gii.gz", ".mz3", ".annot")
 #: Ends of names of volumes.
 VOLUMES = (
     ".nii", ".nii.gz", ".mgz", ".mgh", ".mnc", ".head", ".brik", ".brik.gz",
@@ -41,7 +41,7 @@ _MAGIC = b"MZ"
 #: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
 _TT = 32
 #: What is said of values at the points of a surface, such as its curvature.
-NO_SURFACE = "values over a surface, without one: read the surface, with this file as its overlay"
+NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
 
 def is_freesurfer(path: Path) -> bool:
@@ -76,7 +76,7 @@ def read(path: Path) -> pv.PolyData:
         points, faces = arrays.pop("points", None), arrays.pop("faces", None)
     elif name.endswith((".gii", ".gii.gz")):
         points, faces, arrays = _gifti(path)
-    elif path.read_bytes()[:3] == _CURV:
+    elif name.endswith(".annot") or path.read_bytes()[:3] == _CURV:
         points = faces = None
     else:
         points, faces = nibabel.freesurfer.read_geometry(path)
@@ -198,7 +198,7 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     elif name.endswith(".annot"):
         # Indices of regions in the table of colours, -1 for none; colours and names are left out.
         found = {"values": nibabel.freesurfer.read_annot(path)[0]}
-    elif name.endswith((".mgh", ".mgz")):
+    elif path.name.lower().endswith(VOLUMES):
         volume: Foreign = nibabel.load(path)
         # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
         found = {"values": np.asarray(volume.dataobj).reshape(-1)}

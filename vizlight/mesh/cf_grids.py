@@ -6,27 +6,35 @@ import math
 import re
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.relief import height_field
-from vizlight.mesh import georeference, meaning, series, unstructured
+from vizlight.mesh import (
+    georeference,
+    grib_groups,
+    listed,
+    meaning,
+    series,
+    staggered,
+    unrolled,
+    unstructured,
+)
 from vizlight.mesh.meaning import Meaning
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Raw
 
 __all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 
-#: File name extensions of netCDF, of GRIB and of Zarr, and of xarray's engines for them.
+#: File name extensions of netCDF, of GRIB and of Zarr.
 NETCDF, GRIB, ZARR = (".nc", ".nc4", ".cdf"), (".grib", ".grib2", ".grb", ".grb2"), (".zarr",)
 SUFFIXES = (*NETCDF, *GRIB, *ZARR)
-_ENGINES = dict.fromkeys(GRIB, "cfgrib") | dict.fromkeys(ZARR, "zarr")
 
 #: Largest deviation from equal steps, as a share of a step, of the axes of an image.
 EQUAL = 1e-4
@@ -95,6 +103,12 @@ _LISTS = (
     r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|profiles?|rgrid|traject.*"
 )
 
+#: Names that programs give to axes without one, and the longest of such axes that can be kinds.
+_NAMELESS = r"(ncl|dim_?|phony_dim_|fakeDim)\d+"
+_MOST_COLUMNS = 32
+#: Arrays of a mesh for each dimension of a list, and the function that returns their rows.
+_RowsOf: TypeAlias = "Mapping[str, tuple[pv.DataSetAttributes, Callable[[Raw], Raw]]]"
+
 
 @dataclass
 class _Axis:
@@ -147,7 +161,12 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
-        engine = _ENGINES.get(path.suffix.lower())
+        if path.suffix.lower() in GRIB:
+            group, along, note = grib_groups.opened(path, at or {})
+            with group as file:
+                reader = _Reader(file, [note] if note else [])
+                return reader.grid(time, along, nodata, str(path))
+        engine = "zarr" if path.suffix.lower() in ZARR else None
         options: Keywords = {"engine": engine, "decode_times": False}
         try:
             opened = xarray.open_dataset(path, decode_coords="all", **options)
@@ -190,7 +209,9 @@ def of_dataset(
     -------
     pyvista.DataSet
         Image, rectilinear grid where steps are unequal, structured grid where each point has a
-        longitude and a latitude of its own, or unstructured one where some have none.
+        longitude and a latitude of its own, or unstructured one where some have none. Faces of a
+        mesh, of cells with bounds and of a grid around a pole are a surface; values in a list
+        without cells are points.
 
     Raises
     ------
@@ -255,9 +276,11 @@ def add(mesh: pv.DataSet, other: Foreign, path: Path) -> None:
 class _Reader:
     """Reader of one dataset, which notes what the grid means."""
 
-    def __init__(self, data: Foreign) -> None:
-        self.file, self.said = _with_numbers(data), Meaning()
+    def __init__(self, data: Foreign, notes: Sequence[str] = ()) -> None:
+        self.file, self.said = _with_numbers(data), Meaning(notes=[*notes])
         self.topology = unstructured.topology(self.file, _node_letter)
+        self.listed = listed.listed(self.file, _node_letter)
+        self.tables = unstructured.tables(self.file)
         #: Letter of the axis of each dimension, or an empty text, and what says so.
         self.letters = {str(dim): self._letter(str(dim)) for dim in data.sizes}
 
@@ -288,14 +311,33 @@ class _Reader:
         """Return the grid; see :func:`of_dataset`."""
         ticking, step, single = self._step(time)
         single |= self._chosen(at)
+        mesh: pv.DataSet
         if self.topology is not None:
             mesh = self._surface(self.topology, single, nodata, source)
-            return series.marked(mesh, ticking, step) if len(ticking) > 1 else mesh
-        fields = self._fields(single)
-        if not fields:
+        elif self.listed is not None and self.listed.x_bounds:
+            mesh = self._cells(self.listed, single, nodata, source)
+        elif fields := self._fields(single):
+            mesh = self._on_axes(fields, single, nodata, source)
+        elif self.listed is not None:
+            mesh = self._points(self.listed, single, nodata, source)
+            if self.letters[self.listed.dim][0] == "t":
+                return mesh
+        else:
             raise ValueError("no variable on a grid of two or three axes")
+        return series.marked(mesh, ticking, step) if len(ticking) > 1 else mesh
+
+    def _on_axes(
+        self,
+        fields: Mapping[str, Foreign],
+        single: dict[str, int],
+        nodata: float | None,
+        source: str,
+    ) -> pv.DataSet:
+        """Return the grid of the axes of the largest of some variables, with those that fit."""
+        middles = self._middles()
         # One grid has one set of axes, which those of the largest variable are.
-        named = self._named(max(fields.values(), key=lambda values: int(values.size)).dims)
+        largest = max(fields.values(), key=lambda values: int(values.size))
+        named = self._named([middles.get(dim, dim) for dim in largest.dims])
         # A section has its place along x and its height along y.
         dims = [named[letter] for letter in "xyz" if letter in named]
         places, mapped = self._places(dims, single)
@@ -305,15 +347,20 @@ class _Reader:
             for axis, ticks in zip(axes, straight, strict=False):
                 _set_ticks(axis, ticks, "degrees")
             places, mapped = None, False
-        grid, astray = (
+        grid: pv.DataSet
+        grid, place = (
             _curvilinear(axes, places)
             if mapped and places is not None
-            else (_of_axes(axes), np.zeros(0, np.bool_))
+            else (_of_axes(axes), np.ones((2, 2), np.bool_))
         )
-        words = []
-        for name, values in fields.items():
+        words, averaged = [], []
+        for name, field in sorted(fields.items(), key=lambda one: {*one[1].dims} != {*dims}):
+            values = field
             if {*values.dims} != {*dims}:
-                continue
+                values = staggered.to_middles(values, dims, middles, self.file.sizes)
+                if values is None:
+                    continue
+                averaged.append(name)
             self.said.add_array(name, values.attrs)
             rows = np.asarray(values.transpose(*reversed(dims)).values)
             rows, missing = meaning.without_missing(name, _within(rows, values.attrs), nodata)
@@ -327,6 +374,9 @@ class _Reader:
         ]
         if {"x", "y"} <= named.keys():
             self._set_unit(grid, axes, mapped=mapped)
+        if averaged:
+            text = ", ".join(sorted(averaged))
+            self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
         if left := sorted({*fields} - {*grid.point_data}):
             self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
         self._say(source, words)
@@ -335,12 +385,36 @@ class _Reader:
                 np.take(np.take(part, axes[1].order, 0), axes[0].order, 1) for part in places
             ]
             self._turn(grid, _angle(*ordered), mapped=mapped)
-        if astray.any():
-            left_cells: Foreign = np.flatnonzero(~astray)
-            grid = grid.extract_cells(left_cells, pass_point_ids=False, pass_cell_ids=False)
-            self.said.notes.append(f"{astray.sum()} cells without a place are left out")
+        if isinstance(grid, pv.StructuredGrid):
+            grid = self._with_places(grid, place)
         meaning.attach(grid, self.said)
-        return series.marked(grid, ticking, step) if len(ticking) > 1 else grid
+        return grid
+
+    def _middles(self) -> dict[str, str]:
+        """Return the dimension of the middles of cells for those of their sides."""
+        coordinates = {dim: self._coordinate(dim) for dim in self.letters}
+        ticks = {
+            dim: along.values.astype(np.float64)
+            if along is not None and along.dtype.kind in "iuf"
+            else None
+            for dim, along in coordinates.items()
+        }
+        return staggered.alike(self.file, {d: one[0] for d, one in self.letters.items()}, ticks)
+
+    def _with_places(self, grid: pv.StructuredGrid, place: Bools) -> pv.DataSet:
+        """Return a grid without the cells at nodes that have no place, whole around a pole."""
+        lacking, wide = _astray(grid, place)
+        found: pv.DataSet = grid
+        left = 0
+        if wide.any():
+            found, left = unrolled.of_grid(grid, place)
+        elif lacking.any():
+            left = int(lacking.sum())
+            kept: Foreign = np.flatnonzero(~lacking)
+            found = grid.extract_cells(kept, pass_point_ids=False, pass_cell_ids=False)
+        if left:
+            self.said.notes.append(f"{left} cells without a place are left out")
+        return found
 
     def _say(self, source: str, words: list[str]) -> None:
         """Warn of missing values, and note them."""
@@ -356,39 +430,104 @@ class _Reader:
         source: str,
     ) -> pv.PolyData:
         """Return the faces of a mesh in the plane, with the values of its nodes and faces."""
-        kind = _in_degrees(of.x, self.file[of.x].attrs)
-        unit = meaning.metres(str(self.file[of.x].attrs.get("units", "")))
-        scale = math.degrees(1) if kind == "radians" else unit or 1.0
-        mesh, origin = unstructured.surface(self.file, of, scale, degrees=kind != "")
-        words, left = [], []
-        for key, variable in self.file.data_vars.items():
-            name, dims = str(key), [str(dim) for dim in variable.dims]
-            along = [dim for dim in dims if dim in (of.nodes, of.faces)]
-            if len(along) != 1 or name in (of.x, of.y, of.table):
-                continue
-            if variable.dtype.kind not in "biuf" or _node_letter(name, variable.attrs):
-                continue
-            others = {dim: single.get(dim, 0) for dim in dims if dim not in along}
+        scale, unit = self._unit(of.x, of.y)
+        degrees = unit == georeference.DEGREE
+        faces, whole = unstructured.surface(self.file, of, scale, degrees=degrees)
+        mesh = faces.mesh()
+        words = f"x {of.x!r} and y {of.y!r} of the nodes in {of.table!r} by {of.by}"
+        rows_of: _RowsOf = {
+            of.nodes: (mesh.point_data, faces.at_points),
+            of.faces: (mesh.cell_data, lambda rows: rows[whole][faces.faces]),
+        }
+        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+
+    def _cells(
+        self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
+    ) -> pv.PolyData:
+        """Return the cells of a list by their corners, with their values."""
+        scale, unit = self._unit(of.x, of.y)
+        x, y = (
+            scale * np.asarray(self.file[name].values, np.float64)
+            for name in (of.x_bounds, of.y_bounds)
+        )
+        faces, whole = listed.cells(x, y, degrees=unit == georeference.DEGREE)
+        mesh = faces.mesh()
+        words = f"x and y of the corners of cells, {of.x_bounds!r} and {of.y_bounds!r}, by bounds"
+        rows_of: _RowsOf = {of.dim: (mesh.cell_data, lambda rows: rows[whole][faces.faces])}
+        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+
+    def _points(
+        self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
+    ) -> pv.PolyData:
+        """Return the points of a list with their values."""
+        # The places of a track are those of its times.
+        single.pop(of.dim, None)
+        scale, unit = self._unit(of.x, of.y)
+        x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
+        mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
+        self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
+        words = f"x {of.x!r} and y {of.y!r} of each value"
+        rows_of: _RowsOf = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
+        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+
+    def _unit(self, x: str, y: str) -> tuple[float, str]:
+        """Return the factor and the unit of coordinates: metre, degree or an empty text."""
+        attributes = self.file[x].attrs
+        unit = str(attributes.get("units", ""))
+        kind = _in_degrees(x, attributes)
+        if kind and not unit and listed.seem_radians(self.file[x].values, self.file[y].values):
+            kind = "radians"
+            self.said.notes.append("x and y taken for radians by their ranges")
+        if kind:
+            return math.degrees(1) if kind == "radians" else 1.0, georeference.DEGREE
+        metres = meaning.metres(unit)
+        return metres or 1.0, "metre" if metres else ""
+
+    def _with_values(
+        self,
+        mesh: pv.PolyData,
+        rows_of: _RowsOf,
+        single: dict[str, int],
+        of_axes: tuple[str, str],
+        nodata: float | None,
+        source: str,
+    ) -> pv.PolyData:
+        """Return a mesh with the values along some dimensions.
+
+        ``rows_of`` has where these are kept, and a function of the rows of the file that returns
+        those of the mesh. ``of_axes`` is the unit of its coordinates, and words for them.
+        """
+        words = []
+        for name, variable in self._of_lists({*rows_of}):
+            dims = [str(dim) for dim in variable.dims]
+            (along,) = {*dims} & {*rows_of}
+            others = {dim: single.get(dim, 0) for dim in dims if dim != along}
             self._note_first([dim for dim in others if dim not in single])
             self.said.add_array(name, variable.attrs)
-            rows = _within(np.asarray(variable.isel(others).values), variable.attrs)
-            rows, missing = meaning.without_missing(name, rows, nodata)
+            values = _within(np.asarray(variable.isel(others).values), variable.attrs)
+            values, missing = meaning.without_missing(name, values, nodata)
             words += [missing] if missing else []
-            rows = self._heights(name, rows, variable.attrs, flat=True)
-            if along == [of.nodes]:
-                mesh.point_data[name] = rows[origin]
-            elif len(rows) == mesh.n_cells:
-                mesh.cell_data[name] = rows
-            else:
-                left.append(name)
-        self.said.axes = [f"x {of.x!r} and y {of.y!r} of the nodes in {of.table!r} by {of.by}"]
-        if left:
-            self.said.notes.append(f"left out, on other axes: {', '.join(sorted(left))}")
+            data, of_mesh = rows_of[along]
+            data[name] = of_mesh(self._heights(name, values, variable.attrs, flat=True))
+        unit, axes = of_axes
+        self.said.axes = [axes]
         self._say(source, words)
-        if kind or unit:
-            mesh.field_data[georeference.UNIT] = [georeference.DEGREE if kind else "metre"]
+        if unit:
+            mesh.field_data[georeference.UNIT] = [unit]
         meaning.attach(mesh, self.said)
         return mesh
+
+    def _of_lists(self, along: set[str]) -> Iterator[tuple[str, Foreign]]:
+        """Yield the variables with one of some dimensions that are data."""
+        aside = {*self.tables}
+        if self.topology is not None:
+            aside |= {self.topology.x, self.topology.y, self.topology.table}
+        for key, variable in self.file.data_vars.items():
+            name = str(key)
+            one = len({*map(str, variable.dims)} & along) == 1
+            numbers = variable.dtype.kind in "biuf" and not _ASIDE.fullmatch(name)
+            if one and numbers and name not in aside and not _node_letter(name, variable.attrs):
+                yield name, variable
 
     def _note_first(self, dims: Sequence[str]) -> None:
         """Note that the first value along some axes is taken."""
@@ -446,14 +585,39 @@ class _Reader:
             kind = variable.dtype.kind in "biuf" and variable.ndim >= 2 and variable.size
             if not kind or _ASIDE.fullmatch(name) or self._is_place(name, variable):
                 continue
+            if name in self.tables:
+                continue
             # Axes of one value, such as a single level, are none of the grid.
             there = [dim for dim in dims if dim not in single and self.file.sizes[dim] > 1]
             named = self._named(there)
+            if len(named) not in (2, 3):
+                continue
+            if len(named) == 3:
+                self._refuse_table(variable.isel(dict.fromkeys({*dims} - {*there}, 0)))
             first = {dim: single.get(dim, 0) for dim in dims if dim not in named.values()}
             self._note_first([dim for dim in there if dim in first])
-            if len(named) in (2, 3):
-                fields[name] = variable.isel(first)
+            fields[name] = variable.isel(first)
         return fields
+
+    def _refuse_table(self, variable: Foreign) -> None:
+        """Raise ValueError for kinds of values along an axis of three of which nothing is said."""
+        names = [str(dim) for dim in variable.dims]
+        if not all(re.fullmatch(_NAMELESS, name) and not self.letters[name][0] for name in names):
+            return
+        short = min(names, key=lambda name: int(variable.sizes[name]))
+        rows = variable.transpose(short, ...).values.reshape(variable.sizes[short], -1)
+        if rows.dtype.kind != "f" or len(rows) > _MOST_COLUMNS:
+            return
+        low, high = np.nanpercentile(rows, (10, 90), axis=1)
+        # Neighbouring planes of a volume have values in common.
+        apart = (low[1:] > high[:-1]) | (high[1:] < low[:-1])
+        if apart.mean() > 0.5:
+            raise ValueError(
+                f"{variable.name!r} is a table of {len(rows)} kinds of values along {short!r} "
+                f"without words for its axes, {', '.join(names)}: name what are places, such as by "
+                f"data.rename({names[-1]}='x', {names[-2]}='y'), or take one kind by "
+                f"vizlight.read(..., at={{{short!r}: 0}})"
+            )
 
     def _named(self, dims: Sequence[str]) -> dict[str, str]:
         """Return the dimension of each of x, y and z; what says nothing of itself by its order."""
@@ -610,6 +774,8 @@ class _Reader:
         turn = np.tile(np.ravel(angle), volume)
         for group in meaning.components(grid):
             along = meaning.along_grid(self.said.arrays.get(group[0], {}))
+            # So are all of WRF, of which only some say it.
+            along = True if along is None and "MAP_PROJ" in self.file.attrs else along
             # On a map in degrees vectors point east and north, else along the axes.
             if along is None or along != mapped or group[0] not in grid.point_data:
                 continue
@@ -762,7 +928,7 @@ def _with_numbers(data: Foreign) -> Foreign:
 
 
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:
-    """Return a grid with a place for each node, and a mask of the cells that have none."""
+    """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
     missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
     # Files fill the places that they have not with one number, such as -999.
@@ -786,15 +952,16 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     grid = pv.StructuredGrid()
     grid.dimensions = (shape[2], shape[1], shape[0])
     grid.points = points.reshape(-1, 3)
-    return grid, np.tile(np.ravel(_without_place(missing, lon)), max(len(heights) - 1, 1))
+    return grid, ~missing
 
 
-def _without_place(missing: Bools, lon: Array) -> Bools:
-    """Return the cells at a node without a place, or with sides around half of the earth."""
+def _astray(grid: pv.StructuredGrid, place: Bools) -> tuple[Bools, Bools]:
+    """Return the cells at a node without a place, and those with sides around half of the earth."""
+    lon = np.asarray(grid.points)[: place.size, 0].reshape(place.shape)
     parts = [(slice(i, i - 1 or None), slice(j, j - 1 or None)) for i in (0, 1) for j in (0, 1)]
-    lacking = np.any([missing[part] for part in parts], axis=0)
-    wide = np.ptp([lon[part] for part in parts], axis=0) > 180
-    return np.asarray(lacking | wide)
+    lacking = np.any([~place[part] for part in parts], axis=0)
+    wide = ~lacking & (np.ptp([lon[part] for part in parts], axis=0) > 180)
+    return np.tile(np.ravel(lacking), max(grid.dimensions[2] - 1, 1)), wide
 
 
 def _of_axes(axes: list[_Axis]) -> pv.ImageData | pv.RectilinearGrid:

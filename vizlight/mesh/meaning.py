@@ -62,6 +62,8 @@ class Meaning:
 
     def add_array(self, name: str, attributes: Foreign) -> None:
         """Keep what the attributes of an array say."""
+        # Models of the weather say in a description what others say in a long name.
+        attributes = {"long_name": attributes.get("description")} | dict(attributes)
         kept = {key: str(attributes[key]) for key in KEPT if attributes.get(key)}
         if kept:
             self.arrays[name] = kept
@@ -113,6 +115,8 @@ _STANDARD = (
     ("eastward", "northward", "upward"),
     ("x_", "y_", "z_"),
 )
+#: Names such as urot, with whatever word, of which both must have one unit; uv is u times v.
+_ANY = r"(|.*[_\-. ])([uvw])([a-tx-z]\w+)"
 #: Usual names of components, and their words in the order x, y, z. The rest of a name, before and
 #: after, is the same for all components.
 _USUAL = (
@@ -130,6 +134,7 @@ _USUAL = (
     (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
     (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
     (r"(.*)(east|north)(.*)", "east north"),
+    (_ANY, "u v w"),
 )
 
 
@@ -197,7 +202,8 @@ def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterato
                 head, part, tail = match.groups()
                 # The case of the letter counts: "U" and "v" are no pair.
                 key = (head, tail, str(part[0].isupper()), table.get(name, {}).get("units", ""))
-                groups.setdefault(key, {})[part.lower()] = name
+                if key[-1] or pattern != _ANY:
+                    groups.setdefault(key, {})[part.lower()] = name
         for group in groups.values():
             every = [group[word] for word in parts.split() if word in group]
             if set(parts.split()[:2]) <= set(group):

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyvista as pv
 
-from vizlight.mesh import blocks
+from vizlight.mesh import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vizlight._types import Array, Bools, Foreign, Indices
+    from vizlight._types import Array, Bools, Foreign
 
-__all__ = ["Topology", "surface", "topology"]
+__all__ = ["Topology", "surface", "tables", "topology"]
 
 #: Numbers of nodes of a face that a table of a file without names may have.
 _CORNERS = range(3, 17)
@@ -161,10 +160,29 @@ def _numbers(variable: Foreign, count: int) -> bool:
     return bool(np.median((np.diff(ordered, axis=1) > 0).sum(axis=1)) >= min(_CORNERS) - 1)
 
 
+def tables(file: Foreign) -> set[str]:
+    """Return the names of variables that describe meshes, and so are no data.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    """
+    names = set()
+    for name, variable in file.variables.items():
+        attributes = variable.encoding | variable.attrs
+        role = str(attributes.get("cf_role", ""))
+        if role.endswith(("connectivity", "mesh_topology")):
+            names.add(str(name))
+        if role == "mesh_topology":
+            texts = (text for text in attributes.values() if isinstance(text, str))
+            names |= {word for text in texts for word in text.split() if word in file.variables}
+    return names
+
+
 def surface(
     file: Foreign, of: Topology, scale: float, *, degrees: bool
-) -> tuple[pv.PolyData, Indices]:
-    """Return the faces of a mesh in a plane, and the node of the file that each point is.
+) -> tuple[unrolled.Faces, Bools]:
+    """Return the faces of a mesh in a plane, and a mask of those of the file that they are.
 
     Parameters
     ----------
@@ -173,8 +191,8 @@ def surface(
     scale : float
         Factor of the coordinates.
     degrees : bool
-        Whether they are longitude and latitude then. Nodes of faces across the meridian at which
-        counting begins anew are there twice.
+        Whether they are longitude and latitude then. Faces across the meridian at which counting
+        begins anew are cut there.
 
     Raises
     ------
@@ -197,21 +215,8 @@ def surface(
     # Some repeat the last node in place of that.
     there[:, 1:] &= (ids[:, 1:] != ids[:, :-1]) | ~there[:, :-1]
     whole = there.sum(axis=1) >= min(_CORNERS)
-    there[~whole] = False
-    ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))])
-    origin = np.arange(len(x))
-    if degrees:
-        x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
-        # Of a face across the meridian the western half is counted on.
-        wide = np.ptp(np.where(there, x[ids], x[ids[:, :1]]), axis=1) > 180
-        west = there & wide[:, np.newaxis] & (x[ids] < 0)
-        again, number = np.unique(ids[west], return_inverse=True)
-        ids[west] = len(x) + number
-        origin, x = np.concatenate([origin, again]), np.concatenate([x, x[again] + 360.0])
-    mesh = pv.PolyData()
-    mesh.points = np.column_stack([x, y[origin], np.zeros(len(x))])
-    mesh.SetPolys(blocks.cell_array(ids[there], ends[np.concatenate([[True], whole])]))
-    return mesh, origin
+    ids, there = ids[whole], there[whole]
+    return (unrolled.unrolled if degrees else unrolled.plain)(x, y, ids, there), whole
 
 
 def _start(rows: Array, count: int) -> int:

@@ -1,0 +1,98 @@
+"""Values in a list: cells by the bounds of their coordinates, or points."""
+
+import numpy as np
+import pytest
+
+import vizlight
+from vizlight.mesh import meaning
+
+xr = pytest.importorskip("xarray")
+pytest.importorskip("cf_xarray")
+
+#: Middles of cells of 30 degrees on the globe.
+LON, LAT = (
+    part.ravel() for part in np.meshgrid(np.arange(15.0, 360, 30), np.arange(-75.0, 90, 30))
+)
+CORNERS = np.array([[-15, -15], [15, -15], [15, 15], [-15, 15]])
+
+
+def by_cell(scale, unit):
+    """Return a dataset of values in cells, whose corners are given."""
+    corners = {
+        f"{name}_bnds": (("cell", "nv"), scale * (middle[:, np.newaxis] + CORNERS[:, k]))
+        for k, (name, middle) in enumerate((("clon", LON), ("clat", LAT)))
+    }
+    words = {"clon": "longitude", "clat": "latitude"}
+    places = {
+        name: ("cell", scale * middle,
+               {"units": unit, "standard_name": words[name], "bounds": f"{name}_bnds"})
+        for name, middle in (("clon", LON), ("clat", LAT))
+    }  # fmt: skip
+    values = np.stack([LAT, 1000 * LAT + LON])
+    return xr.Dataset({"t": (("lev", "cell"), values, {"units": "K"}), **corners}, places)
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(1.0, "degrees_east"), (np.pi / 180, "radian")])
+def test_cells_by_their_bounds(tmp_path, scale, unit):
+    by_cell(scale, unit).to_netcdf(tmp_path / "a.nc")
+    mesh = vizlight.read(tmp_path / "a.nc", at={"lev": 1})
+    assert mesh.bounds[:4] == pytest.approx((-180, 180, -90, 90))
+    assert mesh.field_data["unit"][0] == "degree"
+    assert mesh.compute_cell_sizes()["Area"].sum() == pytest.approx(360 * 180)
+    lon, lat = mesh.cell_centers().points[: len(LON), :2].T
+    np.testing.assert_allclose(lat, LAT, atol=1e-3)
+    np.testing.assert_allclose(np.cos(np.radians(lon - LON)), 1, atol=1e-4)
+    np.testing.assert_array_equal(mesh.cell_data["t"][: len(LON)], 1000 * LAT + LON)
+
+
+def test_a_cell_of_fewer_corners_repeats_one():
+    data = by_cell(1.0, "degrees")
+    for name in ("clon_bnds", "clat_bnds"):
+        data[name][5, 3] = data[name][5, 2]
+    mesh = vizlight.read(data)
+    assert mesh.get_cell(5).n_points == 3
+    assert mesh.get_cell(6).n_points == 4
+
+
+def test_points_where_no_cells_are_known():
+    places = {"lon": ("ncol", LON, {"units": "degrees_east"}),
+              "lat": ("ncol", LAT, {"units": "degrees_north"})}  # fmt: skip
+    mesh = vizlight.read(xr.Dataset({"t": ("ncol", LAT + LON), **places}))
+    np.testing.assert_allclose(mesh.points[:, 0], np.where(LON > 180, LON - 360, LON))
+    np.testing.assert_array_equal(mesh["t"], LAT + LON)
+    assert "points, since no cells of 'ncol' are known" in meaning.line(mesh)
+    look = vizlight.look(mesh, size=(90, 60))
+    assert look.shown == "points"
+    assert "from above, north up" in look.reason
+
+
+def test_stations_of_several_times():
+    places = {"lon": ("station", LON, {"units": "degrees_east"}),
+              "lat": ("station", LAT, {"units": "degrees_north"})}  # fmt: skip
+    data = xr.Dataset({"t": (("time", "station"), [LAT, LON]), **places}, {"time": [0.0, 6.0]})
+    mesh = vizlight.read(data, time="first")
+    np.testing.assert_array_equal(mesh["t"], LAT)
+    assert mesh.field_data["TimeSteps"].tolist() == [0, 6]
+
+
+def test_angles_without_a_unit_are_radians_where_they_go_around_the_globe():
+    x, y = np.radians(LON), np.radians(LAT) * 90 / 75
+    data = xr.Dataset({"p": (("Time", "nCells"), [LAT]), "lonCell": ("nCells", x),
+                       "latCell": ("nCells", y)})  # fmt: skip
+    mesh = vizlight.read(data)
+    assert mesh.bounds[:4] == pytest.approx((-165, 165, -90, 90))
+    assert "taken for radians" in meaning.line(mesh)
+    near = data.assign(lonCell=("nCells", x / 10), latCell=("nCells", y / 10))
+    assert vizlight.read(near).bounds[1] == pytest.approx(x.max() / 10)
+
+
+def test_a_track_across_the_date_line_has_the_places_of_its_times():
+    data = xr.Dataset(
+        {"t": ("time", [1.0, 2, 3]),
+         "lon": ("time", [179.0, -179, -178], {"units": "degrees_east"}),
+         "lat": ("time", [10.0, 11, np.nan], {"units": "degrees_north"})},
+        {"time": ("time", [0.0, 1, 2], {"units": "hours since 2000-01-01"})},
+    )  # fmt: skip
+    mesh = vizlight.read(data)
+    np.testing.assert_allclose(mesh.points, [[179, 10, 0], [181, 11, 0]])
+    assert mesh["t"].tolist() == [1, 2]

@@ -1,0 +1,117 @@
+"""Files of GRIB with variables at several levels or on several grids: those on one grid."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from vizlight._types import Foreign, Keywords
+
+__all__ = ["opened"]
+
+
+def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:
+    """Return the variables of a file; the first group of them, with all others on the same grid.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    at : mapping
+        Values of coordinates; those of which a group has only one choose the group, such as
+        ``{"heightAboveGround": 10}``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Variables, whose times are numbers. Of two with one name the second is named by its level.
+    dict
+        The values of ``at`` along axes.
+    str
+        Words for the variables on other grids, empty where there are none.
+
+    Raises
+    ------
+    ValueError
+        If no group has such values, or the grid of the file is unknown.
+    """
+    import xarray
+
+    # cfgrib leaves out variables at other levels, unless errors are raised.
+    for errors in ("raise", "warn"):
+        options: Keywords = {"engine": "cfgrib", "decode_times": False, "decode_coords": "all"}
+        try:
+            whole = xarray.open_dataset(path, backend_kwargs={"errors": errors}, **options)
+        except Exception as error:
+            if type(error).__name__ == "DatasetBuildError":
+                return _first_group(path, at)
+            if errors == "warn":
+                raise
+        else:
+            break
+    return whole, dict(at), ""
+
+
+def _first_group(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:
+    """Return the first group of variables of a file of several; see :func:`opened`."""
+    # No extra has it: who reads GRIB installs it, and xarray finds it.
+    cfgrib: Foreign = importlib.import_module("cfgrib")
+    try:
+        every: list[Foreign] = cfgrib.open_datasets(str(path), decode_times=False)
+    except KeyError as error:
+        raise ValueError(
+            f"ecCodes does not know its grid: {error} is missing, as where the file gives only the "
+            "number of a grid in a list of its centre; write it with the grid described, "
+            "such as by wgrib2 or cdo"
+        ) from error
+    groups = [group for group in every if group.data_vars and _fits(group, at)]
+    if not groups:
+        there = "; ".join(map(_words, every))
+        raise ValueError(f"at: no group of variables has {dict(at)}, but there are {there}")
+    whole = groups[0].reset_coords(drop=True)
+    others = []
+    for group in groups[1:]:
+        more = group.reset_coords(drop=True)
+        renamed = {
+            name: f"{name}_{_level(group)}".replace(" ", "")
+            for name in more.data_vars
+            if name in whole.data_vars
+        }
+        try:
+            whole = whole.merge(more.rename(renamed), join="exact", compat="equals")
+        except ValueError:
+            others.append(_words(group))
+    along = {name: value for name, value in at.items() if name in whole.sizes}
+    return whole, along, f"on other grids: {'; '.join(others)}" if others else ""
+
+
+def _fits(group: Foreign, at: Mapping[str, object]) -> bool:
+    """Return whether a group has all coordinates that are asked for, and the value of single ones.
+
+    A value along an axis is looked for by who reads the group.
+    """
+    for name, value in at.items():
+        if name in group.sizes:
+            continue
+        if name not in group.coords or group.coords[name].ndim:
+            return False
+        own = group.coords[name].item()
+        if own != value and f"{own:g}" != str(value):
+            return False
+    return True
+
+
+def _level(group: Foreign) -> str:
+    """Return the kind of the level of a group, with its value where there is one."""
+    kinds = {str(one.attrs.get("GRIB_typeOfLevel", "")) for one in group.data_vars.values()}
+    kind = min(kinds)
+    single = kind in group.coords and group.coords[kind].ndim == 0
+    return f"{kind} {group.coords[kind].item():g}" if single else kind
+
+
+def _words(group: Foreign) -> str:
+    """Return the names of the variables of a group, and their level."""
+    return f"{', '.join(map(str, group.data_vars))} at {_level(group)}"

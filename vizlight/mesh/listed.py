@@ -1,0 +1,141 @@
+"""Values in a list, each with a place: cells by their bounds, as CF has them, or points."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.mesh import unrolled
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from vizlight._types import Array, Bools, Foreign, Indices
+
+__all__ = ["Listed", "cells", "listed", "points", "seem_radians"]
+
+#: Decimals of corners that are one, in degrees or in metres.
+_SAME = 6
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Names of what gives the values of a list their places.
+
+    Attributes
+    ----------
+    dim : str
+        Name of the dimension of the list.
+    x, y : str
+        Names of the coordinates of each value.
+    x_bounds, y_bounds : str
+        Names of the coordinates of the corners of each cell, empty for none.
+    """
+
+    dim: str
+    x: str
+    y: str
+    x_bounds: str
+    y_bounds: str
+
+
+def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]) -> Listed | None:
+    """Return the list of a dataset that has most values, None where there is none.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    letter_of : callable
+        Function of the name and the attributes of coordinates that returns x, y or an empty text.
+    """
+    places: dict[str, dict[str, str]] = {}
+    for key, variable in file.variables.items():
+        name = str(key)
+        if len(variable.dims) == 1 and variable.dims[0] != name and variable.dtype.kind in "iuf":
+            letter = letter_of(name, variable.attrs)
+            if letter:
+                places.setdefault(str(variable.dims[0]), {}).setdefault(letter, name)
+    lists = []
+    for dim, pair in places.items():
+        sizes = [
+            one.size
+            for name, one in file.data_vars.items()
+            if dim in one.dims and name not in pair.values()
+        ]
+        if len(pair) == 2 and sizes:
+            bounds = [_bounds(file, pair[letter]) for letter in "xy"]
+            bounds = bounds if all(bounds) else ["", ""]
+            lists.append((bool(bounds[0]), max(sizes), Listed(dim, pair["x"], pair["y"], *bounds)))
+    return max(lists, key=lambda one: one[:2])[2] if lists else None
+
+
+def _bounds(file: Foreign, name: str) -> str:
+    """Return the name of the corners of cells, of three or more each, an empty text for none."""
+    # xarray may have moved it from the attributes.
+    bounds = str((file[name].encoding | file[name].attrs).get("bounds", ""))
+    if bounds not in file.variables:
+        return ""
+    one = file[bounds]
+    corners = one.ndim == 2 and one.dims[0] == file[name].dims[0] and one.shape[1] > 2
+    return bounds if corners and one.dtype.kind == "f" else ""
+
+
+def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
+    """Return cells in the plane, and a mask of those that have three corners or more.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N, K)
+        Coordinates of the corners of each cell, NaN for none.
+    degrees : bool
+        Whether they are longitude and latitude, in degrees.
+    """
+    there = np.isfinite(x) & np.isfinite(y)
+    x, y = np.round(x % 360.0 if degrees else x, _SAME), np.round(y, _SAME)
+    x = x % 360.0 if degrees else x
+    # As complex numbers, which are sorted faster than rows.
+    nodes, number = np.unique(x[there] + 1j * y[there], return_inverse=True)
+    ids: Indices = np.zeros(x.shape, dtype=np.intp)
+    ids[there] = np.ravel(number)
+    # A cell of fewer corners than others repeats one.
+    there[:, 1:] &= (ids[:, 1:] != ids[:, :-1]) | ~there[:, :-1]
+    there[:, -1] &= ids[:, -1] != ids[:, 0]
+    whole = there.sum(axis=1) > 2
+    laid = unrolled.unrolled if degrees else unrolled.plain
+    return laid(nodes.real, nodes.imag, ids[whole], there[whole]), whole
+
+
+def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
+    """Return points in the plane, and the row of the list that each is.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N,)
+        Coordinates; what is not finite is left out.
+    degrees : bool
+        Whether they are longitude and latitude, in degrees.
+    """
+    kept = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    x, y = x[kept], y[kept]
+    if degrees:
+        x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
+        # A region across the date line is not parted by it.
+        eastward = np.where(x < 0, x + 360.0, x)
+        x = min(x, eastward, key=lambda one: float(np.ptp(one)) if one.size else 0.0)
+    return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept
+
+
+def seem_radians(x: Array, y: Array) -> bool:
+    """Return whether angles without a unit are in radians: all around the globe, and no further.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        Longitudes and latitudes.
+    """
+    around = 0.9 * 2 * math.pi < np.ptp(x) < 1.01 * 2 * math.pi
+    return bool(around and 0.9 * math.pi < np.ptp(y) and np.abs(y).max() < 1.01 * math.pi / 2)

@@ -1,0 +1,108 @@
+"""Values at the sides of the cells of a grid, averaged to the middles of the cells."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from vizlight._types import Array, Foreign
+
+__all__ = ["alike", "to_middles"]
+
+#: Distance of a place from the middle of two others, as a share of their distance.
+MIDDLE = 0.01
+
+
+def alike(
+    file: Foreign, letters: Mapping[str, str], ticks: Mapping[str, Array | None]
+) -> dict[str, str]:
+    """Return the dimension of the middles for each dimension that has one longer or shorter by one.
+
+    Of those along one axis it is the dimension that most variables have. Coordinates must agree;
+    where there are none the names begin alike, such as ``west_east_stag`` and ``west_east``,
+    ``xi_u`` and ``xi_rho``; ``eta_u``, which is as long as ``eta_rho``, is alike too.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    letters : dict
+        Letter of the axis of each dimension.
+    ticks : dict
+        Coordinates along each dimension, None where there are none.
+    """
+    counts = {
+        dim: sum(dim in one.dims for one in file.variables.values() if one.ndim > 1)
+        for dim in letters
+    }
+    middles: list[str] = []
+    result: dict[str, str] = {}
+    for dim in sorted(letters, key=lambda one: -counts[one]):
+        if letters[dim] not in ("x", "y", "z"):
+            continue
+        for middle in middles:
+            if letters[middle] == letters[dim] and _beside(file.sizes, ticks, dim, middle):
+                result[dim] = middle
+                break
+        else:
+            middles.append(dim)
+    return result
+
+
+def _beside(
+    sizes: Mapping[str, int], ticks: Mapping[str, Array | None], dim: str, middle: str
+) -> bool:
+    """Return whether a dimension is that of the sides of the cells of another."""
+    more = sizes[dim] - sizes[middle]
+    at, of = ticks[dim], ticks[middle]
+    if abs(more) > 1 or min(sizes[dim], sizes[middle]) < 2:
+        return False
+    if at is None and of is None:
+        pairs = zip(dim, middle, strict=False)
+        start = sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], pairs))
+        return 2 * start >= min(len(dim), len(middle))
+    if at is None or of is None or not more:
+        return False
+    long, short = (at, of) if more > 0 else (of, at)
+    middles, steps = (long[1:] + long[:-1]) / 2, np.abs(np.diff(long))
+    # Steps may be unequal.
+    inside = (short - long[:-1]) * (long[1:] - short) > 0
+    near = np.abs(short - middles) < MIDDLE * steps
+    return bool(inside.all() and np.mean(near) >= 0.5)
+
+
+def to_middles(
+    values: Foreign, dims: Sequence[str], middles: Mapping[str, str], sizes: Mapping[str, int]
+) -> Foreign | None:
+    """Return values on other dimensions of the same cells, None where they have not one of them.
+
+    Where the sides are fewer than the middles, the first and the last middle have no value.
+
+    Parameters
+    ----------
+    values : xarray.DataArray
+    dims : sequence of str
+        Dimensions of the middles.
+    middles : dict
+        Dimension of the middles of each other dimension, as :func:`alike` returns.
+    sizes : dict
+        Sizes of all dimensions.
+    """
+    target = [middles.get(str(dim), str(dim)) if dim not in dims else dim for dim in values.dims]
+    more = [values.sizes[dim] - sizes[to] for dim, to in zip(values.dims, target, strict=True)]
+    if {*target} != {*dims} or not any(more):
+        return None
+    result = values.variable
+    for dim, to, change in zip(values.dims, target, more, strict=True):
+        if change:
+            left, right = result.isel({dim: slice(None, -1)}), result.isel({dim: slice(1, None)})
+            result = 0.5 * (left + right)
+        if change < 0:
+            result = result.pad({dim: 1}, constant_values=np.nan)
+        result = type(result)([to if one == dim else one for one in result.dims], result.data)
+    result.attrs = values.attrs
+    return result
