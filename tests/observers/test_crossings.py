@@ -5,12 +5,13 @@ import io
 import numpy as np
 import pytest
 import pyvista as pv
-from PIL import Image
+from PIL import Image, ImageDraw
 from scipy.ndimage import gaussian_filter
 
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
+from vizlight.draw.live import matrix_of
 from vizlight.observers import crossings
 from vizlight.observers.eye import SeenPicture
 from vizlight.observers.lines import JUMP, Segments
@@ -78,6 +79,26 @@ def test_lines_of_one_color_tell_no_order():
     assert (found.told, found.wrongly, found.bits) == (0, 0, 0)
     assert found.unreadable
     assert "halos" in found.reason
+
+
+@pytest.mark.parametrize(("depth", "answer"), [(0.3, "told"), (-0.3, "wrongly")])
+def test_darker_borders_inside_of_lines_of_one_color_tell_the_order(depth, answer):
+    """Outlined lines, drawn from back to front, and the same picture of the mirrored lines."""
+    mesh = lattice()
+    drawn = np.asarray(mesh.points).reshape(9, 30, 3)
+    _, camera = shot(mesh)
+    to_pixels = matrix_of(camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1, 1))
+    picture = Image.new("RGB", SIZE)
+    pen = ImageDraw.Draw(picture)
+    for line in sorted(drawn, key=lambda line: line[0, 2]):
+        x, y, *_ = to_pixels @ np.insert(line[[0, -1]], 3, 1, axis=1).T
+        ends = [tuple(p) for p in np.column_stack([(1 + x) / 2 * SIZE[0], (1 - y) / 2 * SIZE[1]])]
+        pen.line(ends, fill=(90, 70, 50), width=11)
+        pen.line(ends, fill="tan", width=5)
+    found = order(lattice(depth=depth), np.asarray(picture), camera, line_width=11)
+    assert found.samples == 20
+    assert getattr(found, answer) > 0.9
+    assert found.told + found.wrongly == getattr(found, answer)
 
 
 @pytest.mark.parametrize("width", [3, 8])

@@ -116,6 +116,25 @@ def test_pictures_with_sky_and_sharp_edges_are_read(options):
     assert found.median < 30
 
 
+@pytest.mark.parametrize("angle", ["auto", 30.0, None])
+def test_a_picture_of_sharp_edges_is_read_like_its_plotter(angle):
+    """Flat sides of a box have one normal each; smooth ones none that is of a side."""
+    box = pv.Cube().triangulate().subdivide(3).clean()
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.background_color = "white"
+    how = {} if angle == "auto" else {"feature_angle": angle}
+    plotter.vizlight.add_mesh(box, scene=presets.shape(), **how)
+    plotter.camera = camera_on(box, (1, 0.7, 0.5), aspect=1.5)
+    whole = plotter.vizlight.legibility(**FEW).shape
+    picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
+    plotter.close()
+    read = {"picture": picture, "camera": camera, "key": presets.shape()} | FEW
+    assert vizlight.legibility(box, **read, **how).shape == whole
+    assert whole.median < 20
+    if angle is not None:
+        assert vizlight.legibility(box, **read, feature_angle=None).shape.bits < whole.bits / 2
+
+
 def test_pictures_with_bundles_are_read():
     fixed = Scene(lights=Light(direction=(0, 0.3, 1)), material=MATTE)
     alone, inside = (read(straws(), fixed, bundle=b, line_width=3).slope for b in (False, True))

@@ -55,7 +55,7 @@ def sources_of(
     given: Keywords = {"feature_angle": angle}
     asked = LightOptions(**(given | options))
     _refuse_without_tangents(mesh, scene, asked)
-    mesh = blocks.like(mesh, (_split(block, asked) for block in blocks.all_blocks(mesh)))
+    mesh = blocks.like(mesh, (with_sharp_edges(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
     # The points are split by now, and must not be once more.
@@ -111,8 +111,16 @@ def sources_in_scene(
     return sources, used
 
 
-def _split(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
-    """Return a surface whose points are split at sharp edges, the mesh itself if there are none."""
+def with_sharp_edges(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
+    """Return a surface whose points are split at sharp edges, the mesh itself if there are none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    asked : LightOptions
+        How it is lit, with ``feature_angle``, the least angle of an edge that is sharp.
+    """
     # An array of tangents has the rows of the mesh as it is, which split points would not fit.
     if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
         return mesh

@@ -1,8 +1,8 @@
 """Crossings of lines in a picture, and how a reader tells there which line is nearer.
 
 The nearer line goes on across a crossing, and the other is interrupted by it, by its own colour or
-by a gap beside it: a T on either side (Rubin, Perception 30, 2001). Crossings that a third line
-disturbs are left out.
+by a gap beside it, or by its darker border: a T on either side (Rubin, Perception 30, 2001).
+Crossings that a third line disturbs are left out.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 STEEP = 0.5
 #: Length in pixels along a line beyond which it is another one, that may cross the first.
 APART = 40.0
-#: Distances in pixels beyond the border of a line at which its border is looked for.
-BESIDE = (1.0, 2.0, 3.0, 5.0)
+#: Distances in pixels beyond the border of a line at which its border is looked for, and the one
+#: inside, where tubes and outlined lines are darker.
+BESIDE, INSIDE = (1.0, 2.0, 3.0, 5.0), (-1.0,)
 #: Distance in pixels around both lines in which there is no third.
 CLEAR = 5.5
 #: Distance in pixels within which two crossings are one.
@@ -119,7 +120,7 @@ def told(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: float)
     middle = _read(seen, crossings.at)
     borders = []
     for one, other in ((crossings.back, crossings.front), (crossings.front, crossings.back)):
-        arms = _arms(lines, crossings, one, other)
+        arms = _arms(lines, crossings, one, other, INSIDE + BESIDE)
         sides = [[middle, *(_read(seen, places) for places in side)] for side in arms]
         # A border, or a gap, is where it is seen best; both sides are needed.
         borders.append(np.min([_largest(side) for side in sides], axis=0))
@@ -137,11 +138,18 @@ def _largest(stations: list[Array]) -> Array:
     return np.asarray(np.max(found, axis=0))
 
 
-def _arms(lines: Segments, found: Crossings, one: Indices, other: Indices) -> Array:
-    """Return places on a line beyond the borders of the other, shape (2, 4, N, 2)."""
+def _arms(
+    lines: Segments,
+    found: Crossings,
+    one: Indices,
+    other: Indices,
+    distances: tuple[float, ...] = BESIDE,
+) -> Array:
+    """Return places on a line at distances from the borders of the other, shape (2, D, N, 2)."""
     u, v = _unit(lines.way[one]), _unit(lines.way[other])
     sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    far = (lines.width[other] / 2 + np.array(BESIDE)[:, np.newaxis]) / sine
+    # Inside of a narrow line there is but its middle.
+    far = np.maximum(lines.width[other] / 2 + np.array(distances)[:, np.newaxis], 0.0) / sine
     step = far[..., np.newaxis] * u
     return np.stack([found.at + step, found.at - step])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING
 
 import pyvista as pv
@@ -9,6 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.glsl import Stroke
+from vizlight.draw.sources import with_sharp_edges
 from vizlight.draw.strokes import SUPERSAMPLED, stroke_of
 from vizlight.filters.tint import color_table, values_of_blocks
 from vizlight.mesh import blocks
@@ -125,7 +127,8 @@ def legibility(
         Seed of the drawing of pixels and of the noise.
     **options
         Further options of ``plotter.vizlight.add_mesh``, such as ``occlusion="sky"``, ``bundle``,
-        ``feature_angle`` and ``line_width``.
+        ``feature_angle`` and ``line_width``. Of a ``picture`` they say how the mesh is drawn
+        there; ``feature_angle=None`` is for edges that are smooth.
 
     Returns
     -------
@@ -266,8 +269,13 @@ def _parts(
     view = View.from_camera(camera)
     lit = scene is not None
     scene = Scene(lights=Light.headlight()) if scene is None else scene
-    options = LightOptions(**{name: value for name, value in asked.items() if name in LIGHT})
+    given: Keywords = {name: value for name, value in asked.items() if name in LIGHT}
+    options = LightOptions(**({"feature_angle": "auto"} | given))
     shown = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
+    # Rows of values that are no array of the mesh do not fit points that are split.
+    if lit and isinstance(scalars, str | None):
+        shown = [(with_sharp_edges(block, options), path) for block, path in shown]
+    options = dataclasses.replace(options, feature_angle=None)
     values: list[Raw | None] = [None] * len(shown)
     table = None
     if bar is not None:
