@@ -269,8 +269,9 @@ def _parts(
     view = View.from_camera(camera)
     lit = scene is not None
     scene = Scene(lights=Light.headlight()) if scene is None else scene
-    given: Keywords = {name: value for name, value in asked.items() if name in LIGHT}
-    options = LightOptions(**({"feature_angle": "auto"} | given))
+    given: Keywords = {"feature_angle": "auto"}
+    given |= {name: value for name, value in asked.items() if name in LIGHT}
+    options = LightOptions(**given)
     shown = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
