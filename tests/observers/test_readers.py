@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.special import softmax
 from vectors import unit
 
 from vizlight import Light, Material, Scene, View, presets
@@ -231,6 +232,21 @@ def test_a_disc_is_read_without_error_whatever_its_first_candidate():
         assert reading.truth[0, ::2].min() > 0.5
     np.testing.assert_allclose(np.degrees(readers.course(sample)) % 180, np.degrees(turn))
     np.testing.assert_allclose(readers.in_picture(sample), 1)
+
+
+def test_the_mean_normal_is_that_of_all_candidates_however_unlikely_each_is():
+    """Colours 60 away from the ball, in 40 deviations: weights of a Gaussian, by scipy."""
+    normals = np.array([[0, 0, 1.0], [0.6, 0, 0.8], [0, -0.8, 0.6]])
+    sample = places(presets.shape(), None, normals)
+    seen = Colors(lab(readers.shown(sample.light(None, normals))) + 60, np.full((3, 3), 1.5))
+    disc, along = readers.candidates(*readers.ALONE, 0.3)
+    table = lab(readers.shown(readers._ball(sample.take(np.zeros(900, int)), disc, along)))
+    off = ((seen.lab[:, np.newaxis] - table) / 1.5) ** 2
+    mean = softmax(-off.sum(axis=2) / 2, axis=1) @ disc
+    cosine = (mean * normals).sum(axis=1) / np.linalg.norm(mean, axis=1)
+    found = readers.read_normal(sample, np.zeros(3), seen, 0.3)
+    np.testing.assert_allclose(found.error, np.degrees(np.arccos(cosine)), atol=1e-3)
+    assert off.sum(axis=2).min() > 1500
 
 
 def test_a_hue_has_the_mean_noise_of_both_of_its_components():
