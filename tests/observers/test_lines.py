@@ -188,3 +188,19 @@ def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
     np.testing.assert_allclose(wide.light, [36 * ahead], atol=0.7)
     none = lines._replace(ahead=np.zeros(1))
     assert len(strokes_of(none, seen, Eye(7.5)).ink) == 0
+
+
+def test_the_round_end_of_a_stroke_belongs_to_its_end():
+    """A segment of 60 pixels that is drawn with 30 more: thirds are those of the segment."""
+    number = np.full((40, 120), -1)
+    number[20, 15:105] = 0
+    colors = np.full((40, 120, 3), 50.0)
+    colors[..., 0] = np.where(np.arange(120) < 15 + 20, 40.0, 70.0)
+    lines = Segments(
+        number, np.array([[15.0, 20.5]]), np.array([[60.0, 0]]), np.zeros(1),
+        np.zeros(1, dtype=int), np.ones(1), np.ones(1),
+    )  # fmt: skip
+    # The ground is as the stroke: only the step within the first third of 20 pixels is seen.
+    colors[number < 0] = (0, 0, 0)
+    found = strokes_of(lines, SeenPicture(colors, np.ones((40, 120, 3)), np.zeros(3)), Eye(7.5))
+    np.testing.assert_allclose(found.light, [30], atol=1e-9)

@@ -153,6 +153,8 @@ def test_narrower_lines_are_read_worse_until_chance():
         # A picture of a quarter of the size has lines of a quarter of the width.
         found = plotter.vizlight.legibility(samples=768, size_mm=30 * width / 4).heading
         bits.append(found.bits)
+        # No line is read to a fraction of a degree: the noise of the eye alone is more.
+        assert found.median > 2
     assert "finer than an eye" in found.reason
     picture = linear(plotter.screenshot(return_img=True) / 255)
     how = {"camera": plotter.camera.copy(), "line_width": 4, "key": presets.heading()} | HOW
@@ -221,6 +223,17 @@ def test_a_figure_of_two_sides_counts_right_and_wrong_answers():
     assert "alike" in measure._order(np.repeat([1, 0], [3, 7])).reason
     assert "wrongly" in measure._order(np.repeat([1, -1, 0], [3, 2, 5])).reason
     assert measure._order(np.zeros(0)) is None
+
+
+def test_no_answer_that_is_not_better_than_chance_is_printed():
+    random = np.random.default_rng(4)
+    for _ in range(200):
+        shares = random.dirichlet([1, 1, 1])
+        found = measure._order(random.choice([-1, 0, 1], size=40, p=shares))
+        assert found.unreadable or found.told > found.wrongly
+        assert found.readable >= 0
+        rows = [words for words, *_ in found.rows()]
+        assert (rows == ["unreadable"]) == found.unreadable
 
 
 def test_ends_of_strokes_differ_by_three_deviations_of_the_noise():

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.special import softmax
 from vectors import unit
 
 from vizlight import Light, Material, Scene, View, presets
@@ -233,6 +234,36 @@ def test_a_disc_is_read_without_error_whatever_its_first_candidate():
     np.testing.assert_allclose(readers.in_picture(sample), 1)
 
 
+def test_the_mean_normal_is_that_of_all_candidates_however_unlikely_each_is():
+    """Colours 60 away from the ball, in 40 deviations: weights of a Gaussian, by scipy."""
+    normals = np.array([[0, 0, 1.0], [0.6, 0, 0.8], [0, -0.8, 0.6]])
+    sample = places(presets.shape(), None, normals)
+    seen = Colors(lab(readers.shown(sample.light(None, normals))) + 60, np.full((3, 3), 1.5))
+    disc, along = readers.candidates(*readers.ALONE, 0.3)
+    table = lab(readers.shown(readers._ball(sample.take(np.zeros(900, int)), disc, along)))
+    off = ((seen.lab[:, np.newaxis] - table) / 1.5) ** 2
+    mean = softmax(-off.sum(axis=2) / 2, axis=1) @ disc
+    cosine = (mean * normals).sum(axis=1) / np.linalg.norm(mean, axis=1)
+    found = readers.read_normal(sample, np.zeros(3), seen, 0.3)
+    np.testing.assert_allclose(found.error, np.degrees(np.arccos(cosine)), atol=1e-3)
+    assert off.sum(axis=2).min() > 1500
+
+
+def test_a_hue_has_the_mean_noise_of_both_of_its_components():
+    """Red and green have 1 and blue and yellow 7 of it, or both the root of their mean square."""
+    tangents = np.tile([np.cos(0.4), np.sin(0.4), 0.0], (2, 1))
+    sample = places(presets.direction(), tangents, np.tile([0, 0, 1.0], (2, 1)))
+    colors = lab(readers.shown(sample.light(sample.tangents, sample.normals)))
+    apart, alike = (
+        readers.read_direction(
+            sample, np.zeros(3), Colors(colors, np.tile([1.0, a, b], (2, 1))), 0.2
+        )
+        for a, b in ((1.0, 7.0), (5.0, 5.0))
+    )
+    np.testing.assert_allclose(apart.truth, alike.truth)
+    assert 1 / 180 < apart.truth[0, 0] < 0.1
+
+
 def test_likelihoods_are_those_of_a_gaussian():
     random = np.random.default_rng(0)
     seen = Colors(random.normal(size=(5, 3)), random.uniform(0.5, 2, (5, 3)))
@@ -267,6 +298,10 @@ def test_candidates_of_a_normal_are_even_on_a_disc_and_have_their_tangents():
     np.testing.assert_allclose(square, (np.arange(300) + 0.5) / 300)
     # The mean of points that are even on a disc is its middle.
     np.testing.assert_allclose(normals[:300, :2].mean(axis=0), 0, atol=0.005)
+    # One after the other turns by the golden angle, (3 - sqrt(5)) pi.
+    turn = np.unwrap(np.arctan2(normals[:300, 1], normals[:300, 0]))
+    np.testing.assert_allclose(np.diff(turn), 2.399963229728653)
+    assert turn[0] == pytest.approx(0.7 + 2.399963229728653 / 2)
     turned = tangents.reshape(4, 300, 3)
     cosine = np.abs((turned[0] * turned[1:]).sum(axis=2))
     expected = np.abs(np.cos(np.pi * np.arange(1, 4) / 4))

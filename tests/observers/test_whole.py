@@ -129,6 +129,19 @@ def test_the_active_part_of_a_window_is_read_alone():
     plotter.close()
 
 
+def test_a_plotter_without_a_camera_is_read_from_where_pyvista_shows_it():
+    figures = []
+    for placed in (False, True):
+        plotter, _ = plotter_of(sheet(30), **SHAPE)
+        plotter.camera_set = False
+        if placed:
+            plotter.view_isometric(render=False)
+        figures.append(plotter.vizlight.legibility(**HOW))
+        plotter.close()
+    assert figures[0] == figures[1]
+    assert figures[0].toward_eye == pytest.approx([3**-0.5] * 3)
+
+
 def test_what_hides_a_mesh_and_what_is_nearly_clear():
     flat = {"cmap": "coolwarm", "lighting": False, "show_scalar_bar": False}
     pixels = []

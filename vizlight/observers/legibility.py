@@ -147,10 +147,11 @@ def legibility(
 
     Notes
     -----
-    *Eye*: S-CIELAB (Zhang and Wandell 1997). Linear light in three opponent channels, each filtered
-    by its contrast sensitivity, then CIELAB: stripes of one arc minute keep less than 1 % of their
-    contrast, and colours go sooner than lightness. The filters are the window of a reader: 2.8 arc
-    minutes wide for lightness, 3.9 for red and green, 5.4 for blue and yellow, at half height.
+    *Eye*: S-CIELAB (Zhang and Wandell 1997). Linear light in three opponent channels, of which gray
+    has but the first, each filtered by its contrast sensitivity, then CIELAB: stripes of one arc
+    minute keep less than 1 % of their contrast, and colours go sooner than lightness. The filters
+    are the window of a reader: 2.8 arc minutes wide for lightness, 3.9 for red and green, 5.4 for
+    blue and yellow, at half height.
 
     *direction*: hues of a disc that faces the eye and has tangents in all directions; tangents
     that run toward the eye are left out. *slope*: lightness ranks steepness. *heading*: a key of
@@ -159,12 +160,12 @@ def legibility(
     unknown, 72 of them for each normal. *value*: colours of the bar, as they are or in some light,
     whichever the whole picture fits. *speed*: lightness or chroma ranks the lengths of vectors.
     *scale*: the finest structure at which half of the answers are right beyond chance. *order*: at
-    crossings the borders of the nearer line, or gaps beside it, differ by 3 deviations of the noise
-    (Rose 1948), on both sides and by more than those of the other; crossings with a third line
-    within 5.5 pixels are left out. Of two narrow lines of 3 pixels on black without halos the
-    darker one is told wrongly. *sense*: the two ends of a stroke differ by 3 deviations of the
-    noise as well, in lightness or in contrast, each as the mean of 8 arc minutes. It needs lines
-    that have ``tangents``, or VTK's array ``IntegrationTime``.
+    crossings the borders of the nearer line, darker ones inside it too, or gaps beside it, differ
+    by 3 deviations of the noise (Rose 1948), on both sides and by more than those of the other;
+    crossings with a third line within 5.5 pixels are left out. Of two narrow lines of 3 pixels on
+    black without halos the darker one is told wrongly. *sense*: the two ends of a stroke differ by
+    3 deviations of the noise as well, in lightness or in contrast, each as the mean of 8 arc
+    minutes. It needs lines that have ``tangents``, or VTK's array ``IntegrationTime``.
 
     A reader of a surface with lines on it looks between them, as far as 10 arc minutes away.
 
