@@ -27,7 +27,7 @@ ways = {
     "LIC: 3.4": lambda: plotter.add_actor(pv.Actor(mapper=lic)),
     "lines: 2.6": lambda: plotter.add_mesh(lines, color="black", line_width=4),
     "white light: 45": lambda: plotter.vizlight.add_mesh(wind, scene=Scene(), **field),
-    "light of direction: 5.3": lambda: plotter.vizlight.add_mesh(wind, scene=hue, **field),
+    "light of direction: 4.5": lambda: plotter.vizlight.add_mesh(wind, scene=hue, **field),
 }
 for number, (title, draw) in enumerate(ways.items()):
     plotter.subplot(*divmod(number, 3))
