@@ -6,7 +6,7 @@ import pyvista as pv
 from lamps import SHINY, shiny
 from refusals import refusals
 
-from vizlight import Light, Scene, View, engine, presets
+from vizlight import Light, Scene, View, engine, maps, presets
 from vizlight.filters.key import BAR, HOLE, question_of
 from vizlight.shading.display import displayable
 
@@ -142,3 +142,18 @@ def test_the_picture_of_a_key_is_its_mesh(question):
                 assert np.hypot(x, y) > 0.95
     assert inner > 20
     assert (seen[tall // 2, 32, 3] == 0) == (question == "direction")
+
+
+def test_words_may_have_any_letters(tmp_path):
+    table = maps.kinds([1, 2])
+    table.annotations = {1.0: "Méso", 2.0: "日本"}
+    made = presets.key(Scene(), question="value", cmap=table, title="Température (m²/s²)")
+    assert str(made.field_data["title"][0]) == "Température (m²/s²)"
+    assert [str(name) for name in made.copy().field_data["names"]] == ["Méso", "日本"]
+    plane = pv.Plane()
+    plane["k"] = np.arange(plane.n_points) % 2 + 1.0
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 80))
+    plotter.vizlight.add_mesh(plane, scalars="k", cmap=table, show_scalar_bar=False)
+    plotter.vizlight.add_key(question="value", cmap=table, title="Température (m²/s²)")
+    plotter.screenshot(tmp_path / "a.png")
+    plotter.close()

@@ -6,6 +6,7 @@ import dataclasses
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight.filters.tint import RGB, color_table
@@ -121,15 +122,24 @@ def key(
             clim = cmap.scalar_range
         names = _names_of(cmap)
         if names:
-            made.field_data[NAMES] = names
+            _put_words(made, NAMES, names)
         if clim is not None:
             ends = _check.limits("clim", clim)
             made.field_data[RANGE] = ends
             words = numerals(ends)
-    made.field_data[WORDS] = words
+    _put_words(made, WORDS, words)
     if title:
-        made.field_data[TITLE] = [_check.text("title", title)]
+        _put_words(made, TITLE, [_check.text("title", title)])
     return made
+
+
+def _put_words(made: pv.PolyData, name: str, words: Sequence[str]) -> None:
+    """Attach words in any letters, where PyVista takes those of ASCII alone."""
+    array = vtkStringArray()
+    array.SetName(name)
+    for word in words:
+        array.InsertNextValue(word)
+    made.GetFieldData().AddArray(array)
 
 
 def _names_of(cmap: ColorMap) -> list[str]:

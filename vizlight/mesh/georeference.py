@@ -300,7 +300,8 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         meaning.say(path, words)
         said.notes += words
     if crs is not None:
-        grid.field_data["crs"] = [crs.to_wkt()]
+        # PyVista keeps words in ASCII alone; other letters stand in names, which mean nothing.
+        grid.field_data["crs"] = [crs.to_wkt().encode("ascii", "replace").decode("ascii")]
         # A projected system has a unit of length, which it names.
         unit = DEGREE if crs.is_geographic else crs.linear_units
         if not crs.is_geographic and meaning.metres(unit) == KILOMETRE:
