@@ -214,3 +214,33 @@ def test_the_faces_of_curved_cells_share_their_points_and_face_outward(kind):
     a, b, c = found.points[faces.T]
     outward = np.einsum("ij,ij->i", np.cross(b - a, c - a), middles)
     assert (outward[outer] > 0).all()
+
+
+@pytest.mark.parametrize(("kind", "polygons"), [(12, 24), (22, 0), (21, 0)])
+def test_curved_cells_beside_others_face_outward_and_keep_the_active_array(kind, polygons):
+    grids = []
+    for each, step in ((24, 0.0), (kind, 5.0)):
+        source = vtkCellTypeSource()
+        source.SetCellType(each)
+        source.SetBlocksDimensions(2, 2, 2)
+        source.Update()
+        grids.append(pv.wrap(source.GetOutput()).translate((step, 0, 0)))
+    grid = grids[0].merge(grids[1], merge_points=False)
+    grid["v"] = np.arange(grid.n_points, dtype=float)
+    grid.set_active_scalars("v")
+    surface, ids = hull.outer_surface(grid)
+    found = pv.PolyData(surface)
+    assert found.active_scalars_name == "v"
+    np.testing.assert_array_equal(found["v"], ids)
+    sizes = [len(found.get_cell(i).point_ids) for i in range(found.n_cells)]
+    assert sizes.count(4) == polygons
+    # The curved cells fill a cube, whose middle is one away from its faces.
+    outward = []
+    for i in range(found.n_cells):
+        corners = found.get_cell(i).points
+        middle = corners.mean(axis=0) - 1
+        if corners[:, 0].max() <= 2 and np.isclose(np.abs(middle).max(), 1):
+            across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+            outward.append(np.dot(across, middle) > 0)
+    assert len(outward) > 20
+    assert all(outward)

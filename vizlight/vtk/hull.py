@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import AnyArray, Dataset, Foreign, Indices, Raw
+    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Raw
 
     Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 NUMBERS = "vizlight numbers"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
+#: Dimension of cells that fill space.
+_SOLID = 3
 #: Types that stand for vertices, lines, polygons and strips.
 _KINDS = (2, 4, 7, 6)
 
@@ -66,11 +68,14 @@ def dimension(mesh: Dataset) -> int:
     """Return the largest dimension of the cells of a dataset that is no vtkPolyData."""
     if not isinstance(mesh, vtkUnstructuredGrid):
         return int(mesh.GetDataDimension()) if hasattr(mesh, "GetDataDimension") else 3
-    cell, found = vtkGenericCell(), 0
-    for kind in cell_types(mesh):
-        cell.SetCellType(kind)
-        found = max(found, cell.GetCellDimension())
-    return found
+    return max(map(_dimension, cell_types(mesh)), default=0)
+
+
+def _dimension(kind: int) -> int:
+    """Return the dimension of a type of cell."""
+    cell = vtkGenericCell()
+    cell.SetCellType(kind)
+    return int(cell.GetCellDimension())
 
 
 def is_curved(mesh: Dataset) -> bool:
@@ -120,26 +125,45 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         return surface, ids
     own = as_numpy(surface.GetCellData().GetArray(NUMBERS))
     surface.GetCellData().RemoveArray(NUMBERS)
-    if isinstance(mesh, vtkUnstructuredGrid) and dimension(mesh) == 3:
+    if isinstance(mesh, vtkUnstructuredGrid):
+        # Cells are numbered by VTK's kinds: vertices and lines first.
+        own = own[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
         surface.SetPolys(_outward(surface, mesh, own))
     return _merged(surface, ids)
 
 
 def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, own: Indices) -> vtkCellArray:
-    """Return triangles of curved cells wound so that they face away from the middles of the cells.
+    """Return the polygons of a surface, those of solid cells facing away from the cells' middles.
 
     VTK winds the faces of quadratic wedges and hexahedra now this way, now that way.
     """
-    ids, offsets = connectivity(grid.GetCells())
-    size = np.maximum(np.diff(offsets), 1)[:, np.newaxis]
-    middles = np.add.reduceat(places(grid)[ids].astype(np.float64), offsets[:-1], axis=0) / size
-    corners = connectivity(surface.GetPolys())[0].reshape(-1, 3)
-    a, b, c = places(surface)[corners.T].astype(np.float64)
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles[own]) < 0
+    ids, offsets = connectivity(surface.GetPolys())
+    start, size = offsets[:-1], np.diff(offsets)
+    first = [ids[start + i] for i in range(3)] if len(size) else [ids] * 3
+    a, b, c = (places(surface)[corner].astype(np.float64) for corner in first)
+    middles = _middles(grid)[own]
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles) < 0
+    # One by one, since the array of all types has another name in each version of VTK.
+    turned = np.unique(own[inward])
+    solid = {kind for kind in cell_types(grid) if _dimension(kind) == _SOLID}
+    fills = [grid.GetCellType(cell) in solid for cell in turned.tolist()]
+    inward &= np.isin(own, turned[np.array(fills, dtype=np.bool_)])
+    # The corners of a polygon from its last to its first, or as they are.
+    along = np.arange(len(ids)) - np.repeat(start, size)
+    back = np.repeat(size, size) - 1 - along
+    order = np.repeat(start, size) + np.where(np.repeat(inward, size), back, along)
     found = vtkCellArray()
-    turned = np.where(inward[:, np.newaxis], corners[:, ::-1], corners)
-    found.SetData(3, as_vtk(np.ascontiguousarray(turned).ravel()))
+    found.SetData(as_vtk(offsets), as_vtk(ids[order]))
     return found
+
+
+def _middles(grid: vtkUnstructuredGrid) -> Array:
+    """Return the mean of the points of each cell, 0 for a cell of none."""
+    ids, offsets = connectivity(grid.GetCells())
+    cell, size = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets)), np.diff(offsets)
+    points = places(grid)[ids]
+    sums = [np.bincount(cell, points[:, i], len(size)) for i in range(3)]
+    return np.asarray(np.stack(sums, axis=1) / np.maximum(size, 1)[:, np.newaxis])
 
 
 def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
@@ -163,7 +187,9 @@ def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
     for i in range(data.GetNumberOfArrays()):
         # Arrays of words have no rows of numbers, and are no data of a point of a picture.
         if (array := data.GetArray(i)) is not None:
-            found.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
+            at = found.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
+            if (kind := data.IsArrayAnAttribute(i)) >= 0:
+                found.GetPointData().SetActiveAttribute(at, kind)
     return found, own
 
 
