@@ -24,8 +24,8 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 SAMPLE = 20_000
 #: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
 EQUAL = 0.5
-#: Extent across a flat surface, across a slab of cells, and across one layer of them, as a share of
-#: the second side.
+#: Extent across a flat surface, across a slab that is taken for one, and across a slab that is seen
+#: from above, as a share of the second side.
 FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
 #: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
 #: bounds, masks.

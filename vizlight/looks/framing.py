@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.looks.contents import LAYER
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ SAMPLE = 20_000
 #: Length of the sum of the normals of a surface, as a share of its area, from which it is an open
 #: patch that is seen along that sum.
 OPEN = 0.6
-#: Thickness of a slab as a share of its second side, at most.
-SLAB = 0.15
 #: Azimuths and altitudes of the eye, in degrees, among which the best one is taken.
 AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 #: Pixels along each side of the picture in which self-occlusion is counted.
@@ -72,7 +71,7 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Ey
         return _of_surface(mesh, shown)
     points = _some(np.asarray(mesh.points, dtype=np.float64))
     extent = np.ptp(points[np.isfinite(points).all(axis=1)], axis=0) if len(points) else points
-    if contents.dimension == 3 and len(extent) == 3 and extent.min() < SLAB * np.median(extent):
+    if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
         # What lies in a slab, such as a flow between two plates, is seen across it.
         return _above(mesh, int(np.argmin(extent)))
     return _of_points(points)

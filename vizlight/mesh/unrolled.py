@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,8 @@ import pyvista as pv
 from vizlight.mesh import blocks
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import AnyArray, Array, Bools, Indices
 
 __all__ = ["Faces", "of_grid", "plain", "unrolled"]
@@ -90,6 +92,14 @@ class _Ring:
         """Return some of the corners."""
         return _Ring(self.nodes[rows], self.shares[rows], self.lon[rows], self.lat[rows])
 
+    @classmethod
+    def joined(cls, rings: Sequence[_Ring]) -> _Ring:
+        """Return the corners of some faces, one after the other."""
+        columns = (
+            np.concatenate([getattr(ring, one.name) for ring in rings]) for one in fields(cls)
+        )
+        return cls(*columns)
+
 
 def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     """Return faces in a plane, as :func:`unrolled` those of a globe.
@@ -154,13 +164,7 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
                 count += 1
     of_face = np.concatenate(numbers)
     order = np.argsort(of_face, kind="stable")
-    every = _Ring(
-        np.concatenate([ring.nodes for ring in rings]),
-        *(
-            np.concatenate([getattr(ring, name) for ring in rings])
-            for name in ("shares", "lon", "lat")
-        ),
-    ).part(order)
+    every = _Ring.joined(rings).part(order)
     ends = np.concatenate([[0], np.cumsum(np.bincount(of_face, minlength=count))])
     found = _joined(x, y, every, ends, np.concatenate(faces))
     return replace(found, places=found.places + np.array([middle, 0.0]))
@@ -273,13 +277,7 @@ def _cut(ring: _Ring, side: float) -> _Ring:
             lat = (1 - share) * ring.lat[a] + share * ring.lat[b]
             nodes = np.array([[ring.nodes[a, 0], ring.nodes[b, 0]]])
             parts.append(_Ring(nodes, np.array([share]), np.array([180.0]), np.array([lat])))
-    return _Ring(
-        np.concatenate([part.nodes for part in parts]),
-        *(
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in ("shares", "lon", "lat")
-        ),
-    )
+    return _Ring.joined(parts)
 
 
 def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.UnstructuredGrid, int]:

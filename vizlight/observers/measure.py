@@ -293,19 +293,17 @@ def _course(read: Array, true: Array) -> Direction | None:
         for other in (true, true[readers.elsewhere(len(true))])
     )
     bits = max(0.0, readers.sharpness(error) - readers.sharpness(guess))
-    median = float(np.median(error))
-    unread = bits < FLOOR or median > NEAR * TURN / 2
+    unread = bits < FLOOR or float(np.median(error)) > NEAR * TURN / 2
     reason = "strokes are finer than an eye resolves, or cross; draw them wider, or fewer of them"
     right = error <= TOLERANCE["direction"]
     guessed = max(GUESSED["direction"], float((guess <= TOLERANCE["direction"]).mean()))
-    return Direction(
-        within_10=1 / 9 if unread else float((error <= 10).mean()),
-        median=TURN / 2 if unread else median,
-        bits=bits,
-        readable=0.0 if unread else _beyond_chance(right, guessed),
-        samples=len(read),
-        reason=reason if unread else "",
-    )
+    common: Keywords = {
+        "bits": bits,
+        "readable": 0.0 if unread else _beyond_chance(right, guessed),
+        "samples": len(read),
+        "reason": reason if unread else "",
+    }
+    return Direction(**_angular(error, common), **common)
 
 
 def _sense(ink: Array, light: Array, noise: float) -> Sense | None:
@@ -357,12 +355,8 @@ class _Reader:
 
     def _with(self, question: str, has_it: Callable[[Places], bool]) -> list[Places]:
         """Return the places where a question of light has an answer, and note those without."""
-        by_axes = question == "heading"
-        some = [
-            one
-            for one in self.groups
-            if (one.part.lit or (by_axes and one.part.by_axes)) and has_it(one)
-        ]
+        told = [one for one in self.groups if one.part.lit or one.part.by_axes]
+        some = [one for one in told if has_it(one)]
         kept = [one.take(one.here.valid) for one in some]
         total, left = (sum(len(one.here) for one in each) for each in (some, kept))
         if left < total:
@@ -374,7 +368,7 @@ class _Reader:
         self, question: str, groups: list[Places], readings: list[Reading], lengths: Array
     ) -> Keywords:
         """Return what all figures of matched colours have, and find the scale."""
-        error = np.concatenate([one.error for one in readings])
+        error = _errors(readings)
         bits = readers.told(readings)
         right = error <= TOLERANCE[question]
         other = np.concatenate([one.other_error for one in readings])
@@ -427,7 +421,9 @@ class _Reader:
 
     def slope(self) -> Slope | None:
         """Return how steeply lines run."""
-        groups = self._with("slope", lambda p: p.part.kind == "line" and p.here.has_one_tangent)
+        # Hues of the axes tell directions, and no steepness.
+        groups = self._with("slope", lambda p: not p.part.by_axes and p.part.kind == "line")
+        groups = [p for p in groups if p.here.has_one_tangent]
         if not groups:
             return None
         steep = np.concatenate([readers.steepness(p.here) for p in groups])
@@ -441,13 +437,21 @@ class _Reader:
         if not groups:
             return None
 
-        def read(p: Places, share: float) -> Reading:
-            if p.part.by_axes:
-                return readers.read_axes(p.here, self.middle, p.colors)
-            return readers.read_heading(p.here, self.middle, p.colors, share)
-
+        by_axes = {
+            i: readers.read_axes(p.here, self.middle, p.colors)
+            for i, p in enumerate(groups)
+            if p.part.by_axes
+        }
         # How much darker than the key lines are drawn is seen by the whole picture.
-        ways = ([read(p, share) for p in groups] for share in readers.SHARES)
+        ways = (
+            [
+                by_axes[i]
+                if i in by_axes
+                else readers.read_heading(p.here, self.middle, p.colors, share)
+                for i, p in enumerate(groups)
+            ]
+            for share in readers.SHARES
+        )
         found = max(ways, key=readers.told)
         none = np.full(sum(len(p.here) for p in groups), np.nan)
         common = self._common("heading", groups, found, none)
@@ -471,7 +475,7 @@ class _Reader:
             found.append(readers.read_normal(here, self.middle, colors, phase))
         lengths = np.concatenate([p.structure(_normal) for p in groups])
         common = self._common("shape", groups, found, lengths)
-        error = np.concatenate([one.error for one in found])
+        error = _errors(found)
         median = TURN / 2 if common["reason"] else float(np.median(error))
         return Shape(median=median, **common)
 
@@ -510,7 +514,7 @@ class _Reader:
         found = max(ways, key=readers.told)
         lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
         common = self._common("value", groups, found, lengths)
-        error = np.concatenate([one.error for one in found])
+        error = _errors(found)
         if common["reason"]:
             return Value(median=0.25, p95=0.475, largest=0.5, **common)
         p95, largest = float(np.quantile(error, 0.95)), float(error.max())
@@ -550,10 +554,18 @@ def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]
 
 def _angles(found: list[Reading], common: Keywords) -> Keywords:
     """Return the share of errors of 10 degrees at most, and their median."""
+    return _angular(_errors(found), common)
+
+
+def _angular(error: Array, common: Keywords) -> Keywords:
+    """Return what :func:`_angles` does of errors in degrees."""
     if common["reason"]:
         return {"within_10": 1 / 9, "median": TURN / 2}
-    error = np.concatenate([one.error for one in found])
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
+
+
+def _errors(found: list[Reading]) -> Array:
+    return np.concatenate([one.error for one in found])
 
 
 def _beyond_chance(right: Bools, guessed: float) -> float:

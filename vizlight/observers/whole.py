@@ -249,15 +249,14 @@ def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
     """Return what the colours of an array mean: values and their table, axes, or nothing."""
     if name is None or name not in (*mesh.point_data, *mesh.cell_data):
         return {}
-    values = values_of(mesh, name)
-    if isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data:
-        of_cells = np.asarray(mesh.cell_data[name])
-        if of_cells.ndim == 1 and isinstance(table, pv.LookupTable):
-            return {"values": of_cells, "table": table, "flat": True}
-    if values.ndim == 1 and not isinstance(table, pv.LookupTable):
-        return {}
+    flat = isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data
+    if flat and mesh.cell_data[name].ndim == 1:
+        values: Raw = np.asarray(mesh.cell_data[name])
+    else:
+        values, flat = values_of(mesh, name), False
     if values.ndim == 1:
-        return {"values": values, "table": table}
+        known = isinstance(table, pv.LookupTable)
+        return {"values": values, "table": table, "flat": flat} if known else {}
     return {"by_axes": True} if _by_axes(mesh, values) else {}
 
 

@@ -179,6 +179,11 @@ class Case:
         exposure = exposure_seen(mesh.run(), scene.run(), camera.run(), light)
         return scene if exposure == 1 else Step("scene", ".replace", scene, exposure=exposure)
 
+    @property
+    def map_on_ground(self) -> str:
+        """Colour map of thin lines, of which what is large stands out from the ground."""
+        return LIGHTNESS if self.wishes.style == "dark" else f"{LIGHTNESS}_r"
+
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""
         return self.wishes.lit(mesh, scene, light)

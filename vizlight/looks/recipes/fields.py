@@ -16,7 +16,6 @@ from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.recipes.drawing import (
-    LIGHTNESS,
     Drawing,
     Layer,
     range_of,
@@ -207,9 +206,7 @@ def flow(case: Case) -> Drawing:
     words = f"streamlines of {array.name}"
     if by_speed:
         speed = own_name(mesh.run(), "speed")
-        # What is fast stands out from the ground.
-        default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
-        colors = {"cmap": default} | case.wishes.colors
+        colors = {"cmap": case.map_on_ground} | case.wishes.colors
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
         title = f"{titled_length(mesh.run(), array.name)}; strokes run from thin to thick"
         bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}

@@ -51,9 +51,7 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
         array = case.needed_array
-        # What is fast or large stands out from the ground.
-        default = LIGHTNESS if case.wishes.style == "dark" else f"{LIGHTNESS}_r"
-        colors = {"cmap": default} | case.wishes.colors
+        colors = {"cmap": case.map_on_ground} | case.wishes.colors
         if array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
         scene = case.wishes.scene("none", camera)
