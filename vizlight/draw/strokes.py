@@ -251,9 +251,8 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
         "vec2 vizThick = vec2(1.0), vizShare = vec2(1.0);",
         "vec2 vizPlace = vizHere.xy;",
     ]
-    if stroke.diameter is not None or stroke.halo:
-        # Row 1 of the projection, free of the model and of how VTK shifts and scales points.
-        lines.append(f"float vizSpread = {_ratio(1)};")
+    # Row 1 of the projection, free of the model and of how VTK shifts and scales points.
+    lines.append(f"float vizSpread = {_ratio(1)};")
     if stroke.diameter is not None:
         lines += [
             f"vizThick = max(vec2(1.0), {glsl.number(stroke.diameter)} * vizSpread",
@@ -279,6 +278,15 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
             "  vizWide /= abs(vizTurn);",
             "}",
         ]
+    # Depths of what is nearer to the eye by the width of the line, so that a surface on which it
+    # lies does not hide it.
+    lines += [
+        f"float vizSlope = -{_ratio(2)};",
+        "float vizFocus = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]) == vec3(0.0)",
+        "  ? 0.0 : 1.0;",
+        "float vizNearer = vizThick[i] * vizPen.y * vizHere.w / vizSpread;",
+        "if (vizFocus > 0.0) vizNearer = min(vizNearer, 0.5 * vizHere.w);",
+    ]
     if stroke.halo:
         lines += _capped(stroke, joined=joined, ended=ended)
     lines += [
@@ -286,6 +294,12 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
         "vizPlace += vizAcross * vizPen * vizHere.w;",
         "vec4 vizCorner = vec4(vizPlace, vizHere.zw);",
     ]
+    if not stroke.halo:
+        # Never before the near plane, which would cut it.
+        lines += [
+            "vizCorner.z = vizHere.w * max(-0.999, (vizHere.z + vizSlope * vizNearer)",
+            "  / (vizHere.w - vizFocus * vizNearer));",
+        ]
     # The place across the line, from -1 to 1, has the side of the tangent, which may run against
     # the segment.
     if stroke.round:
@@ -329,12 +343,7 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
         "  : vec3(vizFar, vizLong, -vizCap));",
         "vizPlace += (i == 0 ? -0.5 : 0.5) * vizCap * vizWhole * vizHere.w * vizStraight * vizPen;",
         "vizWide *= vizReach;",
-        # Depths of what is nearer to the eye by the width of the line, and of what is behind it.
-        f"float vizSlope = -{_ratio(2)};",
-        "float vizFocus = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]) == vec3(0.0)",
-        "  ? 0.0 : 1.0;",
-        "float vizNearer = vizWhole * vizPen.y * vizHere.w / vizSpread;",
-        "if (vizFocus > 0.0) vizNearer = min(vizNearer, 0.5 * vizHere.w);",
+        # Depths of what is nearer to the eye, and of what is behind it.
         f"vec2 vizMoved = vec2(vizNearer, -{glsl.number(stroke.depth)});",
         "vizDeepGSOutput.xy = 0.5 * vizHere.w * ((vizHere.z + vizSlope * vizMoved)",
         "  / (vizHere.w - vizFocus * vizMoved) - vizHere.z / vizHere.w);",
