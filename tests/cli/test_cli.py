@@ -206,7 +206,7 @@ def test_what_is_shown_is_told(volume, done, run):
     cells.save("cells.vti")
     for words, told in (
         ("flow.vti", "streamlines of V in the colours of their speed (heading: streamlines)"),
-        ("flow.vti --array r", "three slices of r"),
+        ("flow.vti --array r", "slices of r through the middle"),
         ("flat.vti", "relief of height (relief: sheet)"),
         ("flat.vti --for value", "height in colours (none: sheet)"),
         ("colors.vti", "rgb in colours (none: sheet)"),

@@ -1,10 +1,13 @@
 """What of a field is shown follows from how fast it turns in the picture."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import pyvista as pv
 
 import vizlight
+from vizlight.draw.render import BackendError
 from vizlight.looks.recipes import fields
 
 
@@ -18,10 +21,12 @@ def sheet(turn, count=60):
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.2, 1.0])
-def test_the_turn_of_a_field_is_that_per_length_of_its_edges(turn):
-    found = fields._turn(sheet(turn), "wind")
-    # Along the columns it does not turn; there are nearly as many edges along them.
-    assert found == pytest.approx(turn / 2, rel=0.03, abs=1e-7)
+@pytest.mark.parametrize("kind", ["image", "polygons"])
+def test_the_turn_of_a_field_is_that_per_length_around_its_cells(turn, kind):
+    grid = sheet(turn)
+    mesh = grid if kind == "image" else grid.extract_surface(algorithm="dataset_surface")
+    # Along the columns it does not turn, and each cell has as many edges along them.
+    assert fields._turn(mesh, "wind") == pytest.approx(turn / 2, rel=1e-6, abs=1e-7)
 
 
 def test_a_field_at_rest_does_not_turn():
@@ -58,7 +63,7 @@ def test_strokes_are_nearer_where_the_field_turns_faster():
 
 
 def test_a_faster_field_is_hues_and_a_faster_one_yet_its_speed_alone():
-    look = vizlight.look(sheet(1.2, 300))
+    look = vizlight.look(sheet(0.9, 300))
     assert "hue tells its course" in look.notes[0]
     assert look.drawing.words == "direction of wind"
     random = np.random.default_rng(0)
@@ -101,3 +106,38 @@ def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
     look = vizlight.look(image, size=(120, 80))
     assert "question" not in look.drawing.keys[0]
     assert "speed" not in look.summary
+
+
+def test_a_picture_in_doubt_is_read_back_and_not_chosen_where_it_cannot_be_read():
+    look = vizlight.look(sheet(1.2, 300))
+    assert look.drawing.words == "length of wind in colours"
+    assert look.notes[0].startswith("not chosen: direction of wind; its direction cannot be read: ")
+    assert "for its course to be seen" in look.notes[1]
+    assert "direction" not in look.figures().unreadable
+
+
+def test_hues_are_asked_for_after_strokes(monkeypatch):
+    monkeypatch.setattr(fields, "CLEAR", 1e9)
+    kind = type(vizlight.look(sheet(0, 12)))
+    read = []
+
+    def figures(look):
+        read.append(look.drawing.words)
+        is_first = len(read) == 1
+        reason = {"direction": "it is too fine", "value": "too"} if is_first else {"value": "too"}
+        return SimpleNamespace(unreadable=reason)
+
+    monkeypatch.setattr(kind, "figures", figures)
+    look = vizlight.look(sheet(0.05))
+    assert read == ["length of wind in colours, with strokes along it", "direction of wind"]
+    assert look.drawing.words == "direction of wind"
+    assert look.notes[0].endswith("its direction cannot be read: it is too fine")
+
+
+def test_without_a_library_that_draws_the_data_decide(monkeypatch):
+    def no_picture(look):
+        raise BackendError("no library")
+
+    monkeypatch.setattr(type(vizlight.look(sheet(0.05))), "figures", no_picture)
+    monkeypatch.setattr(fields, "CLEAR", 1e9)
+    assert "with strokes" in vizlight.look(sheet(0.05)).drawing.words

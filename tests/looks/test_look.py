@@ -60,7 +60,7 @@ KINDS = {
     "surface": (pv.Sphere(), "shape", "surface", None),
     "flow": (volume(V=turning, T=edge), "heading", "streamlines", "V"),
     "scan": (volume(T=edge), "shape", "isosurface", "T"),
-    "even ramp": (volume(T=lambda x, y, z: x), "shape", "three", "T"),
+    "even ramp": (volume(T=lambda x, y, z: x), "shape", "slices", "T"),
     "materials": (
         volume(mat=lambda x, y, z: np.digitize(x, (-2, 3)).astype(np.int32)), "value", "hull",
         "mat",

@@ -81,7 +81,7 @@ def _cells(mesh: pv.DataSet, name: str) -> tuple[Array, Array, Array]:
     if name not in mesh.point_data:
         mesh = mesh.cell_data_to_point_data()
     values = np.asarray(mesh.point_data[name], dtype=np.float64)
-    ids, starts, counts = _corners(mesh)
+    ids, starts, counts = sampled_corners(mesh)
     if not len(counts):
         return np.empty(0), np.empty(0), np.empty(0)
     corners = values[ids]
@@ -96,8 +96,11 @@ def _cells(mesh: pv.DataSet, name: str) -> tuple[Array, Array, Array]:
         return low, high, (high - low) / size
 
 
-def _corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:
-    """Return the points of some cells one after the other, where each begins, and their counts."""
+def sampled_corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:
+    """Return the points of some cells one after the other, where each begins, and their counts.
+
+    The points of a cell of a grid are in the order of a walk around it, along its edges.
+    """
     generator = np.random.default_rng(0)
     count = mesh.n_cells
     chosen = np.arange(count)
@@ -114,9 +117,12 @@ def _corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:
         return ids[np.arange(counts.sum()) + offsets], starts, counts
     shape = np.maximum(np.asarray(mesh.dimensions), 1)
     sides = np.maximum(shape - 1, 1)
-    steps = [np.arange(2) if size > 1 else np.arange(1) for size in shape]
     x, y, z = np.unravel_index(chosen, tuple(sides), order="F")
-    offsets = np.array([(i, j, k) for k in steps[2] for j in steps[1] for i in steps[0]])
+    ring: list[tuple[int, ...]] = [()]
+    for size in shape:
+        back = [(*corner, 1) for corner in reversed(ring)] if size > 1 else []
+        ring = [*((*corner, 0) for corner in ring), *back]
+    offsets = np.array(ring)
     at = np.stack([x, y, z], axis=1)[:, np.newaxis] + offsets
     ids = at[..., 0] + shape[0] * (at[..., 1] + shape[1] * at[..., 2])
     counts = np.full(len(chosen), len(offsets))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +13,7 @@ import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
-from vizlight.draw.render import IMAGES
+from vizlight.draw.render import IMAGES, BackendError
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named, Role
     from vizlight.looks.recipes.drawing import Drawing, Recipe
     from vizlight.looks.wishes import Wishes
+    from vizlight.observers.figures import Legibility
     from vizlight.scene import Scene
 
 __all__ = ["Look", "look"]
@@ -256,11 +258,12 @@ class Look:
         read = Step("", ".vizlight.legibility", plotter)
         return [*steps, Step("", "print", read), Step("", ".close", plotter)]
 
-    def figures(self) -> object:
+    def figures(self) -> Legibility:
         """Return what a reader reads back from the picture: :func:`vizlight.legibility`."""
         plotter = self.plotter()
         try:
-            return plotter.vizlight.legibility()
+            figures: Legibility = plotter.vizlight.legibility()
+            return figures
         finally:
             plotter.close()
 
@@ -402,15 +405,40 @@ def decide(data: object, wishes: Wishes) -> Look:
 
 
 def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
-    """Return the look of one mesh."""
+    """Return the look of one mesh: the first that a reader can read."""
     drawing = rule.recipe(case)
-    drawing = replace(drawing, notes=[*notes, *drawing.notes])
+    look = _look_of(rule, case, replace(drawing, notes=[*notes, *drawing.notes]))
+    while (doubt := look.drawing.doubt) is not None and (why := _unread(look, doubt.figures)):
+        notes = [*notes, why]
+        drawing = doubt.instead(case)
+        look = _look_of(rule, case, replace(drawing, notes=[*notes, *drawing.notes]))
+    return look
+
+
+def _look_of(rule: Rule, case: Case, drawing: Drawing) -> Look:
+    """Return the look of one mesh, as a recipe draws it."""
     array = None if case.array is None else case.array.name
     seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
     shown = drawing.words.split(" ", 1)[0] if rule.shown == "isosurface" else rule.shown
     others = _others(case.contents, case)
     return Look(case.question, shown, array, reason, others, case.wishes, drawing)
+
+
+def _unread(look: Look, names: Sequence[str]) -> str:
+    """Return why a picture is not chosen, empty if a reader can read it, or nothing can draw."""
+    try:
+        with warnings.catch_warnings():
+            # What cannot be lit is said when the picture is made.
+            warnings.simplefilter("ignore")
+            figures = look.figures()
+    except BackendError:
+        # What the data say has to be enough.
+        return ""
+    for name, reason in figures.unreadable.items():
+        if name in names:
+            return f"not chosen: {look.drawing.words}; its {name} cannot be read: {reason}"
+    return ""
 
 
 def read_steps(data: object, wishes: Wishes) -> list[Step]:

@@ -67,6 +67,22 @@ class Layer:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """What is read back from a picture before it is chosen.
+
+    Parameters
+    ----------
+    figures : sequence of str
+        Figures of legibility that the picture must have.
+    instead : callable
+        Recipe of what is drawn where one of them is unreadable.
+    """
+
+    figures: Sequence[str]
+    instead: Recipe
+
+
+@dataclass(frozen=True)
 class Drawing:
     """What a recipe makes of a case.
 
@@ -98,6 +114,8 @@ class Drawing:
         Array and colour map of the main mesh, as :func:`vizlight.save_gltf` takes them.
     background : str, optional
         Colour behind the data, where neither a white nor a dark one suits them.
+    doubt : Doubt, optional
+        What the picture may fail to tell.
     """
 
     layers: Sequence[Layer]
@@ -113,6 +131,7 @@ class Drawing:
     name: str = "luminance"
     colors: Keywords = dataclasses.field(default_factory=dict)
     background: str | None = None
+    doubt: Doubt | None = None
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""

@@ -2,6 +2,7 @@
 
 What of a field is shown follows from how fast it turns in the picture: strokes with their sense
 where neighbours run alike, hue where strokes would be too fine, else the lengths of vectors alone.
+Where that is in doubt the picture is read back, and the next is drawn if it cannot be read.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ import pyvista as pv
 from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.filters.streamlines import own_name
+from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
+    Doubt,
     Drawing,
     Layer,
     range_of,
@@ -42,6 +45,8 @@ SPACING = 1 / 40
 TURN, TURN_HUE = 0.6, 0.8
 #: Least distance between strokes, and size of a place whose hue is seen, in least widths of lines.
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
+#: Multiple of these from which no picture need be read back before it is chosen.
+CLEAR = 2.0
 #: Length of a stroke in distances between strokes, and its largest width: wider ones darken what is
 #: beside them for the eye.
 LONG, WIDE = 3.5, 1.7
@@ -69,20 +74,42 @@ def vectors(case: Case) -> Drawing:
         spacing = mesh.run().length * SPACING
         return _lit(case, mesh, camera, _strokes(mesh, case.scene(camera), array, spacing))
     pixel = _pixel(case, camera)
-    turn = _turn(records.averaged(mesh.run(), array.name), array.name) * pixel
+    turn = turn_in_pixels(case, mesh, camera, array.name)
     # Distances over which the field turns by a radian, in least widths of lines.
     room = 1 / max(turn * case.width, 1e-9)
-    if room * TURN < LEAST_SPACING and room * TURN_HUE < LEAST_PLACE:
-        note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
-        return replace(_speed(case, mesh, camera, None), notes=[note])
     if room * TURN < LEAST_SPACING:
-        note = f"{array.name} turns too fast here for strokes: hue tells its course, not its sense"
-        return replace(_lit(case, mesh, camera, strokes=None), notes=[note])
+        return _without_strokes(case, room)
     spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
     strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
     if strokes is None or _is_even(mesh.run(), array.name):
         return _lit(case, mesh, camera, strokes)
-    return _speed(case, mesh, camera, strokes)
+    drawing = _speed(case, mesh, camera, strokes)
+    if room * TURN > CLEAR * LEAST_SPACING:
+        return drawing
+    doubt = Doubt(("direction",), lambda case: _without_strokes(case, room))
+    return replace(drawing, doubt=doubt)
+
+
+def _without_strokes(case: Case, room: float) -> Drawing:
+    """Draw vectors by hue, or by their lengths alone where places of one hue are too small."""
+    array = case.needed_array
+    mesh = case.wishes.joined(case.surface, array)
+    camera = case.camera(mesh)
+    if room * TURN_HUE < LEAST_PLACE:
+        return _too_fast(case)
+    drawing = _lit(case, mesh, camera, strokes=None)
+    note = f"{array.name} turns too fast here for strokes: hue tells its course, not its sense"
+    in_doubt = room * TURN_HUE < CLEAR * LEAST_PLACE
+    doubt = Doubt(("direction",), _too_fast) if in_doubt else None
+    return replace(drawing, notes=[note], doubt=doubt)
+
+
+def _too_fast(case: Case) -> Drawing:
+    """Draw vectors by their lengths alone."""
+    array = case.needed_array
+    mesh = case.wishes.joined(case.surface, array)
+    note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
+    return replace(_speed(case, mesh, case.camera(mesh), None), notes=[note])
 
 
 def lengths(case: Case) -> Drawing:
@@ -160,6 +187,11 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     )
 
 
+def turn_in_pixels(case: Case, mesh: Step, camera: Step, name: str) -> float:
+    """Return by how much vectors at the points of a mesh turn within a pixel, in radians."""
+    return _turn(records.averaged(mesh.run(), name), name) * _pixel(case, camera)
+
+
 def _pixel(case: Case, camera: Step) -> float:
     """Return the size of a pixel at the focus of a camera, in the unit of the mesh."""
     eye: pv.Camera = camera.run()
@@ -169,15 +201,16 @@ def _pixel(case: Case, camera: Step) -> float:
 
 
 def _turn(mesh: pv.DataSet, name: str) -> float:
-    """Return by how much vectors turn along the edges of a mesh, in radians for each unit."""
-    edges = mesh.extract_all_edges()
-    first, last = edges.lines.reshape(-1, 3)[:, 1:].T
-    rows = np.asarray(edges.point_data[name], dtype=np.float64)
-    points = np.asarray(edges.points, dtype=np.float64)
+    """Return by how much vectors turn around cells, in radians for each unit."""
+    first, starts, counts = sampled_corners(mesh)
+    last = np.roll(first, -1)
+    last[starts + counts - 1] = first[starts]
+    rows = np.asarray(mesh.point_data[name], dtype=np.float64)
     ends = np.linalg.norm(rows[first], axis=1) * np.linalg.norm(rows[last], axis=1)
     good = np.isfinite(ends) & (ends > 0)
     first, last, ends = first[good], last[good], ends[good]
     cosines = np.einsum("ij,ij->i", rows[first], rows[last]) / ends
+    points = np.asarray(mesh.points, dtype=np.float64)
     length = np.linalg.norm(points[last] - points[first], axis=1).sum()
     return float(np.arccos(np.clip(cosines, -1, 1)).sum() / length) if length > 0 else 0.0
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
-from vizlight.looks.recipes import surfaces
-from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer
+from vizlight.looks.recipes import fields, surfaces
+from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
 
@@ -23,6 +24,12 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan.
 VOXELS = 30
+#: Share of its range through which a second array runs on an isosurface that shows it.
+LEAST_SPREAD = 0.02
+#: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
+#: computed for that.
+ROUGH = 0.1
+PLAIN_NORMALS = {"cell_normals": False, "split_vertices": False, "consistent_normals": False}
 
 
 def isosurface(case: Case) -> Drawing:
@@ -37,7 +44,9 @@ def isosurface(case: Case) -> Drawing:
     volume = case.data
     level, contrast = levels.best_level(case.data.run(), array.name)
     if contrast < levels.GOOD:
-        return slices(case, contrast)
+        steepest = f"the steepest is {contrast:.1f} times the mean"
+        return slices(case, f"; no isosurface stands out ({steepest})")
+    whole = case
     part = dict(case.wishes.part) | {"contour": array.name, "level": level}
     mesh = replace(case.wishes, part=part).isosurface(case.data)
     contents = Contents(mesh.run())
@@ -48,22 +57,42 @@ def isosurface(case: Case) -> Drawing:
         eye = eye_around(mesh.run())
         wishes = replace(wishes, frame=wishes.camera(Step("", ".outline", volume), eye))
     words = f"isosurface {array.name} = {levels.number(level)}"
-    # A few values of the volume are not its kinds.
-    known = {one.name: one for one in case.contents.arrays if one.role in ("values", "kinds")}
-    second = next((known[one.name] for one in contents.arrays if one.name in known), None)
+    second = _second(case, mesh.run())
     case = replace(case, data=mesh, contents=contents, wishes=wishes)
     if second is None or case.wishes.question == "shape":
+        figure = "shape"
         drawing = surfaces.surface(replace(case, question="shape"))
     else:
+        figure = "value"
         drawing = surfaces.values(replace(case, question="value", array=second))
         words += f" in the colours of {second.name}"
+    drawing = replace(drawing, words=words, notes=[*drawing.notes, *notes])
+    if wishes.question == "auto" and _is_rough(case, mesh, drawing.camera):
+        drawing = replace(drawing, doubt=Doubt((figure,), lambda _: slices(whole)))
     if notes or not around:
-        return replace(drawing, words=words, notes=[*drawing.notes, *notes])
+        return drawing
     box = Layer(Step("", ".outline", volume), {"color": "gray", "line_width": 1}, live=False)
-    return replace(drawing, layers=[*drawing.layers, box], words=words)
+    return replace(drawing, layers=[*drawing.layers, box])
 
 
-def slices(case: Case, contrast: float) -> Drawing:
+def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
+    """Return the array of a volume, of values or kinds, that changes along an isosurface."""
+    for one in case.contents.arrays:
+        if one.role in ("values", "kinds") and one.name in isosurface.array_names:
+            low, high = range_of(isosurface, one.name)
+            # What is a function of the values of the isosurface has one value on it.
+            if high - low > LEAST_SPREAD * np.subtract(*range_of(case.data.run(), one.name)[::-1]):
+                return one
+    return None
+
+
+def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
+    """Return whether the normals of an isosurface may turn too fast to be seen."""
+    normals = Step("", ".compute_normals", mesh, **PLAIN_NORMALS)
+    return fields.turn_in_pixels(case, normals, camera, "Normals") > ROUGH
+
+
+def slices(case: Case, why: str = "") -> Drawing:
     """Draw three slices through the middle of a volume, in the colours of its values."""
     array = case.needed_array
     mesh = Step("slices", ".slice_orthogonal", case.data)
@@ -74,10 +103,7 @@ def slices(case: Case, contrast: float) -> Drawing:
     colors = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
-    words = (
-        f"three slices of {array.name}; no isosurface stands out "
-        f"(the steepest is {contrast:.1f} times the mean)"
-    )
+    words = f"slices of {array.name} through the middle{why}"
     return Drawing([Layer(mesh, shown)], camera, scene, lit, words, [case.bar(array, colors)])
 
 

@@ -1,0 +1,48 @@
+"""Volumes of values: an isosurface, what is shown on it, and when it gives way to slices."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.looks.recipes import volumes
+
+
+def volume(noise=0.0, count=24):
+    grid = pv.ImageData(dimensions=(count,) * 3, spacing=(2 / (count - 1),) * 3)
+    x, y, z = grid.points.T - 1
+    ball = np.tanh(8 * (0.7 - np.sqrt(x * x + y * y + z * z)))
+    grid["T"] = ball + noise * np.random.default_rng(0).normal(size=len(ball))
+    return grid
+
+
+def test_a_second_array_is_shown_on_the_isosurface_where_it_changes_along_it():
+    grid = volume()
+    grid["twice"] = 2 * grid["T"] + 1
+    look = vizlight.look(grid, array="T")
+    assert look.shown == "isosurface"
+    assert "colours" not in look.summary
+    grid["x"] = grid.points[:, 0]
+    assert "in the colours of x" in vizlight.look(grid, array="T").summary
+
+
+def test_slices_are_named_so(monkeypatch):
+    monkeypatch.setattr(volumes.levels, "GOOD", 1e9)
+    look = vizlight.look(volume())
+    assert look.shown == "slices"
+    assert "no isosurface stands out" in look.summary
+
+
+@pytest.mark.opengl
+def test_a_rough_isosurface_that_cannot_be_read_gives_way_to_slices(monkeypatch):
+    monkeypatch.setattr(volumes.levels, "GOOD", 0.0)
+    # An image would be a scan, which is smoothed.
+    grid = volume(2.0, 60).cast_to_rectilinear_grid()
+    look = vizlight.look(grid, array="T", size=(300, 200))
+    assert look.shown == "slices"
+    assert look.notes[-1].startswith("not chosen: isosurface T = ")
+    assert "cannot be read: " in look.notes[-1]
+    # What is asked for is kept.
+    assert vizlight.look(grid, "shape", array="T", size=(300, 200)).shown == "isosurface"
+    smooth = vizlight.look(volume(), array="T", size=(300, 200))
+    assert (smooth.shown, smooth.notes) == ("isosurface", ())
