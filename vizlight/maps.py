@@ -168,14 +168,24 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     return table
 
 
-def directions() -> pv.LookupTable:
+def directions(names: Sequence[str] = ("x", "y", "z")) -> pv.LookupTable:
     """Return a lookup table with the colours of the axes, of which those of directions are mixed.
 
     They are those of :func:`vizlight.direction_colors`: red along x, green along y, blue along z.
 
+    Parameters
+    ----------
+    names : sequence of str, default: ("x", "y", "z")
+        Words for the three axes, such as ``"left, right"``.
+
     Returns
     -------
     pyvista.LookupTable
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the names are not three texts.
 
     Examples
     --------
@@ -183,10 +193,13 @@ def directions() -> pv.LookupTable:
     >>> maps.directions().annotations
     {0.0: 'x', 1.0: 'y', 2.0: 'z'}
     """
+    words = [_check.text(f"names[{i}]", name) for i, name in enumerate(names)]
+    if len(words) != 3:
+        raise ValueError(_check.message("names", "three words", f"{len(words)} words"))
     table = kinds([0, 1, 2])
     colors = np.zeros((3, 4), dtype=np.uint8)
     colors[:, :3] = 255 * np.eye(3, dtype=np.uint8)
     colors[:, 3] = 255
     table.values = colors
-    table.annotations = {float(axis): name for axis, name in enumerate("xyz")}
+    table.annotations = {float(axis): name for axis, name in enumerate(words)}
     return table

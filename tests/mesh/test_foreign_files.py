@@ -10,7 +10,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cli, files
-from vizlight.mesh import polylines
+from vizlight.mesh import meaning, polylines
 
 VIEW = vizlight.View(direction=(0, 0, 1))
 
@@ -384,3 +384,14 @@ def test_points_in_lines_of_text(tmp_path):
     (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
     mesh = vizlight.read(tmp_path / "a.xyz")
     assert mesh["rgb"].tolist() == [[10, 20, 30], [40, 50, 60]]
+
+
+def test_tracts_say_in_which_frame_they_are():
+    pytest.importorskip("nibabel")
+    mesh = vizlight.read(tract("standard.trk"))
+    assert meaning.ways(mesh) == ("left, right", "back, front", "down, up")
+    mesh.point_data.clear()
+    mesh.cell_data.clear()
+    bar = vizlight.look(mesh).drawing.keys[0]["cmap"].run()
+    assert bar.annotations == {0.0: "left, right", 1.0: "back, front", 2.0: "down, up"}
+    assert meaning.ways(pv.Line()) == ("x", "y", "z")

@@ -55,8 +55,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _with_command(words: list[str]) -> list[str]:
     """Return the words of a command; ``vizlight FILE`` is short for ``vizlight light FILE``."""
-    is_file = words and not words[0].startswith("-") and words[0] not in app
-    return ["light", *words] if is_file and Path(words[0]).suffix else words
+    first = words[0] if words else ""
+    if not first.startswith("-") and Path(first).suffix:
+        words = ["light", *words]
+    options.add_commands(words[0] if words else "")
+    return words
 
 
 def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:

@@ -529,6 +529,10 @@ def takes(
     """
 
     def decorate(command: Callable[..., int]) -> Callable[..., int]:
+        _LATER[command.__name__] = functools.partial(add, command)
+        return command
+
+    def add(command: Callable[..., int]) -> None:
         own = arguments_of(filter_, without=without, renamed=renamed)
         Parameter(name="*", group=Group(group, sort_key=1))(own)
         # Cyclopts reads the annotations, and this class was made just now.
@@ -541,13 +545,24 @@ def takes(
             if one.kind is one.KEYWORD_ONLY
         }
         name = command.__name__
-        return app.command(
+        app.command(
             command,
             usage=f"Usage: vizlight {name} FILES [OPTIONS]",
             help_epilogue=f"Example: vizlight {name} {example}",
         )
 
     return decorate
+
+
+#: What adds each command to the app that is not there yet: options take time to find.
+_LATER: dict[str, Callable[[], None]] = {}
+
+
+def add_commands(word: str) -> None:
+    """Add to the app the command that a word names; all commands if it names none."""
+    is_there = word in app and not word.startswith("-")
+    for name in [word] if word in _LATER else [] if is_there else [*_LATER]:
+        _LATER.pop(name)()
 
 
 def arguments_of(

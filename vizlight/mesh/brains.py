@@ -145,7 +145,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
     grid.point_data["NIFTI"] = flat
     grid.field_data[UNIT] = ["millimetre"]
-    said = meaning.Meaning(axes=["x to the right", "y forward", "z up"])
+    said = meaning.Meaning(axes=[*meaning.ANATOMY])
     said.axes[-1] += (
         f", in mm by the affine of the header (stored {''.join(nibabel.aff2axcodes(image.affine))})"
     )

@@ -16,7 +16,7 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, cf_grids, geomview, georeference, polylines, scene_files
+from vizlight.mesh import brains, cf_grids, geomview, georeference, meaning, polylines, scene_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -348,6 +348,8 @@ def _polylines(
                 odd.append(f"{name!r} ({len(array)} rows of {array.dtype} for {count})")
     if odd:
         _check.warn(f"file: data beside the lines are left out: {', '.join(odd)}")
+    # By the header of the file, in mm.
+    meaning.attach(mesh, meaning.Meaning(axes=[*meaning.ANATOMY]))
     return mesh
 
 

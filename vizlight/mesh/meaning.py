@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
-    "only_vectors", "say", "seconds", "vectors", "with_named", "without_missing",
+    "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
+    "only_vectors", "say", "seconds", "vectors", "ways", "with_named", "without_missing",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -34,6 +34,10 @@ MOST_KINDS = 12
 Named: TypeAlias = str | tuple[str, str]
 #: Field array with the meaning of a mesh, as JSON.
 MEANING = "meaning"
+#: Axes of brains, and the two ways along each.
+ANATOMY = {
+    "x to the right": "left, right", "y forward": "back, front", "z up": "down, up",
+}  # fmt: skip
 #: Attributes of an array of a file that are kept.
 KEPT = ("standard_name", "units", "long_name")
 
@@ -96,6 +100,17 @@ def of(mesh: pv.DataSet) -> Meaning:
     # An array of this name may be another program's.
     except (TypeError, ValueError):
         return Meaning()
+
+
+def ways(mesh: pv.DataSet) -> tuple[str, ...]:
+    """Return words for the two ways along each axis: x, y and z where the mesh says no more.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    starts = [axis.partition(",")[0] for axis in of(mesh).axes]
+    return tuple(ANATOMY.values()) if starts == list(ANATOMY) else ("x", "y", "z")
 
 
 def line(mesh: pv.DataSet) -> str:

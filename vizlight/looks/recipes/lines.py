@@ -11,6 +11,7 @@ from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
+from vizlight.mesh import meaning
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def lines(case: Case) -> Drawing:
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         layer = Layer(_by_direction(lit), {**shown, "line_width": width})
-        table = Step("", "vizlight.maps.directions")
+        table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "title": "direction", "cmap": table}
         words = "lines by their direction"
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
