@@ -279,10 +279,9 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # A raster without a place is a grid of pixels.
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         with rasterio.open(path) as file:
-            arrays = _bands(file, path.name.split(".")[0])
+            arrays, units = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
             crs = file.crs
-            units = {name: _unit(file, i) for i, name in enumerate(arrays)}
     words, said = [], meaning.Meaning(axes=["x east", "y north"])
     for name, rows in arrays.items():
         # Heights without a unit on a map are taken for metres, as lengths are.
@@ -321,10 +320,11 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     return grid
 
 
-def _bands(file: Foreign, stem: str) -> dict[str, Raw]:
-    """Return the bands by name, each with the shape (rows, columns) or (rows, columns, 3)."""
+def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
+    """Return the bands by name, (rows, columns) or (rows, columns, 3) each, and their units."""
     count = file.count
     found: dict[str, Raw] = {}
+    units: dict[str, str] = {}
     for i in range(count):
         if np.dtype(file.dtypes[i]).kind not in "iuf":
             # Complex numbers, as of radar, are no heights.
@@ -336,7 +336,8 @@ def _bands(file: Foreign, stem: str) -> dict[str, Raw]:
             is_length = not unit or meaning.metres(unit) is not None
             name = "elevation" if is_length and not _of_classes(rows) else stem
         # Two bands may have one description.
-        found[f"{name}_{i + 1}" if name in found else name] = rows
+        name = f"{name}_{i + 1}" if name in found else name
+        found[name], units[name] = rows, _unit(file, i)
     if not found:
         raise ValueError("no band of numbers")
     kinds = [kind.name for kind in file.colorinterp[:3]]
@@ -345,8 +346,8 @@ def _bands(file: Foreign, stem: str) -> dict[str, Raw]:
         rest = dict([*found.items()][3:])
         # A pixel that is marked as missing has no colour: it is black.
         rgb: Raw = np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)
-        return {"rgb": rgb} | rest
-    return found
+        return {"rgb": rgb} | rest, units
+    return found, units
 
 
 def _unit(file: Foreign, i: int) -> str:

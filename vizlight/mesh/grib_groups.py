@@ -1,4 +1,4 @@
-"""Files of GRIB with variables at several levels or on several grids: those on one grid."""
+"""GRIB: of files with variables at several levels or on several grids, those on one grid."""
 
 from __future__ import annotations
 

@@ -21,11 +21,12 @@ MIDDLE = 0.01
 def alike(
     file: Foreign, letters: Mapping[str, str], ticks: Mapping[str, Array | None]
 ) -> dict[str, str]:
-    """Return the dimension of the middles for each dimension that has one longer or shorter by one.
+    """Return the dimension of the middles of cells for each dimension of their sides.
 
-    Of those along one axis it is the dimension that most variables have. Coordinates must agree;
-    where there are none the names begin alike, such as ``west_east_stag`` and ``west_east``,
-    ``xi_u`` and ``xi_rho``; ``eta_u``, which is as long as ``eta_rho``, is alike too.
+    A dimension of sides is longer or shorter by one, or as long, as ``eta_u`` and ``eta_rho``. The
+    dimension of the middles is the one along the same axis that most variables have. Coordinates
+    must agree; without coordinates the names begin alike, such as ``west_east_stag`` and
+    ``west_east``, ``xi_u`` and ``xi_rho``.
 
     Parameters
     ----------
