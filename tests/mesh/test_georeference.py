@@ -5,7 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.mesh import georeference, meaning
+from vizlight.mesh import georeference
 
 
 def chart(latitude=60.0, kind=pv.ImageData):
@@ -99,19 +99,3 @@ def test_heights_are_exaggerated_until_they_can_be_seen(scale, expected):
     grid["height"] *= scale
     grid["height"][5] *= 1e3  # one wrong height does not change the range
     assert georeference.exaggeration(grid, "height") == expected
-
-
-def test_a_band_beside_colours_has_its_own_unit(tmp_path):
-    rasterio = pytest.importorskip("rasterio")
-    path = tmp_path / "four.tif"
-    shape = {"width": 6, "height": 5, "count": 4, "dtype": "uint8"}
-    place = rasterio.transform.from_origin(0, 50, 10, 10)
-    with rasterio.open(path, "w", driver="GTiff", crs="EPSG:32633", transform=place, **shape) as to:
-        to.write(np.arange(120, dtype=np.uint8).reshape(4, 5, 6))
-        colors = rasterio.enums.ColorInterp
-        to.colorinterp = [colors.red, colors.green, colors.blue, colors.undefined]
-        to.units = ["", "", "", "K"]
-        to.set_band_description(4, "heat")
-    mesh = vizlight.read(path)
-    assert {"rgb", "heat"} <= set(mesh.point_data)
-    assert meaning.of(mesh).arrays == {"heat": {"units": "K"}}

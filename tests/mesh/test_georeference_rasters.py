@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
+from vizlight.mesh import meaning
 
 rasterio = pytest.importorskip("rasterio")
 from rasterio.crs import CRS  # noqa: E402
@@ -111,3 +112,15 @@ def test_a_grid_of_ascii(tmp_path):
 def test_complex_numbers_are_no_heights(tmp_path):
     with pytest.raises(vizlight.files.FileError, match="no band of numbers"):
         vizlight.read(written(tmp_path / "a.tif", HEIGHTS.astype(np.complex64)))
+
+
+def test_a_band_beside_colours_has_its_own_unit(tmp_path):
+    path = written(tmp_path / "a.tif", np.arange(120, dtype=np.uint8).reshape(4, 5, 6))
+    with rasterio.open(path, "r+") as file:
+        colors = rasterio.enums.ColorInterp
+        file.colorinterp = [colors.red, colors.green, colors.blue, colors.undefined]
+        file.units = ["", "", "", "K"]
+        file.set_band_description(4, "heat")
+    mesh = vizlight.read(path)
+    assert {"rgb", "heat"} <= set(mesh.point_data)
+    assert meaning.of(mesh).arrays == {"heat": {"units": "K"}}
