@@ -29,6 +29,14 @@ def volume(**arrays):
     return grid
 
 
+def chart(**arrays):
+    """Return a map of Europe in degrees."""
+    grid = sheet(**arrays)
+    grid.spacing, grid.origin = (2.5, 2.0, 1.0), (-15.0, 33.0, 0.0)
+    grid.field_data["unit"] = ["degree"]
+    return grid
+
+
 def turning(x, y, z):
     return np.stack([-y, x, 0.3 * z + 1], axis=1)
 
@@ -48,6 +56,7 @@ def ball(**arrays):
 KINDS = {
     "values": (sheet(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
     "heights": (sheet(elevation=lambda x, y: 3 * np.sin(x / 3)), "relief", "sheet", "elevation"),
+    "map": (chart(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
     "classes": (sheet(land=lambda x, _: (x > 9).astype(int)), "none", "sheet", "land"),
     "components": (
         sheet(u=lambda x, y: 1 + 0 * x, v=lambda x, y: np.sin(x)), "direction", "sheet", "u,v",

@@ -16,7 +16,7 @@ from vizlight.draw.render import IMAGES
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
-from vizlight.looks.recipes import fields, lines, reliefs, surfaces
+from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
@@ -403,7 +403,7 @@ def decide(data: object, wishes: Wishes) -> Look:
 
 def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
     """Return the look of one mesh."""
-    drawing = rule.recipe(case)
+    drawing = maps.furnished(case, rule.recipe(case))
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
     seen = "" if case.wishes.frame else drawing.camera.note
@@ -454,6 +454,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         step = Step("points", ".cast_to_poly_points", step)
     elif sum(size > 1 for size in getattr(mesh, "dimensions", ())) == 1:
         step = Step("lines", ".cast_to_unstructured_grid", step)
+    if georeference.is_earth(mesh):
+        step = Step("chart", "vizlight.cartography.in_degrees", step)
+        notes.append("x and y are those of the whole earth in degrees, and taken for them")
     step = look_options.cut(step, wishes)
     notes += [step.note] if step.note else []
     if part.get("slice") is not None:
