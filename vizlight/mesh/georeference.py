@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees", "in_metres", "is_earth", "is_map",
-    "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees", "stretch",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees", "in_metres",
+    "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees", "stretch",
 ]  # fmt: skip
 
 
@@ -202,10 +202,10 @@ def is_earth(mesh: pv.DataSet) -> bool:
     ----------
     mesh : pyvista.DataSet
     """
-    west, east, south, north, _, _ = mesh.bounds
+    west, east, south, north, low, high = mesh.bounds
     is_around = 340 < east - west < 361 and -181 <= west <= 1
     from_pole_to_pole = south >= -90 and north <= 90 and north - south > 150
-    return UNIT not in mesh.field_data and is_around and from_pole_to_pole
+    return UNIT not in mesh.field_data and is_around and from_pole_to_pole and low == high
 
 
 def on_earth(mesh: pv.DataSet) -> bool:
