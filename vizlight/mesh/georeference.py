@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees", "in_metres",
-    "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees", "stretch",
+    "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees",
+    "stretch",
 ]  # fmt: skip
 
 
@@ -203,7 +204,7 @@ def is_earth(mesh: pv.DataSet) -> bool:
     mesh : pyvista.DataSet
     """
     west, east, south, north, low, high = mesh.bounds
-    is_around = 340 < east - west < 361 and -181 <= west <= 1
+    is_around = 340 < east - west < 361 and min(abs(west), abs(west + 180)) < 10
     from_pole_to_pole = south >= -90 and north <= 90 and north - south > 150
     return UNIT not in mesh.field_data and is_around and from_pole_to_pole and low == high
 
