@@ -2,6 +2,7 @@
 
 ==========================  ===============================================================
 ``cartography.coasts``      coasts of the earth, as lines in degrees
+``cartography.isolines``    lines of equal values, with their numbers
 ``cartography.in_degrees``  mesh that says that its x and y are degrees
 ``cartography.frame``       degrees around a map, or a bar of lengths below it
 ==========================  ===============================================================
@@ -9,8 +10,9 @@
 :func:`vizlight.look` adds them to the maps that it draws.
 """
 
+from vizlight.draw.isolines import isolines
 from vizlight.draw.map_frames import frame
 from vizlight.mesh.coasts import coasts
 from vizlight.mesh.georeference import in_degrees
 
-__all__ = ["coasts", "frame", "in_degrees"]
+__all__ = ["coasts", "frame", "in_degrees", "isolines"]

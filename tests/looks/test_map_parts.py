@@ -10,6 +10,8 @@ from vizlight.draw.legends import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
 
 SIZE = (300, 200)
+#: Ends of the paths of the layers of isolines and of their numbers.
+ISOLINES = ["[]", "[]"]
 
 
 def chart(width, height, west=-20.0, south=30.0, unit="degree", name="warmth"):
@@ -32,14 +34,14 @@ def paths(look):
 @pytest.mark.parametrize(
     ("mesh", "options", "parts"),
     [
-        (chart(60, 40), {}, ["coasts", "frame"]),
-        (chart(10, 8), {}, ["frame"]),
+        (chart(60, 40), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(10, 8), {}, [*ISOLINES, "frame"]),
         (chart(60, 40, unit=""), {}, []),
-        (chart(360, 180, -180, -90, unit=""), {}, ["coasts", "frame"]),
-        (chart(360, 180, 0, -90, unit=""), {}, ["coasts", "frame"]),
-        (chart(60, 40, west=-160, south=-40), {}, ["frame"]),
+        (chart(360, 180, -180, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(360, 180, 0, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
         (chart(60, 40, name="elevation"), {}, ["frame"]),
-        (chart(9000, 8000, unit="metre"), {}, ["frame"]),
+        (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
         (chart(60, 40), {"view": "iso"}, ["coasts"]),
     ],
 )
