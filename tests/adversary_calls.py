@@ -204,6 +204,7 @@ OWN = {
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
     "coasts.coasts": {"bounds": (-10.0, 40.0, 35.0, 60.0)},
+    "globes.globe": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "maps.heights": {"low": -10.0, "high": 250.0},

@@ -95,6 +95,37 @@ def test_the_data_choose(kind):
     assert all(other.array != look.array for other in look.others)
 
 
+def globe(**options):
+    """Return the look of a globe with one array, and what it is of."""
+    grid = pv.ImageData(dimensions=(25, 13, 1), spacing=(15, 15, 1), origin=(-180, -90, 0))
+    x, y, _ = np.radians(np.asarray(grid.points, dtype=float)).T
+    grid["warmth"] = np.sin(y) + np.cos(x)
+    return grid, vizlight.look(grid, size=SIZE, globe=True, **options)
+
+
+def test_a_globe_is_a_closed_ball_with_coasts_and_a_part_of_the_earth_is_none():
+    _, look = globe()
+    assert (look.question, look.shown, look.array) == ("none", "globe", "warmth")
+    assert [layer.mesh.path for layer in look.drawing.layers][1:] == [".scale"]
+    assert look.mesh.n_open_edges == 0
+    for mesh in (chart(warmth=lambda x, y: x), sheet(warmth=lambda x, y: x)):
+        with pytest.raises(ValueError, match="globe: expected a map of the whole earth"):
+            vizlight.look(mesh, globe=True)
+    with pytest.raises(TypeError, match="globe: expected True or False"):
+        vizlight.look(ball(), globe="yes")
+
+
+@pytest.mark.opengl
+def test_the_script_of_a_globe_draws_the_same(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh, look = globe()
+    look.save("one.png")
+    exec(look.script("two.png"), {"mesh": mesh})
+    one, two = (np.asarray(Image.open(f"{name}.png")).astype(int) for name in ("one", "two"))
+    assert np.abs(one - two).max() <= 2
+    assert look.save("page.html").stat().st_size > 10_000
+
+
 @pytest.mark.slow
 @pytest.mark.opengl
 @pytest.mark.parametrize("kind", KINDS)

@@ -330,9 +330,9 @@ def look(
         Background of the picture: white or nearly black.
     **options
         Further options. What is taken of the data: ``time``, ``overlay``, ``contour``, ``level``,
-        ``warp``, ``exaggeration``. The light: ``scene``, and options of
-        :func:`vizlight.illuminate` or of the filter of the question, such as ``tangents``. The
-        picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``up``, ``parallel``,
+        ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
+        ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
+        as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``up``, ``parallel``,
         ``zoom``, ``backend``.
 
     Returns
@@ -459,6 +459,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes.append("x and y are those of the whole earth in degrees, and taken for them")
     step = look_options.cut(step, wishes)
     notes += [step.note] if step.note else []
+    if part.get("globe"):
+        step = wishes.globe(step)
     if part.get("slice") is not None:
         # Planes that cut a map are in the coordinates of its file, so they come before metres.
         step = wishes.section(step)

@@ -33,6 +33,8 @@ MOST_POINTS, LEVELS, SMALL = 100_000, 8, 0.75
 #: Parts of a colour map that have one ink, and the lightness in CIELAB from which on it is black:
 #: white lines let more of the values be read, but are not seen on pale ground.
 INKS, LIGHT = 16, 75.0
+#: Radius of the coasts of a ball of radius 1.
+ABOVE_BALL = 1.002
 
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
@@ -77,6 +79,13 @@ def inks(cmap: Given) -> list[str]:
     shares = (np.arange(INKS) + 0.5) / INKS
     colors = np.asarray(get_cmap_safe(cmap)(shares))[:, :3]
     return ["black" if light > LIGHT else "white" for light in eye.lab(colors)[:, 0]]
+
+
+def shore() -> Step:
+    """Return the step that makes the coasts of a globe."""
+    flat = Step("", "vizlight.cartography.coasts", (-180.0, 180.0, -90.0, 90.0))
+    # Sides of cells are chords of the ball, which would hide lines on it.
+    return Step("coasts", ".scale", Step("", "vizlight.cartography.globe", flat), ABOVE_BALL)
 
 
 def coasts(mesh: Step) -> Step | None:

@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, data
-from vizlight.mesh import polylines
+from vizlight.mesh import georeference, polylines
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -75,7 +75,9 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
     lines = [np.concatenate([part[:1, 0], part[:, 1]]) for part in parts]
     ends: Indices = np.cumsum([0, *map(len, lines)])
     flat = np.concatenate([np.empty((0, 2)), *lines])
-    return polylines.polydata(np.column_stack([flat, np.full(len(flat), height)]), ends)
+    shore = polylines.polydata(np.column_stack([flat, np.full(len(flat), height)]), ends)
+    shore.field_data[georeference.UNIT] = [georeference.DEGREE]
+    return shore
 
 
 def _sides(bounds: Sequence[float]) -> Array:

@@ -13,7 +13,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import georeference
+from vizlight.mesh import georeference, globes
 
 if TYPE_CHECKING:
     from vizlight._types import Keywords
@@ -33,6 +33,8 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     beside: Keywords = {"scene": even_light(drawing.camera), "pickable": False}
     ink = ink_on(pv.Color(drawing.background or case.wishes.background))
     coasts = map_parts.coasts(case.data) if _has_coasts(case) else None
+    if case.wishes.frame is None and globes.is_globe(case.contents.mesh):
+        coasts = map_parts.shore()
     if coasts is not None:
         lines: Keywords = {"color": ink, "line_width": case.width, "halo": BAND}
         if len(layers) > 1:
