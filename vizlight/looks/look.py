@@ -332,8 +332,8 @@ def look(
         Further options. What is taken of the data: ``time``, ``overlay``, ``contour``, ``level``,
         ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
         ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
-        as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``up``, ``parallel``,
-        ``zoom``, ``backend``.
+        as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
+        ``up``, ``parallel``, ``zoom``, ``backend``.
 
     Returns
     -------

@@ -66,8 +66,8 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
     if mesh.bounds_size[2] > 0:
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
         raise ValueError(_check.message("mesh", expected, got))
-    lines = isinstance(mesh, pv.PolyData) and mesh.n_lines > 0
-    flat = _divided(mesh) if lines else _surface(_closed(mesh))
+    lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
+    flat = _surface(_closed(mesh)) if lines is None else _divided(lines)
     for names in meaning.components(flat):
         name = ",".join(names)
         if name not in flat.array_names and names[0] in flat.point_data:
@@ -82,7 +82,7 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
     for name, rows in flat.cell_data.items():
         if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
             turned.cell_data[name] = _turned(np.asarray(rows), middles)
-    ball = turned if lines else _whole(turned)
+    ball = _whole(turned) if lines is None else turned
     ball.field_data.pop(georeference.UNIT, None)
     ball.field_data[GLOBE] = [1.0]
     return ball
@@ -111,7 +111,7 @@ def _axes(places: Array) -> Array:
 
 
 def _turned(rows: Array, axes: Array) -> Array:
-    return np.einsum("ij,ijk->ik", rows, axes).astype(rows.dtype)
+    return np.asarray(np.einsum("ij,ijk->ik", rows, axes).astype(rows.dtype))
 
 
 def _divided(lines: pv.PolyData) -> pv.PolyData:
