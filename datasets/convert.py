@@ -1,7 +1,8 @@
 """Make the embedded data: ``python datasets/convert.py SOURCE ...``, in the order of the functions.
 
 The command ``pip download --no-deps mayavi==4.9.0 dipy==1.12.1 dm_control==1.0.50
-matplotlib==3.11.2 nilearn==0.14.1`` fetches the wheels. Reliefs and winds are the files
+matplotlib==3.11.2 nilearn==0.14.1 geopandas==0.14.4`` fetches the wheels. Reliefs and winds are
+the files
 ``etopo20.cdf``, ``etopo5.cdf`` and ``monthly_navy_winds.cdf`` in ``usr/share/ferret-vis/data`` of
 Debian's package ferret-datasets: the command ``apt-get download ferret-datasets`` fetches the
 package, ``dpkg-deb -x`` unpacks it. ``carotid.vtk`` is in the data of VTK, which PyVista downloads
@@ -13,11 +14,13 @@ from __future__ import annotations
 import gzip
 import hashlib
 import io
+import itertools
 import sys
 import tempfile
 import zipfile
+from collections import Counter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista as pv
@@ -29,6 +32,9 @@ from vtkmodules.vtkIOXML import (
     vtkXMLUnstructuredGridWriter,
 )
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 HERE = Path(__file__).parent
 #: Length of a degree of latitude in metres.
 DEGREE = 111_195
@@ -37,6 +43,9 @@ FIBRES = "dipy/data/files/tracks300.trk"
 DOG = "dm_control/suite/dog_assets/SKINbody.stl"
 FAULT = "matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz"
 BRAIN = "nilearn/datasets/data/mni_icbm152_{}_tal_nlin_sym_09a_converted.nii.gz"
+COUNTRIES = "geopandas/datasets/naturalearth_lowres/naturalearth_lowres.shp"
+#: Steps of a degree to which coasts are rounded.
+STEPS = 200
 #: West, east, south and north of the islands of Hawaii, in degrees east and north.
 HAWAII = (196.0, 209.0, 16.0, 25.0)
 
@@ -217,10 +226,61 @@ def brain(wheel: Path) -> Path:
     return _saved(out, "brain.vti")
 
 
+def coasts(wheel: Path) -> Path:
+    """Write the coasts of countries as lines in degrees, to the nearest 0.005 degrees."""
+    with zipfile.ZipFile(wheel) as archive:
+        content = archive.read(COUNTRIES)
+    # Sides of countries in steps of 0.005 degrees. A border is a side of two of them.
+    count: Counter[tuple[tuple[int, int], ...]] = Counter()
+    at = 100
+    while at < len(content):
+        parts, points = np.frombuffer(content, "<i4", 2, at + 44)
+        starts = [*np.frombuffer(content, "<i4", parts, at + 52), points]
+        flat = np.frombuffer(content, "<f8", 2 * points, at + 52 + 4 * parts).reshape(-1, 2)
+        places = [(int(x), int(y)) for x, y in np.rint(STEPS * flat)]
+        for first, last in itertools.pairwise(starts):
+            for side in itertools.pairwise(places[first:last]):
+                count[tuple(sorted(side))] += 1
+        at += 8 + 2 * int.from_bytes(content[at + 4 : at + 8], "big")
+    # Nor are cuts coasts: along the date line, and along the bottom of the map.
+    sides = [
+        (a, b)
+        for (a, b), times in count.items()
+        if a != b
+        and times == 1
+        and not (abs(a[0]) == abs(b[0]) == 180 * STEPS or a[1] == -90 * STEPS)
+    ]
+    lines = _followed(sides)
+    out = pv.PolyData()
+    out.points = np.array(
+        [(x / STEPS, y / STEPS, 0) for line in lines for x, y in line], np.float32
+    )
+    ends = np.cumsum([0, *map(len, lines)])
+    out.SetLines(pv.CellArray.from_arrays(ends, np.arange(ends[-1])))
+    return _saved(out, "coasts.vtp")
+
+
+def _followed(sides: Sequence[tuple[tuple[int, int], ...]]) -> list[list[tuple[int, int]]]:
+    """Return the lines along some sides, those that end at the date line first, then rings."""
+    beside: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for a, b in sides:
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    lines = []
+    for start in sorted(beside, key=lambda place: (len(beside[place]), place)):
+        line = [start]
+        while beside[line[-1]]:
+            line.append(beside[line[-1]].pop())
+            beside[line[-1]].remove(line[-2])
+        if len(line) > 1:
+            lines.append(line)
+    return lines
+
+
 if __name__ == "__main__":
     makers = (
         rotating_disk, fibre_bundle, earth_relief, dog, jacksboro_fault, winds_of_july,
-        hawaii, carotid, brain,
+        hawaii, carotid, brain, coasts,
     )  # fmt: skip
     for make, source in zip(makers, sys.argv[1:], strict=True):
         made = make(Path(source))

@@ -118,6 +118,11 @@ def black():
     return np.zeros((20, 20, 3), np.uint8)
 
 
+def europe():
+    """Return a map in degrees."""
+    return pv.ImageData(dimensions=(6, 5, 1), spacing=(10, 8, 1), origin=(-10, 30, 0))
+
+
 X, Y = np.linspace(0.0, 1.0, 7), np.linspace(0.0, 1.0, 6)
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -198,6 +203,10 @@ OWN = {
     "add_recorded": {"mesh": lit},
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
+    "coasts.coasts": {"bounds": (-10.0, 40.0, 35.0, 60.0)},
+    "globes.globe": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
+    "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
+    "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "maps.heights": {"low": -10.0, "high": 250.0},
     "maps.kinds": {"values": [1.0, 2.0, 7.0]},
     "looks.look.look": {"data": ball},

@@ -13,6 +13,7 @@ DATASETS = Path(__file__).parent.parent / "datasets"
 KNOWN = {
     "brain.vti": (587_520, "matter", 20, 80),
     "carotid.vti": (167_580, "brightness", 0, 580),
+    "coasts.vtp": (5128, None, 0, 0),
     "dog.vtp": (16_952, None, 0, 0),
     "earth_relief.vti": (583_200, "elevation", -9027, 6229),
     "fibre_bundle.vtp": (14_576, None, 0, 0),

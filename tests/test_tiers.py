@@ -37,7 +37,7 @@ TIERS = [
     {"draw", "pieces"},
     {"observers"},
     {"looks"},
-    {"accessor", "demo", "doctor", "presets"},
+    {"accessor", "cartography", "demo", "doctor", "presets"},
     {"cli"},
     {"__main__"},
 ]

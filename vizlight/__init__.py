@@ -12,6 +12,7 @@ import typing as _typing
 from vizlight._version import __version__ as __version__
 
 if _typing.TYPE_CHECKING:
+    from vizlight import cartography as cartography
     from vizlight import maps as maps
     from vizlight import pieces as pieces
     from vizlight import presets as presets
@@ -102,7 +103,7 @@ _NAMES = {
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 #: Modules that are attributes of the package, by the folders that hold them.
 _FOLDERS = {
-    "vizlight": "accessor files filters geometry maps model pieces presets vtk",
+    "vizlight": "accessor cartography files filters geometry maps model pieces presets vtk",
     "vizlight.draw": "movie paraview render testing",
     "vizlight.shading": "engine",
 }

@@ -50,7 +50,8 @@ def load_example(name: str = "rotating_disk.vtu") -> pv.DataSet:
     ----------
     name : str, default: "rotating_disk.vtu"
         Name of the file; other files are "fibre_bundle.vtp", "dog.vtp", "winds_of_july.vtp",
-        "earth_relief.vti", "jacksboro_fault.vti", "hawaii.vti", "carotid.vti" and "brain.vti".
+        "earth_relief.vti", "coasts.vtp", "jacksboro_fault.vti", "hawaii.vti", "carotid.vti" and
+        "brain.vti".
 
     Returns
     -------

@@ -29,6 +29,14 @@ def volume(**arrays):
     return grid
 
 
+def chart(**arrays):
+    """Return a map of Europe in degrees."""
+    grid = sheet(**arrays)
+    grid.spacing, grid.origin = (2.5, 2.0, 1.0), (-15.0, 33.0, 0.0)
+    grid.field_data["unit"] = ["degree"]
+    return grid
+
+
 def turning(x, y, z):
     return np.stack([-y, x, 0.3 * z + 1], axis=1)
 
@@ -48,6 +56,7 @@ def ball(**arrays):
 KINDS = {
     "values": (sheet(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
     "heights": (sheet(elevation=lambda x, y: 3 * np.sin(x / 3)), "relief", "sheet", "elevation"),
+    "map": (chart(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
     "classes": (sheet(land=lambda x, _: (x > 9).astype(int)), "none", "sheet", "land"),
     "components": (
         sheet(u=lambda x, y: 1 + 0 * x, v=lambda x, y: np.sin(x)), "direction", "sheet", "u,v",
@@ -84,6 +93,37 @@ def test_the_data_choose(kind):
     assert mesh.array_names == names
     assert str(look).count("\n") == 2
     assert all(other.array != look.array for other in look.others)
+
+
+def globe(**options):
+    """Return the look of a globe with one array, and what it is of."""
+    grid = pv.ImageData(dimensions=(25, 13, 1), spacing=(15, 15, 1), origin=(-180, -90, 0))
+    x, y, _ = np.radians(np.asarray(grid.points, dtype=float)).T
+    grid["warmth"] = np.sin(y) + np.cos(x)
+    return grid, vizlight.look(grid, size=SIZE, globe=True, **options)
+
+
+def test_a_globe_is_a_closed_ball_with_coasts_and_a_part_of_the_earth_is_none():
+    _, look = globe()
+    assert (look.question, look.shown, look.array) == ("none", "globe", "warmth")
+    assert [layer.mesh.path for layer in look.drawing.layers][1:] == [".scale"]
+    assert look.mesh.n_open_edges == 0
+    for mesh in (chart(warmth=lambda x, y: x), sheet(warmth=lambda x, y: x)):
+        with pytest.raises(ValueError, match="globe: expected a map of the whole earth"):
+            vizlight.look(mesh, globe=True)
+    with pytest.raises(TypeError, match="globe: expected True or False"):
+        vizlight.look(ball(), globe="yes")
+
+
+@pytest.mark.opengl
+def test_the_script_of_a_globe_draws_the_same(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh, look = globe()
+    look.save("one.png")
+    exec(look.script("two.png"), {"mesh": mesh})
+    one, two = (np.asarray(Image.open(f"{name}.png")).astype(int) for name in ("one", "two"))
+    assert np.abs(one - two).max() <= 2
+    assert look.save("page.html").stat().st_size > 10_000
 
 
 @pytest.mark.slow

@@ -99,3 +99,22 @@ def test_heights_are_exaggerated_until_they_can_be_seen(scale, expected):
     grid["height"] *= scale
     grid["height"][5] *= 1e3  # one wrong height does not change the range
     assert georeference.exaggeration(grid, "height") == expected
+
+
+def test_the_whole_earth_is_taken_for_it_and_other_planets_are_not():
+    def grid(west, south, *, thick=1):
+        return pv.ImageData(dimensions=(73, 37, thick), spacing=(5, 5, 1), origin=(west, south, 0))
+
+    assert georeference.is_earth(grid(-180, -90))
+    assert georeference.is_earth(grid(0, -90))
+    for other in (grid(-90, -90), grid(-180, -60), grid(-180, -90, thick=2)):
+        assert not georeference.is_earth(other)
+    earth = georeference.in_degrees(grid(-180, -90))
+    assert georeference.has_degrees(earth)
+    assert not georeference.is_earth(earth)  # said, not seen
+    assert georeference.on_earth(earth)
+    for radius, here in ((6378137, True), (6370000.0, True), (3396190, False)):
+        earth.field_data["crs"] = [f'GEOGCS["A",DATUM["D",SPHEROID["S",{radius},0]]]']
+        assert georeference.on_earth(earth) is here
+    with pytest.raises(ValueError, match="mesh: expected a mesh whose y is a latitude"):
+        georeference.in_degrees(pv.Plane(i_size=1000, j_size=1000))

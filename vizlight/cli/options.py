@@ -92,11 +92,14 @@ class Shape(Part):
         Point array by which points are moved: heights, or vectors.
     exaggeration
         Factor of heights. Default: one that shows them, which is printed.
+    globe
+        Show a map of the whole earth on a ball.
     """
 
     slice: Text | None = None
     warp: str | None = None
     exaggeration: float | None = None
+    globe: Flag = False
 
 
 @dataclass(frozen=True, kw_only=True)

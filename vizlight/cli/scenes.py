@@ -123,7 +123,7 @@ def _part_of(part: Part) -> Keywords:
     """Return what is taken of the data, its texts read."""
     taken = known(time=part.time, overlay=part.overlay, contour=part.contour, level=part.level)
     if isinstance(part, Shape):
-        taken |= known(warp=part.warp, exaggeration=part.exaggeration)
+        taken |= known(warp=part.warp, exaggeration=part.exaggeration, globe=part.globe)
     if part.threshold:
         taken["threshold"] = [options.interval("threshold", text) for text in part.threshold]
     if part.clip:

@@ -176,6 +176,9 @@ def _seen(
     front = areas * _in_front(places, len(corners), way) * (cosines > 0.15)
     seen = float(front.sum())
     if values is not None:
+        # What has no value shows nothing.
+        front = front * np.isfinite(values)
+        seen = float(front.sum())
         seen *= 1 + min(_spread(values, front * cosines) / (_spread(values, areas) or 1.0), 1.0)
     rows = corners.reshape(-1, 3)
     tall = max(np.ptp(rows @ up), np.ptp(rows @ right) / ASPECT)

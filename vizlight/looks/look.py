@@ -17,7 +17,7 @@ from vizlight.draw.render import IMAGES, BackendError
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
-from vizlight.looks.recipes import fields, lines, reliefs, surfaces
+from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
@@ -333,10 +333,10 @@ def look(
         Background of the picture: white or nearly black.
     **options
         Further options. What is taken of the data: ``time``, ``overlay``, ``contour``, ``level``,
-        ``warp``, ``exaggeration``. The light: ``scene``, and options of
-        :func:`vizlight.illuminate` or of the filter of the question, such as ``tangents``. The
-        picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``up``, ``parallel``,
-        ``zoom``, ``backend``.
+        ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
+        ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
+        as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
+        ``up``, ``parallel``, ``zoom``, ``backend``.
 
     Returns
     -------
@@ -406,17 +406,17 @@ def decide(data: object, wishes: Wishes) -> Look:
 
 def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
     """Return the look of one mesh: the first that a reader can read."""
-    drawing = rule.recipe(case)
-    look = _look_of(rule, case, replace(drawing, notes=[*notes, *drawing.notes]))
+    look = _look_of(rule, case, rule.recipe(case), notes)
     while (doubt := look.drawing.doubt) is not None and (why := _unread(look, doubt.figures)):
         notes = [*notes, why]
-        drawing = doubt.instead(case)
-        look = _look_of(rule, case, replace(drawing, notes=[*notes, *drawing.notes]))
+        look = _look_of(rule, case, doubt.instead(case), notes)
     return look
 
 
-def _look_of(rule: Rule, case: Case, drawing: Drawing) -> Look:
-    """Return the look of one mesh, as a recipe draws it."""
+def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> Look:
+    """Return the look of one mesh, as a recipe draws it, with what maps have."""
+    drawing = maps.furnished(case, drawing)
+    drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
     seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
@@ -482,8 +482,13 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         step = Step("points", ".cast_to_poly_points", step)
     elif sum(size > 1 for size in getattr(mesh, "dimensions", ())) == 1:
         step = Step("lines", ".cast_to_unstructured_grid", step)
+    if georeference.is_earth(mesh):
+        step = Step("chart", "vizlight.cartography.in_degrees", step)
+        notes.append("x and y are those of the whole earth in degrees, and taken for them")
     step = look_options.cut(step, wishes)
     notes += [step.note] if step.note else []
+    if part.get("globe"):
+        step = wishes.globe(step)
     if part.get("slice") is not None:
         # Planes that cut a map are in the coordinates of its file, so they come before metres.
         step = wishes.section(step)

@@ -29,7 +29,18 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import SceneMaker
 
 #: Options of what is taken of the data, of the camera, and of the picture.
-PART = ("time", "overlay", "clip", "threshold", "contour", "level", "slice", "warp", "exaggeration")
+PART = (
+    "time",
+    "overlay",
+    "clip",
+    "threshold",
+    "contour",
+    "level",
+    "slice",
+    "warp",
+    "exaggeration",
+    "globe",
+)
 EYE = ("up", "parallel", "zoom")
 PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "backend", "progress",
@@ -59,6 +70,7 @@ def sorted_out(
     light_names = {*inspect.signature(LightOptions).parameters}
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
     scene = options.pop("scene", None)
+    _check.boolean("globe", options.get("globe", False))
     for name, value in options.items():
         group = next(
             (

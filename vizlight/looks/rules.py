@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
+from vizlight.mesh import globes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,6 +72,10 @@ def _is_terrain(contents: Contents) -> bool:
     return contents.flat_axis == 2 and hasattr(contents.mesh, "dimensions")
 
 
+def _is_globe(contents: Contents) -> bool:
+    return contents.dimension == 2 and globes.is_globe(contents.mesh)
+
+
 def _is_surface(contents: Contents) -> bool:
     return contents.dimension == 2
 
@@ -103,6 +108,8 @@ RULES = (
     Rule("sheet", _is_flat, "none", (), surfaces.plane, "a plane without data"),
     Rule("surface", _is_surface, "direction", ("vectors",), fields.vectors,
          "a surface with vectors"),
+    Rule("globe", _is_globe, "none", ("values", "heights", "kinds"), surfaces.values,
+         "a globe of values"),
     Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a surface with values"),
     Rule("surface", _is_surface, "shape", (), surfaces.surface, "a surface without data"),

@@ -44,6 +44,8 @@ VIEWS: dict[str, Vector] = {
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 40.0)
+#: Degrees of longitude from which on a map is one of the whole earth.
+GLOBAL = 340.0
 #: Bounding box that shows where a camera of n-space looks.
 BOX = (-1, 1, -1, 1, -1, 1)
 
@@ -252,6 +254,22 @@ class Wishes:
         names = ("contour", "level")
         keywords = {name: self.part[name] for name in names if self.part.get(name) is not None}
         return Step("surface", "files.surface_of", mesh, **keywords)
+
+    def globe(self, mesh: Step) -> Step:
+        """Return the step that puts a map of the whole earth on a ball.
+
+        Raises
+        ------
+        ValueError
+            If it is no map in degrees, or not around the earth.
+        """
+        flat = mesh.run()
+        wide = float(flat.bounds_size[0]) if georeference.has_degrees(flat) else None
+        if wide is None or wide < GLOBAL:
+            got = "no map in degrees" if wide is None else f"one of {wide:.4g} degrees"
+            expected = f"a map of the whole earth, of at least {GLOBAL:g} degrees of longitude,"
+            raise ValueError(message("globe", f"{expected} for a globe", got, "leave out globe"))
+        return Step("ball", "vizlight.cartography.globe", mesh)
 
     def section(self, mesh: Step) -> Step:
         """Return the step that takes the section by a plane."""

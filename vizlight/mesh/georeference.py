@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.mesh import blocks, meaning
 
 if TYPE_CHECKING:
@@ -18,8 +20,9 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "in_metres", "is_map", "motion", "rates", "read",
-    "scale_to_one", "seem_degrees", "stretch",
+    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees", "in_metres",
+    "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees",
+    "stretch",
 ]  # fmt: skip
 
 
@@ -31,6 +34,8 @@ LATITUDE = "latitude"
 NEAR_POLE = 89.0
 #: Length of a degree of latitude on the sphere of the earth's mean radius, in metres.
 METRES = math.radians(6_371_008.8)
+#: Radii of what is taken for the earth, in metres.
+RADII = (6.3e6, 6.45e6)
 #: Length of a kilometre in metres.
 KILOMETRE = 1e3
 #: Range of heights, as a share of the side of a map, that needs no exaggeration.
@@ -39,8 +44,13 @@ ENOUGH = (0.05, 0.5)
 RANGE = (1.0, 99.0)
 
 
-def _in_degrees(mesh: pv.DataSet) -> bool:
-    """Return whether the x and y of a mesh are said to be in degrees."""
+def has_degrees(mesh: pv.DataSet) -> bool:
+    """Return whether the x and y of a mesh are said to be in degrees.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
     return UNIT in mesh.field_data and mesh.field_data[UNIT][0] == DEGREE
 
 
@@ -61,7 +71,7 @@ def in_metres(mesh: DataSetT) -> DataSetT:
     pyvista.DataSet
         Copy that shares the arrays, or the mesh itself where it is not in degrees.
     """
-    if not _in_degrees(mesh):
+    if not has_degrees(mesh):
         return mesh
     x, y, _ = mesh.center
     # At a pole all meridians meet: a degree of longitude would have no length.
@@ -92,7 +102,7 @@ def rates(mesh: pv.DataSet, places: Array) -> Array:
     """
     result: Array = np.ones((len(places), 3))
     latitudes, scale = places[:, 1], 1.0
-    if _in_degrees(mesh):
+    if has_degrees(mesh):
         result[:, :2] = scale = 1 / METRES
     elif LATITUDE in mesh.field_data:
         middle = float(mesh.field_data[LATITUDE][0])
@@ -161,7 +171,7 @@ def is_map(mesh: pv.DataSet) -> bool:
     ----------
     mesh : pyvista.DataSet
     """
-    return _in_degrees(mesh) or LATITUDE in mesh.field_data
+    return has_degrees(mesh) or LATITUDE in mesh.field_data
 
 
 def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
@@ -184,6 +194,68 @@ def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
     # Pixels of an image that has no place are one apart.
     fine = max(getattr(grid, "spacing", (0.0, 0.0))[:2]) < 1
     return degrees and fine and _spread(grid, heights) > max(grid.bounds_size[:2])
+
+
+def is_earth(mesh: pv.DataSet) -> bool:
+    """Return whether the x and y of a mesh of unknown unit are those of the whole earth in degrees.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    west, east, south, north, low, high = mesh.bounds
+    is_around = 340 < east - west < 361 and min(abs(west), abs(west + 180)) < 10
+    from_pole_to_pole = south >= -90 and north <= 90 and north - south > 150
+    return UNIT not in mesh.field_data and is_around and from_pole_to_pole and low == high
+
+
+def on_earth(mesh: pv.DataSet) -> bool:
+    """Return whether no reference system of a mesh says that it is of another planet.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    system = str(mesh.field_data["crs"][0]) if "crs" in mesh.field_data else ""
+    radius = re.search(r'(?:SPHEROID|ELLIPSOID)\["[^"]*",\s*([\d.]+)', system)
+    return radius is None or RADII[0] < float(radius[1]) < RADII[1]
+
+
+def in_degrees(mesh: DataSetT, /) -> DataSetT:
+    """Return a mesh that says that its x and y are degrees of longitude and of latitude.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Map whose x and y are degrees east and north.
+
+    Returns
+    -------
+    pyvista.DataSet
+        Copy that shares the arrays, with the field array ``unit``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no mesh, or its latitudes are none.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> from vizlight import cartography
+    >>> earth = cartography.in_degrees(vizlight.load_example("earth_relief.vti"))
+    >>> str(earth.field_data["unit"][0])
+    'degree'
+    """
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _, _, south, north, _, _ = _check.coordinates("mesh", mesh.bounds)
+    if mesh.n_points and not -90 <= south <= north <= 90:
+        expected = "a mesh whose y is a latitude, from -90 to 90"
+        raise ValueError(_check.message("mesh", expected, f"y from {south:g} to {north:g}"))
+    named = mesh.copy(deep=False)
+    named.field_data[UNIT] = [DEGREE]
+    return named
 
 
 def exaggeration(mesh: pv.DataSet, heights: str) -> float:
@@ -215,7 +287,7 @@ def stretch(mesh: pv.DataSet) -> float:
         Mesh.
     """
     x, y, z = in_metres(mesh).bounds_size
-    return _factor(z, math.sqrt(x * y) or max(x, y)) if _in_degrees(mesh) else 1.0
+    return _factor(z, math.sqrt(x * y) or max(x, y)) if has_degrees(mesh) else 1.0
 
 
 def _factor(spread: float, side: float) -> float:

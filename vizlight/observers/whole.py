@@ -138,7 +138,10 @@ def reading(
 
 
 def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) -> Shown:
-    """Return what a renderer shows that can be read, and what hides it."""
+    """Return what a renderer shows that can be read, and what hides it.
+
+    An actor that cannot be picked is no data: it hides what is behind it.
+    """
     shown = Shown([], [], [])
     # Supersampling draws a picture that many times as wide and shrinks it.
     pixel = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
@@ -148,7 +151,9 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
             continue
         live, style = live_of(actor), actor.GetProperty()
         width = max(1.0, style.GetLineWidth() / pixel)
-        if live is None:
+        if not actor.GetPickable():
+            part = None  # what stands beside the data, such as coasts
+        elif live is None:
             part = _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
         else:
             # Strokes are as wide as their property says.

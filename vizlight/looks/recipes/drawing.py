@@ -13,6 +13,7 @@ import pyvista as pv
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.files import FORMATS
+from vizlight.looks import map_parts
 from vizlight.looks.contents import kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
@@ -32,6 +33,9 @@ LIGHTNESS = "viridis"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
+
+#: Questions whose pictures of maps have north up, whatever their shape is.
+NORTH_UP = ("relief", "sky")
 
 #: Function that draws a case.
 Recipe: TypeAlias = "Callable[[Case], Drawing]"
@@ -179,9 +183,22 @@ class Case:
         shown = array.name if array is not None and array.role in ("values", "heights") else None
         return eye_of(mesh.run(), self.contents, shown)
 
+    @cached_property
+    def frame(self) -> Step | None:
+        """Step that makes what stands around a map, None for what is none or is seen at a slant."""
+        wishes = self.wishes
+        if self.contents.flat_axis != 2 or wishes.view is not None or wishes.frame is not None:
+            return None
+        up = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
+        return map_parts.frame(self.data, wishes, up)
+
     def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
         """Return the step that sets the camera on a mesh, by the options or by what suits it."""
-        return self.wishes.camera(mesh, self.eye(mesh) if eye is None else eye)
+        eye = self.eye(mesh) if eye is None else eye
+        if self.frame is not None:
+            # There is room for what stands around the map.
+            mesh = Step("", "pyvista.MultiBlock", [mesh, self.frame])
+        return self.wishes.camera(mesh, eye)
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""

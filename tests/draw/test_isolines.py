@@ -1,0 +1,75 @@
+"""Isolines: on their values, with numbers in gaps, of smooth fields alone."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.draw.isolines import are_smooth, isolines
+
+
+def cone(count=41):
+    """Return a sheet of 40 x 40 whose values are the distance from its middle."""
+    grid = pv.ImageData(
+        dimensions=(count, count, 1), spacing=(40 / (count - 1),) * 3, origin=(-20, -20, 2)
+    )
+    x, y, _ = np.asarray(grid.points, dtype=float).T
+    grid["r"] = np.hypot(x, y)
+    return grid
+
+
+def test_lines_are_where_the_field_has_their_levels():
+    made = isolines(cone(201), "r", [5.0, 10.0, 15.0], letters=0.8)
+    lines = made["lines"]
+    x, y, z = np.asarray(lines.points, dtype=float).T
+    assert np.abs(np.hypot(x, y) - lines["level"]).max() < 0.01
+    assert set(z) == {2.0}
+    assert set(lines["level"]) == {5.0, 10.0, 15.0}
+
+
+def test_numbers_stand_in_gaps_of_their_lines_and_upright():
+    letters = 0.8
+    made = isolines(cone(201), "r", [5.0, 10.0, 15.0], letters=letters)
+    lines, numbers = made["lines"], made["numbers"]
+    for level in (5.0, 10.0, 15.0):
+        word = np.asarray(numbers.points)[numbers["level"] == level][:, :2]
+        middle = (word.min(axis=0) + word.max(axis=0)) / 2
+        assert np.hypot(*middle) == pytest.approx(level, abs=0.6 * letters)
+        line = np.asarray(lines.points)[lines["level"] == level][:, :2]
+        distance = np.linalg.norm(line[:, np.newaxis] - word, axis=2).min()
+        assert distance > 0.15 * letters
+    assert np.ptp(np.asarray(numbers.points)[numbers["level"] == 5.0][:, :2], axis=0).max() < 2
+
+
+def test_numbers_say_the_level_exactly():
+    texts = []
+    for level in (5.0, 7.5, 12.25):
+        made = isolines(cone(), "r", [level], letters=0.5)
+        texts.append(np.ptp(np.asarray(made["numbers"].points)[:, :2], axis=0).max())
+    # 5, 7.5 and 12.25 have more letters each.
+    assert texts == sorted(texts)
+    assert texts[2] > 2 * texts[1] - texts[0] > texts[0]
+
+
+def test_missing_values_have_no_lines():
+    grid = cone()
+    values = np.array(grid["r"])
+    values[np.asarray(grid.points)[:, 0] > 0] = np.nan
+    grid["r"] = values
+    lines = isolines(grid, "r", [10.0], letters=0.5)["lines"]
+    assert lines.n_points
+    assert lines.bounds[1] <= 0
+    assert np.isfinite(lines.points).all()
+
+
+def test_smooth_fields_and_noise():
+    grid = cone(81)
+    levels = [2.0, 6.0, 10.0, 14.0]
+    assert are_smooth(grid, isolines(grid, "r", levels, letters=0.8)["lines"], 0.8)
+    grid["r"] = grid["r"] + np.random.default_rng(1).normal(scale=3, size=grid.n_points)
+    assert not are_smooth(grid, isolines(grid, "r", levels, letters=0.8)["lines"], 0.8)
+    assert not are_smooth(grid, isolines(grid, "r", [1e6], letters=0.8)["lines"], 0.8)
+
+
+def test_an_array_that_is_missing():
+    with pytest.raises(ValueError, match="name: expected the name of an array"):
+        isolines(cone(), "q", [1.0], letters=1.0)

@@ -1,0 +1,105 @@
+"""Frames of maps: round degrees in words, bars of round lengths, arrows, and nothing on data."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.draw import map_frames
+from vizlight.draw.map_frames import frame, ticks
+from vizlight.mesh.georeference import in_degrees
+from vizlight.vtk import letters
+
+
+def sheet(width, height, *, unit="degree", origin=(0, 0, 0)):
+    grid = pv.ImageData(dimensions=(2, 2, 1), spacing=(width, height, 1), origin=origin)
+    if unit:
+        grid.field_data["unit"] = [unit]
+    return grid
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "size", "signs", "words"),
+    [
+        (-180, 180, 5, "EW", ["180°", "120°W", "60°W", "0°", "60°E", "120°E", "180°"]),
+        (120, 300, 5, "EW", ["120°E", "150°E", "180°", "150°W", "120°W", "90°W", "60°W"]),
+        (-90, 90, 5, "NS", ["90°S", "60°S", "30°S", "0°", "30°N", "60°N", "90°N"]),
+        (52.37, 52.461, 0.003, "NS", ["52.38°N", "52.40°N", "52.42°N", "52.44°N", "52.46°N"]),
+        (-0.01, 0.01, 0.001, "EW", ["0.01°W", "0.00°", "0.01°E"]),
+    ],
+)
+def test_ticks_are_round_and_named(low, high, size, signs, words):
+    assert [word for _, word in ticks(low, high, size, signs)] == words
+
+
+def test_words_never_touch():
+    random = np.random.default_rng(3)
+    for _ in range(60):
+        low = random.uniform(-180, 170)
+        high = low + random.uniform(0.01, 360)
+        size = (high - low) * random.uniform(0.01, 0.1)
+        found = ticks(low, high, size, "EW")
+        halves = [size * letters.width(word) / 2 for _, word in found]
+        for (a, _), (b, _), one, other in zip(found, found[1:], halves, halves[1:], strict=False):
+            assert b - a > one + other + 0.2 * size
+
+
+def test_a_frame_of_degrees_is_around_the_data():
+    made = frame(sheet(60, 40, origin=(-20, 30, 3)), 2.0)
+    points = np.asarray(made.points, dtype=float)
+    inside = (points[:, 0] > -20) & (points[:, 0] < 40) & (points[:, 1] > 30) & (points[:, 1] < 70)
+    # Corners of the lines along the sides lie on them.
+    assert not inside.any()
+    assert set(points[:, 2]) == {3.0}
+    west, east, south, north = made.bounds[:4]
+    assert west < -20 - 2 * 2.0
+    assert south < 30 - 2.0
+    assert north == pytest.approx(70, abs=1.1)
+    assert east < 40 + 2 * 2.0
+
+
+def test_a_bar_has_a_round_length_of_at_most_a_quarter():
+    made = frame(sheet(37_000, 20_000, unit="metre"), 900.0)
+    bar = np.asarray(made.points, dtype=float)[:4]
+    assert np.ptp(bar[:, 0]) == 5000
+    assert bar[:, 1].max() < 0
+    feet = frame(sheet(37_000, 20_000, unit="foot"), 900.0)
+    assert np.ptp(np.asarray(feet.points, dtype=float)[:4, 0]) == pytest.approx(2000 / 0.3048)
+
+
+def test_an_arrow_points_north_where_up_is_not():
+    """The tip of the arrow is its farthest corner along y, whatever is up in the picture."""
+    for up in [(1, 0), (-1, 0), (0.6, 0.8), (0, -1)]:
+        made = frame(sheet(100, 20, unit=""), 2.0, up=up)
+        head = np.asarray(made.points, dtype=float)[:4]
+        tip = head[0] - head[1:].mean(axis=0)
+        assert tip[1] > 0
+        assert tip[0] == pytest.approx(0, abs=1e-6)
+    assert frame(sheet(100, 20, unit=""), 2.0).n_points == 0
+
+
+def test_degrees_that_no_unit_names():
+    assert frame(sheet(20, 10, unit=""), 1.0).n_points == 0
+    assert frame(in_degrees(sheet(20, 10, unit="")), 1.0).n_points > 100
+
+
+def test_a_turned_frame_names_the_sides_as_they_run():
+    """North to the right: the lower side has latitudes from the left, the left one longitudes."""
+    upright = frame(sheet(20, 60, origin=(-70, -50, 0)), 2.0)
+    turned = frame(sheet(20, 60, origin=(-70, -50, 0)), 2.0, up=(-1, 0))
+    assert (turned.bounds[0], turned.bounds[1]) != (upright.bounds[0], upright.bounds[1])
+    # Below in the picture is east of the map.
+    assert turned.bounds[1] > -50 + 2.0
+    assert turned.bounds[2] < -50 - 2 * 2.0
+    assert turned.n_points > 100
+
+
+def test_letters_without_height():
+    with pytest.raises(ValueError, match="letters: expected"):
+        frame(sheet(20, 10), 0.0)
+
+
+def test_lines_are_thin_and_words_as_high_as_asked():
+    assert map_frames.LINE < map_frames.GAP
+    made = frame(sheet(1000, 500, unit="metre"), 30.0)
+    word = np.asarray(made.points, dtype=float)[8:]
+    assert np.ptp(word[:, 1]) == pytest.approx(0.73 * 30, rel=0.1)

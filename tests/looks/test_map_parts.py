@@ -1,0 +1,104 @@
+"""What a look draws on and around maps: coasts and frames, where they are and where not."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.draw.cameras import MARGIN
+from vizlight.draw.legends import LETTERS, data_share
+from vizlight.draw.render import KEY_SIZE
+
+SIZE = (300, 200)
+#: Ends of the paths of the layers of isolines and of their numbers.
+ISOLINES = ["[]", "[]"]
+
+
+def chart(width, height, west=-20.0, south=30.0, unit="degree", name="warmth"):
+    """Return a map of 21 x 16 points with a smooth array."""
+    grid = pv.ImageData(
+        dimensions=(21, 16, 1), spacing=(width / 20, height / 15, 1), origin=(west, south, 0)
+    )
+    x, y, _ = np.asarray(grid.points, dtype=float).T
+    grid[name] = np.sin(x / width * 4) + np.cos(y / height * 3)
+    if unit:
+        grid.field_data["unit"] = [unit]
+    return grid
+
+
+def paths(look):
+    """Return the paths of the steps that make the layers of a look."""
+    return [layer.mesh.path.rpartition(".")[2] for layer in look.drawing.layers]
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "parts"),
+    [
+        (chart(60, 40), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(10, 8), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40, unit=""), {}, []),
+        (chart(360, 180, -180, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(360, 180, 0, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40, name="elevation"), {}, ["frame"]),
+        (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40), {"view": "iso"}, ["coasts"]),
+    ],
+)
+def test_maps_have_what_suits_them(mesh, options, parts):
+    assert paths(vizlight.look(mesh, size=SIZE, **options))[1:] == parts
+
+
+def test_two_maps_in_one_picture_have_no_frame_of_one():
+    assert (
+        paths(vizlight.look([chart(60, 40), chart(60, 40, south=70.0)], size=SIZE))
+        == ["surface_of"] * 2
+    )
+
+
+@pytest.mark.parametrize("sides", [(60, 40), (360, 180), (15, 60), (90, 10)])
+def test_all_of_the_frame_is_in_the_picture_and_the_map_fills_the_rest(sides):
+    look = vizlight.look(chart(*sides, west=-20, south=-30), size=SIZE)
+    camera, frame = look.view, look.drawing.layers[-1].mesh.run()
+    share = data_share(SIZE, KEY_SIZE)
+    high = camera.parallel_scale
+    wide = high * SIZE[0] * share[0] / (SIZE[1] * share[1])
+    x, y, _ = np.asarray(frame.points, dtype=float).T - np.reshape(camera.focal_point, (3, 1))
+    up = np.array(camera.up)[:2]
+    right = np.array([up[1], -up[0]])
+    filled = [
+        np.abs(x * right[0] + y * right[1]).max() / wide,
+        np.abs(x * up[0] + y * up[1]).max() / high,
+    ]
+    assert max(filled) == pytest.approx(1 / MARGIN, abs=0.03)
+    # Letters are as high as those of keys.
+    pixels = look.drawing.layers[-1].mesh.keywords["letters"] / (2 * high) * SIZE[1] * share[1]
+    assert pixels == pytest.approx(LETTERS * min(SIZE), rel=0.06)
+
+
+@pytest.mark.opengl
+def test_a_page_has_the_coasts_and_the_frame(tmp_path):
+    look = vizlight.look(chart(60, 40), size=SIZE)
+    with_them = look.save(tmp_path / "a.html").stat().st_size
+    bare = vizlight.look(chart(60, 40, unit=""), size=SIZE).save(tmp_path / "b.html").stat().st_size
+    assert with_them > bare + 3000
+
+
+@pytest.mark.opengl
+def test_coasts_are_seen_on_dark_colours_and_on_light_ones():
+    """Where a coast runs the picture differs by more than a step of grey from a bare one."""
+    for cmap in ("Greys", "Greys_r", "viridis"):
+        pictures = []
+        for unit in ("degree", ""):
+            plotter = vizlight.look(
+                chart(60, 40, unit=unit), size=SIZE, cmap=cmap, key=False
+            ).plotter()
+            if unit:
+                camera = plotter.camera.copy()
+            plotter.camera = camera
+            pictures.append(plotter.screenshot(return_img=True).astype(int))
+            plotter.close()
+        change = np.abs(pictures[0] - pictures[1]).sum(axis=2)
+        # Over the data: coasts alone.
+        inner = change[40:120, 60:260]
+        assert np.mean(inner > 150) > 0.03

@@ -1,0 +1,94 @@
+"""Globes: places, winds, seams, poles, lines, and maps that are none."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.mesh.coasts import coasts
+from vizlight.mesh.georeference import in_degrees
+from vizlight.mesh.globes import globe, is_globe
+
+
+def earth(west=-180.0, columns=73, south=-90.0, rows=37, kind="image"):
+    """Return a map every 5 degrees with a smooth array and a wind that turns with the earth."""
+    grid = pv.ImageData(dimensions=(columns, rows, 1), spacing=(5, 5, 1), origin=(west, south, 0))
+    x, y, _ = np.radians(np.asarray(grid.points, dtype=float)).T
+    grid["warmth"] = np.sin(y) + 0.3 * np.cos(x) * np.cos(y)
+    grid["u"], grid["v"] = 7 * np.cos(y), 0 * y
+    if kind == "rectilinear":
+        grid = grid.cast_to_rectilinear_grid()
+    return in_degrees(grid)
+
+
+def places(ball):
+    points = np.asarray(ball.points, dtype=float)
+    return points, np.arctan2(points[:, 1], points[:, 0]), np.arcsin(np.clip(points[:, 2], -1, 1))
+
+
+@pytest.mark.parametrize(
+    "grid",
+    [
+        earth(),
+        earth(west=0.0),
+        earth(kind="rectilinear"),
+        earth(columns=72),
+        earth(south=-87.5, rows=36),
+        earth(west=2.5, columns=72, south=-87.5, rows=36),
+    ],
+    ids=["closed", "from 0", "rectilinear", "seam", "poles", "both"],
+)
+def test_a_ball_is_closed_and_has_the_values_of_its_map(grid):
+    ball = globe(grid)
+    points, east, north = places(ball)
+    assert np.linalg.norm(points, axis=1) == pytest.approx(1, abs=1e-6)
+    assert ball.n_open_edges == 0
+    assert len(np.unique(points.round(5), axis=0)) == ball.n_points
+    # Genus 0: a sphere and nothing else.
+    edges = ball.extract_all_edges().n_cells
+    assert ball.n_points - edges + ball.n_cells == 2
+    expected = np.sin(north) + 0.3 * np.cos(east) * np.cos(north)
+    assert np.asarray(ball["warmth"]) == pytest.approx(expected, abs=0.01)
+    assert is_globe(ball)
+    assert not is_globe(grid)
+
+
+def test_winds_are_tangent_and_turn_about_the_axis():
+    ball = globe(earth())
+    wind, points = np.asarray(ball["u,v"], dtype=float), np.asarray(ball.points, dtype=float)
+    assert np.abs(np.sum(wind * points, axis=1)).max() < 1e-5
+    assert wind == pytest.approx(7 * np.cross((0, 0, 1), points), abs=1e-4)
+
+
+def test_lines_follow_the_ball():
+    shore = globe(coasts((-180.0, 180.0, -90.0, 90.0)))
+    points = np.asarray(shore.points, dtype=float)
+    assert np.linalg.norm(points, axis=1) == pytest.approx(1, abs=1e-6)
+    longest = max(
+        np.linalg.norm(np.diff(np.asarray(cell.points), axis=0), axis=1).max()
+        for cell in shore.cell
+    )
+    assert longest < np.radians(1.5)
+    horn = np.radians((-67.3, -55.5))
+    cape = (np.cos(horn[1]) * np.cos(horn[0]), np.cos(horn[1]) * np.sin(horn[0]), np.sin(horn[1]))
+    assert np.linalg.norm(points - cape, axis=1).min() < np.radians(0.7)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "error", "words"),
+    [
+        (3, TypeError, "mesh: expected a mesh"),
+        (pv.Plane(), ValueError, "mesh: expected a map in degrees"),
+        (in_degrees(pv.ImageData(dimensions=(5, 5, 3))), ValueError, "a flat map"),
+    ],
+)
+def test_what_is_no_map(mesh, error, words):
+    with pytest.raises(error, match=words):
+        globe(mesh)
+
+
+def test_balls_of_geovista_are_globes_and_others_are_not():
+    ball = pv.Sphere(radius=1.0)
+    assert not is_globe(ball)
+    ball.field_data["gvCRS"] = ["EPSG:4326"]
+    assert is_globe(ball)
+    assert not is_globe(ball.scale(2.0))

@@ -1,0 +1,199 @@
+"""Maps in degrees on the unit sphere: closed at their seam, whole at the poles, winds tangent."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+from scipy.spatial import cKDTree
+
+from vizlight import _check
+from vizlight.mesh import georeference, meaning, polylines
+from vizlight.vtk.cells import connectivity
+
+if TYPE_CHECKING:
+    from vizlight._types import Array, Indices
+
+__all__ = ["globe"]
+
+#: Field array that says that a mesh is the earth as a ball around 0, with its radius.
+GLOBE = "globe"
+#: Degrees around the earth, and those of a side of a line at most.
+AROUND, FINE = 360.0, 1.0
+#: Degrees from a pole within which an edge of a map is closed to it, and those of a circle.
+NEAR_POLE = 15.0
+
+
+def globe(mesh: pv.DataSet, /) -> pv.PolyData:
+    """Return a flat map in degrees on the unit sphere: x toward 0 degrees east, z toward north.
+
+    Columns that begin anew after 360 degrees are one; a map that ends one step before that is
+    closed, and one that ends near a pole is closed there by the mean of its last row. Vectors,
+    and components of vectors such as those of a wind, are turned from east, north and up to where
+    these directions point. Lines are divided into steps of at most 1 degree.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Flat map, whose field array ``unit`` says ``degree``.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Surface, or lines, with the arrays of the map.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no flat map in degrees.
+
+    Examples
+    --------
+    >>> import vizlight
+    >>> from vizlight import cartography
+    >>> earth = cartography.in_degrees(vizlight.load_example("earth_relief.vti"))
+    >>> cartography.globe(earth).n_open_edges
+    0
+    """
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    if not georeference.has_degrees(mesh):
+        remedy = "pass it through vizlight.cartography.in_degrees"
+        raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))
+    _check.coordinates("mesh", mesh.bounds)
+    if mesh.bounds_size[2] > 0:
+        expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
+        raise ValueError(_check.message("mesh", expected, got))
+    lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
+    flat = _surface(_closed(mesh)) if lines is None else _divided(lines)
+    for names in meaning.components(flat):
+        name = ",".join(names)
+        if name not in flat.array_names and names[0] in flat.point_data:
+            flat.point_data[name] = meaning.vectors(flat, names)
+    axes = _axes(np.asarray(flat.points, dtype=np.float64))
+    turned = flat.copy(deep=False)
+    turned.points = axes[:, 2].copy()
+    for name, rows in flat.point_data.items():
+        if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
+            turned.point_data[name] = _turned(np.asarray(rows), axes)
+    middles = _axes(np.asarray(flat.cell_centers().points, dtype=np.float64))
+    for name, rows in flat.cell_data.items():
+        if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
+            turned.cell_data[name] = _turned(np.asarray(rows), middles)
+    ball = _whole(turned) if lines is None else turned
+    ball.field_data.pop(georeference.UNIT, None)
+    ball.field_data[GLOBE] = [1.0]
+    return ball
+
+
+def is_globe(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is said to be the earth as a ball of radius 1: by us or by GeoVista.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    if not mesh.n_points or not ({GLOBE, "gvCRS"} & set(mesh.field_data)):
+        return False
+    sample = np.asarray(mesh.points, dtype=np.float64)[:: max(mesh.n_points // 1000, 1)]
+    return bool(np.allclose(np.linalg.norm(sample, axis=1), 1, atol=1e-3))
+
+
+def _axes(places: Array) -> Array:
+    """Return the directions east, north and up at places in degrees, shape (N, 3, 3)."""
+    east, north = np.radians(places[:, 0]), np.radians(places[:, 1])
+    zero = np.zeros_like(east)
+    sin, cos, high, low = np.sin(east), np.cos(east), np.sin(north), np.cos(north)
+    rows = ((-sin, cos, zero), (-high * cos, -high * sin, low), (low * cos, low * sin, high))
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def _turned(rows: Array, axes: Array) -> Array:
+    return np.asarray(np.einsum("ij,ijk->ik", rows, axes).astype(rows.dtype))
+
+
+def _divided(lines: pv.PolyData) -> pv.PolyData:
+    """Return lines whose sides are at most a degree long."""
+    ids, ends = connectivity(lines.GetLines())
+    flat = np.asarray(lines.points, dtype=np.float64)[ids]
+    parts: list[Array] = []
+    for piece in np.split(flat, ends[1:-1]):
+        steps = np.maximum(np.ceil(np.abs(np.diff(piece, axis=0)).max(axis=1) / FINE), 1)
+        at = np.concatenate([[0.0], np.cumsum(steps)])
+        places = np.arange(at[-1] + 1)
+        parts.append(np.column_stack([np.interp(places, at, column) for column in piece.T]))
+    new_ends: Indices = np.cumsum([0, *map(len, parts)])
+    return polylines.polydata(np.concatenate([np.empty((0, 3)), *parts]), new_ends)
+
+
+def _closed(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a map whose last column is its first one, 360 degrees on, if it ends before that."""
+    columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
+    if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
+        return mesh.copy(deep=False)
+    grid = mesh.cast_to_structured_grid()
+    points = np.asarray(grid.points, dtype=np.float64).reshape(rows, columns, 3)
+    step = (points[0, -1, 0] - points[0, 0, 0]) / (columns - 1)
+    if abs(points[0, 0, 0] + AROUND - points[0, -1, 0] - step) > 0.01 * abs(step):
+        return mesh.copy(deep=False)
+    wide = np.concatenate([points, points[:, :1] + (AROUND, 0.0, 0.0)], axis=1)
+    closed = pv.StructuredGrid()
+    closed.dimensions = (columns + 1, rows, 1)
+    closed.points = wide.reshape(-1, 3)
+    for name, values in grid.point_data.items():
+        table = np.asarray(values).reshape(rows, columns, *np.shape(values)[1:])
+        table = np.concatenate([table, table[:, :1]], axis=1)
+        closed.point_data[name] = table.reshape(-1, *table.shape[2:])
+    for name in grid.field_data:
+        closed.field_data[name] = grid.field_data[name]
+    return closed
+
+
+def _surface(mesh: pv.DataSet) -> pv.PolyData:
+    """Return the faces of a flat mesh, with its arrays and no more."""
+    options = {"pass_pointid": False, "pass_cellid": False}
+    surface: pv.PolyData = mesh.extract_surface(algorithm="dataset_surface", **options)
+    return surface
+
+
+def _whole(ball: pv.PolyData) -> pv.PolyData:
+    """Return the surface of a map on a ball with one point at each place, closed at its poles."""
+    surface: pv.PolyData = ball.triangulate().clean(
+        tolerance=1e-6, absolute=True, polys_to_lines=False
+    )
+    edges = surface.extract_feature_edges(
+        feature_edges=False, manifold_edges=False, non_manifold_edges=False
+    )
+    if not edges.n_lines:
+        return surface
+    ends = edges.lines.reshape(-1, 3)[:, 1:]
+    _, nearest = cKDTree(np.asarray(surface.points)).query(np.asarray(edges.points))
+    at: Indices = np.asarray(nearest)
+    for side in (1.0, -1.0):
+        high = side * np.asarray(edges.points)[:, 2] > math.cos(math.radians(NEAR_POLE))
+        sides = at[ends[high[ends].all(axis=1)]]
+        if len(sides):
+            surface = _capped(surface, sides, side)
+    return surface
+
+
+def _capped(surface: pv.PolyData, sides: Indices, side: float) -> pv.PolyData:
+    """Return a surface with a pole, which has the mean of the points around it."""
+    around = np.unique(sides)
+    points = np.concatenate([np.asarray(surface.points), [[0.0, 0.0, side]]])
+    fan = np.column_stack([np.full((len(sides), 2), (3, surface.n_points)), sides])
+    faces = np.concatenate([surface.faces.reshape(-1, 4), fan])
+    whole = pv.PolyData(points, faces.ravel())
+    for name, values in surface.point_data.items():
+        rows = np.asarray(values)
+        mean = rows[around].astype(np.float64).mean(axis=0, keepdims=True)
+        kept = mean if rows.dtype.kind == "f" else rows[around[:1]]
+        whole.point_data[name] = np.concatenate([rows, kept.astype(rows.dtype)])
+    for name, values in surface.cell_data.items():
+        rows = np.asarray(values)
+        whole.cell_data[name] = np.concatenate([rows, np.repeat(rows[-1:], len(fan), axis=0)])
+    for name in surface.field_data:
+        whole.field_data[name] = surface.field_data[name]
+    return whole
