@@ -589,7 +589,7 @@ STATED = {
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkeypatch):
+def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkeypatch, claim):
     make, options, most, largest = STATED[name]
     found = []
     left = refining._Refinement.left
@@ -605,8 +605,8 @@ def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkey
     fine = refine(make(), SCENE, **options)
     (off,) = found
     told, share = fine.field_data["luminance_error"]
-    assert np.mean(off > PIXEL) < most
-    assert off.max() < largest * PIXEL
+    claim(np.mean(off > PIXEL), most, "share")
+    claim(off.max(), largest * PIXEL)
     if name in ("a rim", "opposite vectors", "slivers"):
         assert off.max() > 5 * PIXEL
     else:
@@ -614,8 +614,8 @@ def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkey
         assert told <= PIXEL
 
 
-def test_a_share_of_places_that_is_missed_is_the_one_stated():
-    assert (1 - 8e-4) ** refining.CHECKS < 0.05
+def test_a_share_of_places_that_is_missed_is_the_one_stated(claim):
+    claim((1 - 8e-4) ** refining.CHECKS, 0.05)
 
 
 def test_a_line_of_one_point_stays_one():
