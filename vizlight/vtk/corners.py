@@ -124,10 +124,8 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
         face, area = kernels.unit(across)
         # Twice the area over the square of the longest side is the height as a share of that side.
         height = np.minimum(area / (FLAT * longest), 1)
-        # Fourth root of each length: the product of two is the square root of their geometric
-        # mean.
-        roots = [np.sqrt(np.sqrt(np.sqrt(square))) for square in squares]
-        before = [[part[i - 1] for i in range(s)] for part in (sides, squares, roots)]
+        lengths = [np.sqrt(square) for square in squares]
+        before = [[part[i - 1] for i in range(s)] for part in (sides, squares, lengths)]
         if s > 3 and not all(square.all() for square in squares):
             # Of a point that a face names twice in turn the last counts, and the side before both.
             for i in (*range(s), *range(s)):
@@ -147,11 +145,13 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
                 normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
             # The angle of the corner, exact for sharp and for blunt ones.
             weight = np.arctan2(size, kernels.dot(ahead, behind))
-            near = roots[i] * before[2][i]
-            weight *= height / near
+            near = lengths[i] * before[2][i]
+            # A straight corner has no sine, but an angle.
+            weight *= np.maximum(size, FLAT * near)
+            weight = np.sqrt(weight) * height / near
             # A corner at the place of the next has no angle: it counts where nothing else does.
             same = near == 0
-            weight[same] = LEAST * height[same] / np.sqrt(np.sqrt(longest[same]))
+            weight[same] = LEAST * height[same] / np.sqrt(longest[same])
             # Corners of points that are not finite say nothing, but must not spoil those around
             # them.
             weight[~np.isfinite(weight)] = 0
