@@ -9,9 +9,11 @@ import numpy as np
 import oracles
 from oracles import exact, mp
 
+from studies import normals
 from vizlight import View
 from vizlight.geometry import relief
 from vizlight.model import highlights
+from vizlight.vtk.corners import surface_normals
 
 EPS = float(np.finfo(float).eps)
 #: Functions of a generator by name.
@@ -116,3 +118,24 @@ def mean_errors_of_highlights(random):
         for by, true in (("rms", exact_rms), ("volume", volume)):
             pairs.append((1e-4, abs(highlights.sphere_error(angle, r, by=by) / true - 1)))
     return pairs
+
+
+#: Largest mean errors of normals by corners as shares of those of VTK's.
+OF_VTK = {
+    "ellipsoid": 0.85, "gyroid": 0.85, "gyroid, voxels 3 times as long": 1.02,
+    "gyroid, voxels 5 times as long": 1.02, "gyroid, off by 1 % of an edge": 1.6,
+    "grid of triangles": 1.05, "grid of quads": 0.8, "grid sheared by 1": 1.45,
+    "grid of triangles sheared by 2": 1.45, "planes with a rounded edge": 1.9, "random points of the plane": 0.75,
+    "random points of a ball": 0.5, "random points of an ellipsoid": 0.5,
+}  # fmt: skip
+
+
+@case
+def normals_by_corners(random):
+    """Mean errors on random surfaces of each kind, over those of VTK's means of faces."""
+    found = []
+    for name, stated in OF_VTK.items():
+        mesh, true = normals.SURFACES[name](int(random.integers(20, 40)), random)
+        errors = (normals.angles(by(mesh), true).mean() for by in (surface_normals, normals.by_vtk))
+        found.append((stated, np.divide(*errors)))
+    return found
