@@ -70,12 +70,12 @@ FIGURE = re.compile(
 INPUTS = {"Parameters", "Other Parameters", "Attributes", "Raises", "Warns"}
 SPOKEN = re.compile(r"\berrors? (?:of|is|are|was)\b|\bwithin \d|\bdiffer|\bms\b|µs|times as")
 SECTION = re.compile(r"^([A-Z][A-Za-z ]+)\n-{3,}\n", re.MULTILINE)
-#: Numbers that claim nothing: defaults, ranges of arguments, angles that name a thing.
+#: Numbers that claim nothing: defaults, ranges of arguments and ends of scales.
 IDLE = re.compile(
     r"default: [^.;]*|\bfrom [\d.e-]+ (?:to|up to|on)\b [\d.e-]*|\b[\d,]+ x [\d,]+(?: x [\d,]+)?"
-    r"|\b(?:above|of) [\d.e-]+(?: and)? up to [\d.e]+|\bline \d+"
+    r"|\b(?:above|of) [\d.e-]+(?: and)? up to [\d.e]+|\bline \d+|^[A-Z]\w+Error(?:, \w+)* If .*"
+    r"|\b(?:below|at most|up to|about|more than|less than) [01]\b(?![.\d]| of \d)|\b0 times\b"
 )
-
 #: Folders of kernels whose bounds in eps the stability suite checks, each against 50 digits.
 SUITE = ("vizlight/model/", "vizlight/geometry/")
 #: Checks that are no code of the register, and what the table says of them.
