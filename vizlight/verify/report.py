@@ -290,13 +290,13 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     ``isoluminance`` are compared with the light at their middles. The time of the sample
     is not part of the reported time.
 
-    The error between the points is the picture's: light that is interpolated over segments
-    and triangles, against the light of normals and tangents that are interpolated and normalised,
-    as a fragment shader computes it. It is computed by the engine in float64. It is not
-    measured for fur, for cast shadows, for light inside a bundle, and for points without cells, and the report says so where it is not.
-    Filters that other threads call are not recorded, nor light by the workers of
-    ``pieces.light(..., map=)``, whose points the report counts. What a reader can read back from
-    the picture is another question: :func:`vizlight.legibility` measures it.
+    The error between the points is the picture's: light that is interpolated over segments and
+    triangles, against the light of normals and tangents that are interpolated and normalised, as a
+    fragment shader computes it. It is computed by the engine in float64. It is not measured for
+    fur, for cast shadows, for light inside a bundle, and for points without cells, and the report
+    says so where it is not. Filters that other threads call are not recorded, nor light by the
+    workers of ``pieces.light(..., map=)``, whose points the report counts. What a reader can read
+    back from the picture is another question: :func:`vizlight.legibility` measures it.
 
     Examples
     --------
