@@ -68,7 +68,7 @@ FIGURE = re.compile(
 #: Sections of docstrings that say what comes in: their numbers are ranges, defaults and shapes
 #: unless a word speaks of errors or costs.
 INPUTS = {"Parameters", "Other Parameters", "Attributes", "Raises", "Warns"}
-SPOKEN = re.compile(r"\berrors? (?:of|is|are|was)\b|\bwithin \d|\bdiffer|\bms\b|µs|times as")
+SPOKEN = re.compile(r"\berrors? (?:of|is|are|was)\b|\bwithin \d|\bdiffer|\bms\b|µs|times as|%")
 SECTION = re.compile(r"^([A-Z][A-Za-z ]+)\n-{3,}\n", re.MULTILINE)
 #: Numbers that claim nothing: defaults, ranges of arguments and ends of scales.
 IDLE = re.compile(

@@ -18,10 +18,14 @@ def test_a_sample_is_kept(name, random):
 
 def test_every_row_has_its_sentence():
     texts = {
-        place: [*claims.sentences(claims.ROOT / place)] for place in {one.place for one in REGISTER}
+        place: " ".join((claims.ROOT / place).read_text(encoding="utf-8").split())
+        for place in {one.place for one in REGISTER}
     }
-    gone = [one for one in REGISTER if not any(one.quote in text for text in texts[one.place])]
-    assert gone == []
+    assert [one for one in REGISTER if one.quote not in texts[one.place]] == []
+
+
+def test_every_figure_has_a_row():
+    assert claims.unregistered() == []
 
 
 def test_every_check_is_there():
