@@ -168,9 +168,9 @@ def light_behind_ridges(random):
 def shadows_of_the_default_depth(random):
     """Share of shadow on rough terrain by the default depth over that of hard shadows."""
     found = []
-    while len(found) < 8:
-        z = sky.ground(96, 10 ** random.uniform(-1, 1), int(random.integers(1 << 30)))
-        field = height_field.make(np.arange(96.0), np.arange(96.0), z, border="extend")
+    while len(found) < 6:
+        z = sky.ground(64, 10 ** random.uniform(-1, 1), int(random.integers(1 << 30)))
+        field = height_field.make(np.arange(64.0), np.arange(64.0), z, border="extend")
         a = random.uniform(0, 2 * np.pi)
         way = (np.cos(0.1745) * np.cos(a), np.cos(0.1745) * np.sin(a), np.sin(0.1745))
         hard, soft = (

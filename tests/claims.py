@@ -29,9 +29,12 @@ import os
 import re
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
 REGISTER = ROOT / "tests" / "claims.txt"
@@ -108,13 +111,19 @@ def sentences(path: Path) -> list[str]:
     text = path.read_text(encoding="utf-8")
     if path.suffix != ".py":
         return split(prose(text))
-    nodes = ast.walk(ast.parse(text))
-    kinds = ast.Module | ast.FunctionDef | ast.ClassDef
-    docstrings = [ast.get_docstring(node) or "" for node in nodes if isinstance(node, kinds)]
+    docstrings = list(_docstrings(ast.parse(text)))
     if path.is_relative_to(ROOT / "gallery"):
         docstrings += re.findall(r"^# %%\n((?:#.*\n)+)", text, re.MULTILINE)
         return split(prose("\n\n".join(docstrings).replace("\n# ", "\n")))
     return [sentence for docstring in docstrings for sentence in _of_docstring(docstring)]
+
+
+def _docstrings(node: ast.AST) -> Iterator[str]:
+    """Yield the docstrings of a module, of its classes and functions, and of those inside."""
+    yield ast.get_docstring(node) or ""
+    for child in node.body:
+        if isinstance(child, ast.ClassDef | ast.FunctionDef):
+            yield from _docstrings(child)
 
 
 def _of_docstring(docstring: str) -> list[str]:
