@@ -286,7 +286,7 @@ def main() -> int:
             table.writerow(["file", "claim", "inputs", "stated", "worst", "check"])
             for claim, (stated, worst, _) in rows:
                 if kind(claim) not in ELSEWHERE:
-                    name = claim.check.rpartition("::")[2].partition("[")[0]
+                    name = re.split(r"[@\[]", claim.check.rpartition("::")[2])[0]
                     table.writerow([claim.place, claim.quote, claim.family, stated, worst, name])
     return int(any(result.kept == "NO" for _, result in rows))
 

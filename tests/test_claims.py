@@ -72,6 +72,7 @@ def test_a_claim_that_is_not_kept_is_named():
 
 def test_the_table_of_the_pages_has_the_rows_of_the_register():
     lines = claims.TABLE.read_text(encoding="utf-8").splitlines()
+    """After a new row ``python tests/claims.py --write`` makes it again."""
     rows = [one for one in REGISTER if claims.kind(one) not in claims.ELSEWHERE]
     assert len(lines) == len(rows) + 1
     for line, row in zip(lines[1:], rows, strict=True):
