@@ -56,7 +56,19 @@ def own_account(monkeypatch):
 
 @pytest.fixture
 def random():
-    return np.random.default_rng(1994)
+    """Return a generator; its seed is another for ``python tests/claims.py --seed``."""
+    return np.random.default_rng(int(os.environ.get("VIZLIGHT_SEED", "1994")))
+
+
+@pytest.fixture
+def claim(record_property):
+    """Return a function that holds what is found to what is stated, for the register of claims."""
+
+    def hold(found, stated, name=""):
+        record_property("claim", (name, (float(stated), float(found))))
+        assert found <= stated
+
+    return hold
 
 
 @pytest.fixture(params=[np.float32, np.float64], ids=["float32", "float64"])

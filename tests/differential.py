@@ -16,7 +16,6 @@ from collections import defaultdict
 from pathlib import Path
 from typing import NamedTuple
 
-import bounds
 import numpy as np
 import oracles
 
@@ -377,7 +376,7 @@ def _bound(plan, inputs):
         wi = _way(light.position, light.direction, points, far=light.position is None)
         factors = 8.0 * (2 + (light.attenuation != NO_ATTENUATION) + plan.conditioned)
         if plan.base:
-            factors = factors + bounds.diffuse_bound(plan.base_exponent, eps) / eps * spread
+            factors = factors + oracles.diffuse_bound(plan.base_exponent, eps) / eps * spread
         if plan.fur:
             # (1 - rho)^d changes by at most 1/e of the relative change of d; and it is within 1.
             sines = [np.abs(np.sum(normal * w, axis=1)) for w in (wi, wo)]
@@ -385,8 +384,8 @@ def _bound(plan, inputs):
         if plan.shadowed:
             cosine = np.abs(np.sum(normal * wi, axis=1))
             factors = factors + 4 / np.maximum(cosine, 1e-300)
-        d = (bounds.diffuse_bound(plan.exponent, eps) + factors * eps) * spread
-        s = bounds.specular_bound(highlight.shininess, eps)
+        d = (oracles.diffuse_bound(plan.exponent, eps) + factors * eps) * spread
+        s = oracles.specular_bound(highlight.shininess, eps)
         if highlight.model == "blinn" and highlight.half is None:
             near = np.linalg.norm(wi + wo, axis=1)
             s = s / np.minimum(np.maximum(near, 1e-300), 1)
@@ -406,7 +405,8 @@ def _bound(plan, inputs):
         total += 4 * eps * light.intensity * (material.diffuse + material.specular)
     cue = scene.depth_cue
     if cue is not None:
-        weight = bounds.weight(plan, material.diffuse + material.specular)
+        weight = sum(one.intensity for one in scene.lights)
+        weight *= material.diffuse + material.specular
         total += 4 * eps * (cue.cue + plan.ambient + weight)
         reach = np.abs(points).max(axis=1) + max(map(abs, scene.view.position or (0,)))
         total += 32 * np.finfo(float).eps * reach / abs(cue.front - cue.back) * (cue.cue + weight)

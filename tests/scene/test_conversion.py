@@ -87,13 +87,13 @@ def as_vtk(light):
         ([turned(0)], "blinn", 80.0, False),
     ],
 )
-def test_pixels_of_vtk(lights, model, shininess, parallel):
+def test_pixels_of_vtk(lights, model, shininess, parallel, claim):
     """Within 2 of 255 wherever the highlight is; away from the rim, where a pixel is half bare."""
     theirs, ours = pictures(lights, model, shininess, parallel=parallel)
     y, x = np.mgrid[-1:1:300j, -1:1:300j]
     inside = np.hypot(x, y) < 0.86
     assert ours[inside].max() > 120
-    assert np.abs(theirs - ours)[inside].max() <= 2
+    claim(np.abs(theirs - ours)[inside].max(), 2)
     assert np.count_nonzero(theirs[inside] > 64) > 200
 
 

@@ -3,7 +3,6 @@
 import itertools
 from functools import partial
 
-import bounds
 import numpy as np
 import oracles
 from oracles import dot, exact
@@ -123,7 +122,7 @@ def diffuse(dtype, count, random):
             wi = hard.directions(random, frame, case, p)
             value = timed(reflection.diffuse, wi, frame, exponent=p)
             true = [oracles.diffuse(a, f, p) for a, f in zip(wi, frame, strict=True)]
-            claim = np.array(bounds.diffuse_bound(p, eps) / eps)
+            claim = np.array(oracles.diffuse_bound(p, eps) / eps)
             yield Check(case, value, true, claim, _steep(p))
     yield from _nothing(dtype, lambda v, f: reflection.diffuse(v, f, exponent=4.7635))
     small, frame = _denormal(dtype), np.eye(3, dtype=dtype)[:1]
@@ -158,14 +157,14 @@ def specular(model, dtype, count, random):
         # The claim over |wi + wo| is a claim of its own where that is small.
         apart = ", over |wi + wo|" if model == "blinn" and case.startswith("opposite") else ""
         regime = f"{_steep(s)}{apart}".removeprefix(", ")
-        true, claim = [], np.full(many, bounds.specular_bound(s, eps) / eps)
+        true, claim = [], np.full(many, oracles.specular_bound(s, eps) / eps)
         for i in range(many):
             true.append(oracles.specular(wi[i], wo[i], frame[i], s, model))
             if model == "blinn":
                 a, b = (oracles.unit(oracles.exact(v[i])) for v in (wi, wo))
                 share = min(float(oracles.size([x + y for x, y in zip(a, b, strict=True)])), 1.0)
                 if s < 1:
-                    claim[i] = bounds.specular_bound(s, eps / share) / eps if share else np.inf
+                    claim[i] = oracles.specular_bound(s, eps / share) / eps if share else np.inf
                 else:
                     claim[i] = claim[i] / share if share else np.inf
         yield Check(f"eye {case}", value, true, claim, regime)

@@ -142,7 +142,7 @@ def test_hard_directions_are_where_they_say(random):
 #: Docstrings that speak of eps and are no claim of the table, and why.
 UNTOLD = {
     "parametric.central_step": "a step, not an error",
-    "parametric.parametric": "of any function: the study of frames measures both errors",
+    "parametric.parametric": "of any function: the register of claims has a sine",
 }
 
 

@@ -126,19 +126,17 @@ def refine(
     last at 4,096 random places, uniform in area or length. For several tangents per point no
     closed form gives the peaks.
 
-    Where the share in ``luminance_error`` is 0, none of these random places
-    is off by more than ``error``. Were a share p of all places, it would be missed with
-    probability ``(1 - p)^4096``: with 95 % confidence fewer than 0.08 % are. At 400,000 places the
-    share was at most 0.011 % and the largest error 2.6 times that allowed, for 1/255 on a sphere, a
-    cylinder with creases, a terrain, a torus with tangents, the flow on an isosurface and a
-    blob of 642 points. It is more at these places: where light jumps, as where a surface with a rim
-    turns to the eye, up to 0.36 at 0.05 % of an isosurface; where tangents vanish between opposite
-    ones, up to 0.65 at 0.3 % of a triangle; in slivers narrower than 1/4096 of the diagonal, which
-    are not split, 8 times that allowed. Where 0.5 % of the places or fewer are off there is no
-    warning.
+    Where the share in ``luminance_error`` is 0, none of these random places is off by more than
+    ``error``. Were a share p of all places, it would be missed with probability ``(1 - p)^4096``:
+    with 95 % confidence fewer than 0.08 % are. On a sphere, a cylinder with creases, a terrain, a
+    torus with tangents, the flow on an isosurface and a blob the largest error at 100,000 places is
+    less than 3 times that allowed. It is more at these places: where light jumps, as where a
+    surface with a rim turns to the eye, up to 0.4 at 0.2 % of an isosurface; where tangents vanish
+    between opposite ones, up to 0.7 at 0.5 % of a triangle; in slivers narrower than 1/4096 of the
+    diagonal, which are not split, 10 times that allowed. Where 0.5 % of the places or fewer are off
+    there is no warning.
 
-    The error holds for the view and the lights of the scene alone. Cost: about 20 us for each
-    triangle of the mesh and 30 us for each new point.
+    The error holds for the view and the lights of the scene alone.
 
     Examples
     --------

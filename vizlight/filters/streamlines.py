@@ -236,9 +236,9 @@ def streamlines(
     Evenly spaced lines start a spacing beside others and end where they come nearer to one than
     half of it; lines that meet their own start are closed. Lines that others cut short are kept if
     they are two spacings long; in gaps wider than 1.15 spacings 0.7 of that is enough, or 0.35 from
-    a boundary. The largest gap was at most 1.35 spacings on surfaces and in volumes with saddles,
-    vortices and walls. On a surface distances include half a spacing times the difference of
-    normals, so that two sides of a thin sheet are apart.
+    a boundary. The largest gap is at most 1.5 spacings on surfaces and in volumes with waves of
+    vectors, saddles and vortices among them. On a surface distances include half a spacing times
+    the difference of normals, so that two sides of a thin sheet are apart.
     Sources: Banks 4.1 and (6); Jobard and Lefer, Creating evenly-spaced streamlines of arbitrary
     density (1997).
 

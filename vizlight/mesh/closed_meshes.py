@@ -210,8 +210,8 @@ def hits(
 ) -> tuple[Indices, Indices, Array, bool]:
     """Return ray, triangle and distance of every hit, and whether shared edges may be hit twice.
 
-    Parallel rays are projected along their direction, which takes about 2 microseconds each. Other
-    rays take about 1 microsecond by Embree and 11 by VTK, with a hit each.
+    Parallel rays are projected along their direction. Other rays are followed by Embree, or, far
+    more slowly, by VTK.
     """
     # Rays of a sun need no search tree, and where they meet an edge there are exact rules.
     if len(way) and np.all(way == way[0]):

@@ -174,8 +174,6 @@ def legibility(
     at random: what all of the data have in common is not read. Of order and sense they are those of
     a yes or no, 1 at most. Below 0.3 bits a question is unreadable.
 
-    A million points take about 6 s of processor time.
-
     Examples
     --------
     >>> import vizlight

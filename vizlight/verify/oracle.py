@@ -1,8 +1,9 @@
 """The light of one point by the formulas of the sources, in any type of real numbers.
 
-:class:`Oracle` writes each formula as its source has it, for one point at a time, and shares no
-code with kernels, blocks or plans. :data:`FLOATS` computes in float64; :func:`vizlight.report`
-compares samples with it. The tests make another oracle, of 50 digits.
+:class:`Oracle` writes each formula as its source has it, but for the errata that the pages list,
+for one point at a time, and shares no code with kernels, blocks or plans. :data:`FLOATS` computes
+in float64; :func:`vizlight.report` compares samples with it. The tests make another oracle, of 50
+digits.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ class Lit(NamedTuple):
     luminance : float
         Sum of all terms, with the depth cue.
     rgb : tuple of 3 floats
-        Colour, with the depth cue; empty if the scene has no colour.
+        Colour, with the depth cue and the exposure; empty if the scene has neither colour nor
+        exposure.
     ambient, diffuse, specular : float
         Terms of the luminance, without the depth cue.
     """
@@ -400,7 +402,10 @@ class Oracle:
         return self._exponents[k, n]
 
     def toward(self, end: Light | View, point: Vector) -> tuple[Vector | None, Real | None]:
-        """Return the unit direction to a light or an eye and its distance, None at infinity."""
+        """Return the unit direction to a light or an eye, and its distance, None at infinity.
+
+        At the light's or the eye's own place the direction is None.
+        """
         if end.direction is not None and (end.position is None or getattr(end, "parallel", False)):
             return self.unit(self.vector(end.direction)), None
         assert end.position is not None

@@ -287,18 +287,16 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     The sample's light is computed from the scene itself, not from a plan. t of a cos-theta shadow
     is computed again on at most 64 rays, each against all cells of a height field on its way, or
     all triangles of a closed surface; at depth 0 the report gives no error. Bands of
-    ``isoluminance`` are compared with the light at their middles. A point of the sample takes about
-    40 µs, 60 µs for ``model="cylinder"``, and a ray 3 ms; this time is not part of the reported
-    time.
+    ``isoluminance`` are compared with the light at their middles. The time of the sample
+    is not part of the reported time.
 
-    The error between the points is the picture's: light that is interpolated over segments
-    and triangles, against the light of normals and tangents that are interpolated and normalised,
-    as a fragment shader computes it. It is computed by the engine in float64, in some 4 ms for
-    4,096 places and 0.1 µs for each cell. It is not measured for fur, for cast shadows, for
-    light inside a bundle, and for points without cells, and the report says so where it is not.
-    Filters that other threads call are not recorded, nor light by the workers of
-    ``pieces.light(..., map=)``, whose points the report counts. What a reader can read back from
-    the picture is another question: :func:`vizlight.legibility` measures it.
+    The error between the points is the picture's: light that is interpolated over segments and
+    triangles, against the light of normals and tangents that are interpolated and normalised, as a
+    fragment shader computes it. It is computed by the engine in float64. It is not measured for
+    fur, for cast shadows, for light inside a bundle, and for points without cells, and the report
+    says so where it is not. Filters that other threads call are not recorded, nor light by the
+    workers of ``pieces.light(..., map=)``, whose points the report counts. What a reader can read
+    back from the picture is another question: :func:`vizlight.legibility` measures it.
 
     Examples
     --------

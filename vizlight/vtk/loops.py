@@ -38,7 +38,7 @@ def _unit(x: float, y: float, z: float) -> tuple[float, float, float, float]:
 
 
 @_compiled.kernel(inline=True)
-def _find_sides(place: Array, side: Array, square: Array, root: Array) -> tuple[float, float]:
+def _find_sides(place: Array, side: Array, square: Array, length: Array) -> tuple[float, float]:
     """Find the sides of a face, and return the largest and the least of their squares."""
     s, longest, shortest = len(place), 0.0, np.inf
     for i in range(s):
@@ -47,7 +47,7 @@ def _find_sides(place: Array, side: Array, square: Array, root: Array) -> tuple[
         for k in range(3):
             side[i, k] = place[j, k] - place[i, k]
             total += side[i, k] * side[i, k]
-        square[i], root[i] = total, math.sqrt(math.sqrt(math.sqrt(total)))
+        square[i], length[i] = total, math.sqrt(total)
         # A comparison with NaN is false, which must not hide it.
         longest = total if not total <= longest else longest
         shortest = min(shortest, total)
@@ -88,13 +88,13 @@ def add_corners(total: Array, points: Raw, ids: Indices, s: int, flat: float, le
     and ``least`` are its ``FLAT`` and ``LEAST``.
     """
     place, side = np.empty((s, 3)), np.empty((s, 3))
-    square, root, before = np.empty(s), np.empty(s), np.empty(s, dtype=np.int64)
+    square, length, before = np.empty(s), np.empty(s), np.empty(s, dtype=np.int64)
     for face in range(len(ids) // s):
         for i in range(s):
             at = 3 * ids[face * s + i]
             for k in range(3):
                 place[i, k] = points[at + k]
-        longest, shortest = _find_sides(place, side, square, root)
+        longest, shortest = _find_sides(place, side, square, length)
         # A face with a corner that is not finite says nothing.
         if not 0 < longest < np.inf or not shortest >= 0:
             continue
@@ -113,11 +113,13 @@ def add_corners(total: Array, points: Raw, ids: Indices, s: int, flat: float, le
                 if size > flat * max(square[i], square[back]):
                     sign = -1.0 if p * fx + q * fy + r * fz < 0 else 1.0
                     x, y, z = sign * p, sign * q, sign * r
-            near = root[i] * root[back]
+            near = length[i] * length[back]
             if near == 0:
-                weight = least * height / math.sqrt(math.sqrt(longest))
+                weight = least * height / math.sqrt(longest)
             else:
-                weight = math.atan2(size, a * d + b * e + c * f) * height / near
+                # A straight corner has no sine, but an angle.
+                angle = math.atan2(size, a * d + b * e + c * f)
+                weight = math.sqrt(angle * max(size, flat * near)) * height / near
             if math.isfinite(weight):
                 at = 3 * ids[face * s + i]
                 total[at] += x * weight

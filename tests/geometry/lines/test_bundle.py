@@ -181,7 +181,7 @@ STATED = {
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_the_mean_share_of_each_case_is_as_right_as_stated(name):
+def test_the_mean_share_of_each_case_is_as_right_as_stated(name, claim):
     """Over 8 bundles, beside the random error of their mean."""
     kind, light, near, most = STATED[name]
     random, diameter, length = np.random.default_rng(11), 0.02, 0.5
@@ -191,9 +191,9 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name):
     ]
     error = np.diff(found, axis=1)
     assert 0.1 < np.mean(found, axis=0)[0] < 0.97
-    assert abs(error.mean()) < most + 2 * error.std() / np.sqrt(len(error))
+    claim(abs(error.mean()), most + 2 * error.std() / np.sqrt(len(error)))
     assert error.std() / np.sqrt(len(error)) < 0.012
-    assert np.abs(error).max() < 0.06
+    claim(np.abs(error).max(), 0.06, "single")
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
 
 

@@ -39,8 +39,8 @@ def polyline_tangents(
     ndarray, shape (N, n)
         Unit tangents in the direction of the line, of the type of the points. They are zero at
         points without a tangent: points of no line, of a line whose points all coincide, next to a
-        point that is not finite, or where a line reverses its direction. A point of several lines
-        has the tangent of the last of them.
+        point that is not finite, or where a line turns back by a segment as long as the one before.
+        A point that lines pass several times has the tangent of the last pass.
 
     Raises
     ------
@@ -51,12 +51,13 @@ def polyline_tangents(
 
     Notes
     -----
-    The tangent is the derivative by arc length of the parabola through a point and its two
-    neighbours. With segments of lengths h0, h1 and directions u0, u1 it is
+    The tangent is the derivative of the parabola through a point and its two neighbours by the
+    length along the segments. With segments of lengths h0, h1 and directions u0, u1 it is
     ``(h1 u0 + h0 u1) / (h0 + h1)`` inside a line and ``u0 + (u0 - u1) h0 / (h0 + h1)`` at an end.
-    Its error decreases with the square of the spacing, also at ends and for unequal spacing. A line
-    that ends where it starts is closed and has neighbours across the seam. Repeated points count as
-    one and share one tangent. Differences are taken in float64. The error for a line of two points
+    On a smooth curve its error decreases with the square of the spacing, also at ends and for
+    unequal spacing. A line of three segments or more that ends where it starts is closed and has
+    neighbours across the seam. Points that repeat the one before them count as one with it and
+    share its tangent. Differences are taken in float64. The error for a line of two points
     is at most 1 eps of the points' type plus 1 of float64; for other lines it is at most 1 and 4,
     divided by the length of the tangent before it is normalised.
     """

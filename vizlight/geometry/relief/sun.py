@@ -46,7 +46,7 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     -----
     The ecliptic longitude of the sun is its mean longitude plus the equation of the centre, with
     elements averaged over the years 2001 to 2040. Because the year is not an argument, leap days
-    make the declination wrong by up to 0.2 degrees near an equinox, and half a day's rotation of
+    make the declination wrong by up to 0.21 degrees near an equinox, and half a day's rotation of
     the earth by as much again; the disc of the sun is 0.53 degrees wide. Refraction, which raises a
     setting sun by 0.01 radians, is neglected.
     """
