@@ -52,6 +52,13 @@ def ball(**arrays):
     return made
 
 
+def planet(**arrays):
+    """Return a ball of radius 1 that names a system of longitudes and latitudes."""
+    made = ball(**arrays).scale(2.0)
+    made.field_data["gvCRS"] = ["EPSG:4326"]
+    return made
+
+
 #: Data of each kind, and the question, what is shown and the array of their look.
 KINDS = {
     "values": (sheet(warmth=lambda x, y: x + y * y), "none", "sheet", "warmth"),
@@ -66,6 +73,7 @@ KINDS = {
         "V",
     ),
     "surface with values": (ball(p=lambda x, y, z: x), "value", "surface", "p"),
+    "planet": (planet(p=lambda x, y, z: x), "none", "globe", "p"),
     "surface": (pv.Sphere(), "shape", "surface", None),
     "flow": (volume(V=turning, T=edge), "heading", "streamlines", "V"),
     "scan": (volume(T=edge), "shape", "isosurface", "T"),
