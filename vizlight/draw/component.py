@@ -113,8 +113,9 @@ class Component:
         halo : bool or float, optional
             Band of the colour of the ground on each side of lines, which tells the line in front
             where two cross: its width in widths of the line, or False for none. It is the deeper
-            the farther it is from its line, up to 5 % of the size of the lines, so that lines that
-            run together have no gap. Lines with halos have round ends and joints, and are drawn
+            the farther it is from its line, up to 4 widths of the line, so that lines that run
+            together have no gap. On a light ground the rim of lines that are nearly as light is
+            darker. Lines with halos have round ends and joints, and are drawn
             nearer to the eye by their own width, so that a surface on which they lie does not hide
             them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
         width : str, optional

@@ -25,6 +25,7 @@ from vizlight.draw import backends, dialects, glsl
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
+from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import TEXTS, preset_of
@@ -164,7 +165,7 @@ class Page:
             "representation": prop.GetRepresentation(),
         }
         if live.stroke.halo:
-            made |= {"halo": live.stroke.halo, "depth": live.stroke.depth}
+            made |= {"halo": live.stroke.halo, "depth": DEPTH}
         if live.stroke.width is not None:
             shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
             made["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")

@@ -151,7 +151,7 @@ const CAPSULE = `
   float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));
   float focus = ROW(MCPCMatrix, 3) == vec3(0.0) ? 0.0 : 1.0;
   float nearer = 2.0 * ownWide * w / (spread * ownSize.y);
-  vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth);
+  vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth * nearer);
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB;';
@@ -163,7 +163,16 @@ const CAPSULE_SHAPE = `
   if (away > ownHalo) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
-const CAPSULE_GROUND = '\n  if (ownHalo > 0.0) ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));\n}';
+const CAPSULE_GROUND = `
+  if (ownHalo > 0.0) {
+    // The rim of a line that is nearly as light as its ground is darker, as in pictures.
+    vec3 luma = vec3(0.2126, 0.7152, 0.0722);
+    float ground = dot(ownGround, luma);
+    float pale = ground < 0.5 ? 0.0 : clamp(1.0 - (ground - dot(ownOut.rgb, luma)) / 0.4, 0.0, 1.0);
+    ownOut.rgb *= 1.0 - 0.6 * pale * smoothstep(-2.5, -0.5, away);
+    ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));
+  }
+}`;
 const FRAGMENT = `#version 300 es
 #define varying in
 precision highp float;
