@@ -198,6 +198,7 @@ OWN = {
     "add_recorded": {"mesh": lit},
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
+    "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2},
     "maps.heights": {"low": -10.0, "high": 250.0},
     "maps.kinds": {"values": [1.0, 2.0, 7.0]},
     "looks.look.look": {"data": ball},

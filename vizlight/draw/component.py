@@ -23,6 +23,7 @@ from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
+from vizlight.mesh.strokes import PHASE, WIDTH
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import optional_scene, required_scene
@@ -431,6 +432,16 @@ class Component:
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
         return found
+
+    def moving(self) -> list[pv.PolyData]:
+        """Return the lines whose strokes move: those of ``streamlines(travel=)`` with widths."""
+        lives = [self._live_of(actor) for actor in items(self._open_plotter().renderer.GetActors())]
+        strokes = [
+            live.source.mesh for live in lives if live is not None and live.stroke.width == WIDTH
+        ]
+        return [
+            mesh for mesh in strokes if isinstance(mesh, pv.PolyData) and PHASE in mesh.point_data
+        ]
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and what of it.
