@@ -329,6 +329,7 @@ class Mesh {
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
     mesh.capsules = Boolean(given.halo || given.widths);
+    if (given.moving) mesh.moving = Object.fromEntries(await Promise.all(['phase', 'passing', 'grown'].map(async (k) => [k, await unpack(given.moving[k])])));
     await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
     // VTK's numbers: 0 for points, 1 for wires, 2 for faces.
     const style = given.representation;
@@ -361,6 +362,7 @@ class Mesh {
     // All of the width where the points have none of their own.
     if (kind === 'strokes' && this.capsules && !edge) batch.put('ownShare', gathered(found.widths || new Uint8Array(this.places.length / 3).fill(255), from, 1), 1);
     if (kind === 'strokes') batch.put('ownGap', Uint8Array.from(owners, (cell, i) => Number(cell !== owners[i + 1])), 1);
+    batch.points = from;
     batch.from = this.given.ofCells ? owners : from;
     if (edge) {
       batch.plain([...this.given.edgeColor, 1]);
@@ -391,6 +393,18 @@ class Mesh {
       for (let c = 0; c < 3; c += 1) colors[4 * i + c] = codes[i] === NO_VALUE ? GREY : table[k + c];
     }
     this.paint(colors, true);
+  }
+
+  // Strokes that have moved for a share of their period; Python says the same of a movie.
+  move(share) {
+    const { phase, passing, grown } = this.moving;
+    const { tail, bare } = this.given.moving;
+    const widths = Uint8Array.from(grown, (most, i) => {
+      const at = (phase[i] / NO_VALUE - passing[i] * share) % 1;
+      const here = at < 0 ? at + 1 : at;
+      return here < bare ? 0 : most * (tail + ((1 - tail) * (here - bare)) / (1 - bare));
+    });
+    this.batches.forEach((batch) => { if (batch.kind === 'strokes') batch.put('ownShare', gathered(widths, batch.points, 1), 1); });
   }
 
   program(key, strokes, capsules = strokes && this.capsules) {
