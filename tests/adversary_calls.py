@@ -98,6 +98,16 @@ def plotter():
     return made
 
 
+def with_strokes():
+    """Return a plotter with strokes that move."""
+    sheet = pv.Plane(i_resolution=4, j_resolution=4)
+    sheet["V"] = np.tile([1.0, 0, 0], (sheet.n_points, 1))
+    lines = vizlight.streamlines(sheet, tangents="V", seeds=3, stroke_length=0.5, travel=1.0)
+    made = plotter()
+    made.vizlight.add_mesh(lines, scene=SCENE, width="width")
+    return made
+
+
 #: Plotter of the last call of `shown`.
 LAST = []
 
@@ -198,7 +208,7 @@ OWN = {
     "add_recorded": {"mesh": lit},
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
-    "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2},
+    "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2, "plotter": with_strokes},
     "maps.heights": {"low": -10.0, "high": 250.0},
     "maps.kinds": {"values": [1.0, 2.0, 7.0]},
     "looks.look.look": {"data": ball},
