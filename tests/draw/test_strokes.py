@@ -191,6 +191,19 @@ def test_a_line_as_light_as_its_ground_has_a_darker_rim(light):
     assert pictures["black", 1.0] == pytest.approx(1.0, abs=0.01)
 
 
+def test_colours_of_data_have_no_darker_rim():
+    line = pv.Line()
+    line["v"] = [0.0, 1.0]
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+    plotter.background_color = "white"
+    scene = Scene(material=Material(ambient=1, diffuse=0, specular=0))
+    plotter.vizlight.add_mesh(line, scene=scene, scalars="v", cmap=["yellow"], line_width=10)
+    plotter.camera = looking_down(parallel=True)
+    plotter.reset_camera_clipping_range()
+    column = np.asarray(plotter.screenshot(return_img=True))[45:55, 50]
+    assert np.abs(column.astype(int) - (255, 255, 0)).max() <= 3
+
+
 @pytest.mark.parametrize("parallel", [False, True])
 def test_lines_on_a_steep_surface_are_whole(parallel):
     """Half of each line is behind the surface where it is not drawn nearer to the eye."""

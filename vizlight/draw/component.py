@@ -116,9 +116,9 @@ class Component:
             where two cross: its width in widths of the line, or False for none. It is the deeper
             the farther it is from its line, up to 4 widths of the line, so that lines that run
             together have no gap. On a light ground the rim of lines that are nearly as light is
-            darker. Lines with halos have round ends and joints, and are drawn
-            nearer to the eye by their own width, so that a surface on which they lie does not hide
-            them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
+            darker, but of colours of data. Lines with halos have round ends and joints, and are
+            drawn nearer to the eye by their own width, so that a surface on which they lie does not
+            hide them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
         width : str, optional
             Name of a point array of lines, one number per point: the width of the line there, as a
             share from 0 to 1 of ``line_width`` or ``line_diameter``, such as ``"width"`` of the

@@ -44,8 +44,9 @@ DEPTH = 4.0
 #: Contrast with a light ground below which the rim of a line is darkened, by how much at most, and
 #: the width of the rim in pixels: bright light on white would be seen neither before nor behind.
 FAINT, DARKER, RIM = 0.4, 0.6, 2.5
-#: Colour of halos, and pixels that are drawn for each pixel of the picture, as uniforms.
-GROUND, SAMPLES = "vizGround", "vizSamples"
+#: Colour of halos, pixels that are drawn for each pixel of the picture, and by how much rims are
+#: darkened, as uniforms.
+GROUND, SAMPLES, DARKENED = "vizGround", "vizSamples", "vizDarkened"
 #: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
 #: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
 SUPERSAMPLED = 2 / 0.9
@@ -168,12 +169,16 @@ def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> 
     replace(actor, [*widened(actor, [*passed, *unlit], stroke), *last])
 
 
-def adapt(actor: vtkActor, renderer: vtkRenderer) -> None:
-    """Give the lines of an actor the background and the pixels of a renderer."""
+def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
+    """Give the lines of an actor the background and the pixels of a renderer.
+
+    Colours ``of_data`` have no darker rim: it would be read as another value.
+    """
     shader = actor.GetShaderProperty()
     fragment = shader.GetFragmentCustomUniforms()
     fragment.SetUniform3f(GROUND, list(renderer.GetBackground()))
     samples = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
+    fragment.SetUniformf(DARKENED, 0.0 if of_data else DARKER)
     for uniforms in (fragment, shader.GetGeometryCustomUniforms()):
         uniforms.SetUniformf(SAMPLES, samples)
 
@@ -380,6 +385,6 @@ _GROUNDED = (
     f"    : clamp(1.0 - (vizPale - dot(gl_FragData[0].rgb, vizLuma)) / {FAINT}, 0.0, 1.0);\n"
     f"  float vizPixel = {SAMPLES} * 2.0 * max(vizBlur, 1e-6);\n"
     f"  float vizRim = smoothstep(-{RIM} * vizPixel, -0.5 * vizPixel, vizAway);\n"
-    f"  gl_FragData[0].rgb *= 1.0 - {DARKER} * vizPale * vizRim;\n"
+    f"  gl_FragData[0].rgb *= 1.0 - {DARKENED} * vizPale * vizRim;\n"
     f"  gl_FragData[0].rgb = mix(gl_FragData[0].rgb, {GROUND}, vizGap);\n"
 )

@@ -155,7 +155,7 @@ const CAPSULE = `
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB;';
-const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
+const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform float ownDarker; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
 const CAPSULE_SHAPE = `
   vec3 at = ownAt * gl_FragCoord.w; vec2 halves = ownHalves * gl_FragCoord.w; vec2 deep = ownDeep * gl_FragCoord.w;
   float away = length(vec2(at.x, max(max(-at.y, at.y - at.z), 0.0))) - mix(halves.x, halves.y, clamp(at.y / max(at.z, 1e-6), 0.0, 1.0));
@@ -165,11 +165,11 @@ const CAPSULE_SHAPE = `
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
 const CAPSULE_GROUND = `
   if (ownHalo > 0.0) {
-    // The rim of a line that is nearly as light as its ground is darker, as in pictures.
+    // The rim of a line that is nearly as light as its ground is darker, as in pictures, but of colours of data.
     vec3 luma = vec3(0.2126, 0.7152, 0.0722);
     float ground = dot(ownGround, luma);
     float pale = ground < 0.5 ? 0.0 : clamp(1.0 - (ground - dot(ownOut.rgb, luma)) / 0.4, 0.0, 1.0);
-    ownOut.rgb *= 1.0 - 0.6 * pale * smoothstep(-2.5, -0.5, away);
+    ownOut.rgb *= 1.0 - ownDarker * pale * smoothstep(-2.5, -0.5, away);
     ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));
   }
 }`;
@@ -425,7 +425,7 @@ class Mesh {
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
       const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
-      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0] });
+      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0], ownDarker: [this.data ? 0 : 0.6] });
       if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
       batch.draw();
     });
