@@ -98,6 +98,16 @@ def plotter():
     return made
 
 
+def with_strokes():
+    """Return a plotter with strokes that move."""
+    sheet = pv.Plane(i_resolution=4, j_resolution=4)
+    sheet["V"] = np.tile([1.0, 0, 0], (sheet.n_points, 1))
+    lines = vizlight.streamlines(sheet, tangents="V", seeds=3, stroke_length=0.5, travel=1.0)
+    made = plotter()
+    made.vizlight.add_mesh(lines, scene=SCENE, width="width")
+    return made
+
+
 #: Plotter of the last call of `shown`.
 LAST = []
 
@@ -207,6 +217,7 @@ OWN = {
     "globes.globe": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
+    "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2, "plotter": with_strokes},
     "maps.heights": {"low": -10.0, "high": 250.0},
     "maps.kinds": {"values": [1.0, 2.0, 7.0]},
     "looks.look.look": {"data": ball},

@@ -85,6 +85,14 @@ def test_the_only_vectors_are_traced_for_a_question(question, folder, done):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("command", ["streamlines flow.vti --tangents V --seeds 9", "fur flow.vti"])
+@pytest.mark.parametrize("question", ["direction", "shape"])
+def test_the_light_of_a_question_is_that_of_any_command(command, question, folder, done):
+    """It was left out where nothing else of the light was asked for."""
+    assert f"vizlight.presets.{question}(" in done(*command.split(), "--for", question, "--script")
+    assert "presets" not in done(*command.split(), "--script")
+
+
 @pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run, done):

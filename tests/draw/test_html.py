@@ -26,6 +26,7 @@ from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw import html
 from vizlight.files import FileError
 from vizlight.filters import key
+from vizlight.mesh.strokes import moved_widths
 
 pytestmark = pytest.mark.opengl
 
@@ -683,3 +684,36 @@ def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_pa
     page, _ = opened(path)
     # The gaps of the halo are 0.7 % of the picture.
     assert np.mean(np.abs(shot(page) - expected).max(axis=2) > 60) < 0.003
+
+
+def test_strokes_of_a_page_move_as_those_of_a_movie(opened, tmp_path):
+    sheet = pv.Plane(i_size=4, j_size=1, i_resolution=40, j_resolution=10)
+    sheet["V"] = np.tile([2.0, 0, 0], (sheet.n_points, 1))
+    scene = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
+    lines = vizlight.streamlines(
+        sheet, scene, tangents="V", seeds=[(-2, 0, 0)], stroke_length=0.8, travel=1.0
+    )
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    plotter.vizlight.add_mesh(lines, scene=scene, color="black", width="width", line_width=12)
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    path = plotter.vizlight.export_html(tmp_path / "moving.html", key=False)
+    page, _ = opened(path)
+    page.evaluate("() => vizlight.play(false)")
+    shares, movie = (0.0, 0.3), []
+    for share in shares:
+        lines["width"] = moved_widths(lines, share)
+        plotter.render()
+        movie.append(np.asarray(plotter.screenshot(return_img=True), dtype=np.int16))
+    plotter.close()
+    for share, own, other in zip(shares, movie, movie[::-1], strict=True):
+        page.evaluate(f"() => {{ vizlight.meshes[0].move({share}); vizlight.draw(); }}")
+        # The button is above the strokes. Borders differ by their smoothing, a fifth of the ink.
+        seen = shot(page)[90:160]
+        apart, moved = (np.mean(np.abs(seen - each[90:160]) > 60) for each in (own, other))
+        assert apart < 0.015
+        assert moved > 4 * apart
+    page.evaluate("() => vizlight.play(true)")
+    before = page.evaluate("() => vizlight.time || 0")
+    page.wait_for_timeout(500)
+    assert page.evaluate("() => vizlight.time") > before

@@ -287,3 +287,33 @@ def test_pictures_are_written_as_they_come(tmp_path, writers):
         with pytest.raises(ValueError, match=message):
             movie.save(frames, path, **options)
     assert {path.stem for path in tmp_path.iterdir()} == {"a", "a_0000", "a_0001", "a_0002"}
+
+
+@pytest.mark.opengl
+def test_strokes_travel_and_the_movie_can_be_repeated(tmp_path):
+    """A stroke of a uniform flow is farther by speed times time, to a pixel."""
+    sheet = pv.Plane(i_size=4, j_size=1, i_resolution=40, j_resolution=10)
+    sheet["V"] = np.tile([2.0, 0, 0], (sheet.n_points, 1))
+    scene = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
+    lines = vizlight.streamlines(
+        sheet, scene, tangents="V", seeds=[(-2, 0, 0)], step=0.1, stroke_length=0.8, travel=1.0
+    )
+    assert lines.field_data["period"][0] == pytest.approx(0.4)
+    plotter = render.canvas((200, 50), background="white")
+    plotter.vizlight.add_mesh(lines, scene=scene, color="black", width="width", line_width=8)
+    plotter.camera = render.camera_on(sheet, (0, 0, 1), parallel=True, aspect=4.0)
+    scale = 25 / plotter.camera.parallel_scale
+    files = movie.travel(plotter, tmp_path / "t.png", frames=16)
+    assert len(files) == 16
+    ink = 255.0 - np.array([np.asarray(Image.open(file))[..., 0] for file in files]).mean(axis=1)
+    # Heads are where the width of a stroke falls; each is found again 4 frames later.
+    heads = [np.flatnonzero((row[:-1] > 20) & (row[1:] <= 20)) for row in ink]
+    moved = 4 * 0.8 * scale / 16
+    for now, later in zip(heads, heads[4:], strict=False):
+        inner = now[(now > 40) & (now < 150)]
+        assert len(inner) >= 2
+        assert all(np.abs(later - place - moved).min() <= 1 for place in inner)
+    plotter = render.canvas((40, 40))
+    plotter.vizlight.add_mesh(pv.Sphere(), scene=scene)
+    with pytest.raises(ValueError, match="plotter: expected a plotter that shows streamlines"):
+        movie.travel(plotter, tmp_path / "t.png")

@@ -158,6 +158,52 @@ def test_lines_that_touch_have_no_gap_and_a_halo_can_be_left_out():
     assert np.all(crossing(0.5, light="fragments", halo=False)[60:140, 99] < 0.9)
 
 
+@pytest.mark.parametrize("size", [1, 50])
+def test_the_gap_of_a_halo_follows_the_width_of_the_line_and_not_the_size_of_the_mesh(size):
+    """A coil close to its core has gaps, however long both are: 6 widths behind the whole of it."""
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 200))
+    plotter.background_color = "black"
+    for mesh in (pv.Line((-1, 0, 0), (1, 0, 0)), pv.Line((0, -size, -0.3), (0, size, -0.3))):
+        plotter.vizlight.add_mesh(mesh, scene=WHITE, line_width=5)
+    plotter.camera = looking_down(parallel=True)
+    plotter.reset_camera_clipping_range()
+    column = np.asarray(plotter.screenshot(return_img=True))[:, 99, 0]
+    # The halo ends in the middle of rows 92 and 107, as the line does in those of 97 and 102.
+    assert np.flatnonzero(column[80:120] == 0).tolist() == [13, 14, 15, 16, 23, 24, 25, 26]
+
+
+@pytest.mark.parametrize("light", ["fragments", "points"])
+def test_a_line_as_light_as_its_ground_has_a_darker_rim(light):
+    """Where its contrast with a light ground is 0.4 or more, and on black, it is as it was."""
+    pictures = {}
+    for ground, bright in (("white", 1.0), ("white", 0.55), ("black", 1.0)):
+        scene = Scene(material=Material(ambient=bright, diffuse=0, specular=0))
+        plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+        plotter.background_color = ground
+        plotter.vizlight.add_mesh(pv.Line(), scene=scene, line_width=10, light=light)
+        plotter.camera = looking_down(parallel=True)
+        plotter.reset_camera_clipping_range()
+        column = np.asarray(plotter.screenshot(return_img=True))[:, 50, 0] / 255
+        pictures[ground, bright] = column[45:55]
+    assert pictures["white", 1.0][4:6] == pytest.approx(1.0, abs=0.01)
+    assert pictures["white", 1.0][[0, -1]].max() < 0.6
+    assert pictures["white", 0.55] == pytest.approx(0.55, abs=0.02)
+    assert pictures["black", 1.0] == pytest.approx(1.0, abs=0.01)
+
+
+def test_colours_of_data_have_no_darker_rim():
+    line = pv.Line()
+    line["v"] = [0.0, 1.0]
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+    plotter.background_color = "white"
+    scene = Scene(material=Material(ambient=1, diffuse=0, specular=0))
+    plotter.vizlight.add_mesh(line, scene=scene, scalars="v", cmap=["yellow"], line_width=10)
+    plotter.camera = looking_down(parallel=True)
+    plotter.reset_camera_clipping_range()
+    column = np.asarray(plotter.screenshot(return_img=True))[45:55, 50]
+    assert np.abs(column.astype(int) - (255, 255, 0)).max() <= 3
+
+
 @pytest.mark.parametrize("parallel", [False, True])
 def test_lines_on_a_steep_surface_are_whole(parallel):
     """Half of each line is behind the surface where it is not drawn nearer to the eye."""

@@ -608,3 +608,18 @@ def test_flat_grids_are_surfaces(kind):
     assert lines.field_data["largest_gap"][0] < 1.5
     # Vectors are no heights: such a grid is flat below the sky.
     np.testing.assert_allclose(vizlight.sky(grid)["sky"], 1, atol=0.02)
+
+
+def test_strokes_that_travel_have_whole_lines_and_need_a_length_and_a_sense():
+    plane = pv.Plane(i_resolution=20, j_resolution=20)
+    plane["V"] = np.tile([3.0, 0, 0], (plane.n_points, 1))
+    made = vizlight.streamlines(plane, tangents="V", spacing=0.2, stroke_length=0.25, travel=2.0)
+    assert {"width", "phase", "passing", "grown"} <= set(made.point_data)
+    assert made.field_data["period"][0] == pytest.approx(2 * 0.25 / 3)
+    assert np.all(made["passing"] == 2)
+    with pytest.raises(ValueError, match="travel: expected stroke_length beside it"):
+        vizlight.streamlines(plane, tangents="V", travel=2.0)
+    with pytest.raises(ValueError, match="travel: expected vectors, which have a sense"):
+        vizlight.streamlines(
+            plane, tangents="V", line_field=True, stroke_length=0.2, spacing=0.2, travel=2.0
+        )

@@ -1,5 +1,7 @@
 """``vizlight.look``: what is shown of which data, files, scripts, and bad input."""
 
+import re
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -163,6 +165,23 @@ def test_a_look_is_a_page_a_mesh_and_a_movie(tmp_path):
     assert look.save(tmp_path / "a.gif").stat().st_size > 1000
     html = look._repr_html_()
     assert html.startswith('<img alt="p in colours')
+
+
+@pytest.mark.opengl
+def test_strokes_of_a_movie_move_and_the_key_says_how_much_time_it_shows(tmp_path):
+    pytest.importorskip("imageio")
+    sheet = pv.Plane(i_resolution=20, j_resolution=20)
+    sheet["V"] = np.column_stack([1 + sheet.points[:, 1], 0 * sheet.points[:, :2]])
+    look = vizlight.look(sheet, size=(120, 80))
+    script = look.script(tmp_path / "a.gif")
+    assert "travel=3.0" in script
+    assert "movie.travel(" in script
+    assert re.search(
+        r'title="length of V; strokes move with it, 0\.\d+ of its time in all"', script
+    )
+    assert "travel" not in look.script(tmp_path / "a.png")
+    with Image.open(look.save(tmp_path / "a.gif")) as movie:
+        assert movie.n_frames > 60
 
 
 def test_options_win_over_the_rule():

@@ -45,3 +45,68 @@ def test_strokes_are_equally_long_and_thin_where_they_come_from(signed):
         ends = widths[[0, -1]] if line.points[0, 1] != 1 else widths[[-1, 0]]
         assert ends == pytest.approx([0.3, 1.0 if signed else 0.3], abs=1e-6)
         assert widths.max() == pytest.approx(1.0, abs=0.05)
+
+
+def heads(mesh, share):
+    """Return where strokes begin ahead: places at which their width falls to 0 along x."""
+    width = strokes.moved_widths(mesh, share)
+    return np.sort(mesh.points[1:, 0][np.diff(width) < -0.3])
+
+
+@pytest.mark.parametrize("frame", range(12))
+def test_strokes_of_a_uniform_flow_are_found_where_it_carries_them(frame):
+    """Each stroke of a frame is in the next, farther by speed times time, to a step of its line."""
+    mesh = pv.Line((0, 0, 0), (6, 0, 0), resolution=1200)
+    mesh.clear_data()
+    strokes.set_moving(mesh, 1.0, np.tile([2.0, 0, 0], (1201, 1)), 3.0)
+    assert mesh.field_data["period"][0] == pytest.approx(3 * 1.0 / 2.0)
+    moved = 2.0 * mesh.field_data["period"][0] / 12
+    here, there = heads(mesh, frame / 12), heads(mesh, (frame + 1) / 12)
+    inner = here[(here > 1) & (here < 5 - moved)]
+    assert len(inner) >= 3
+    for place in inner:
+        assert np.abs(there - place - moved).min() <= 0.006
+    np.testing.assert_allclose(
+        strokes.moved_widths(mesh, 1.0), strokes.moved_widths(mesh, 0.0), atol=1e-4
+    )
+
+
+def test_strokes_of_a_solid_rotation_turn_by_its_angle():
+    """At any radius: lines that are slower have fewer strokes, and none is slower than its flow."""
+    turn = np.linspace(0, 1.9 * np.pi, 4000)
+    rings = [pv.MultipleLines(r * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1))
+             for r in (0.4, 1.0)]  # fmt: skip
+    mesh = rings[0].append_polydata(rings[1])
+    strokes.set_moving(mesh, 0.4, np.cross([0, 0, 2.0], mesh.points), 3.0)
+    angle = np.tile(turn, 2)
+    step = 2.0 * mesh.field_data["period"][0] / 10
+    for ring in (slice(0, 4000), slice(4000, 8000)):
+        places = []
+        for share in (0.3, 0.4):
+            width = strokes.moved_widths(mesh, share)[ring]
+            places.append(angle[ring][1:][np.diff(width) < -0.3])
+        inner = places[0][(places[0] > 1) & (places[0] < 1.9 * np.pi - 1.2)]
+        assert len(inner)
+        for place in inner:
+            assert np.abs(places[1] - place - step).min() < 0.004
+    # Slow lines have few strokes, in whole numbers.
+    assert set(mesh["passing"]) == {1.0, 3.0}
+
+
+def test_strokes_grow_at_the_start_of_a_line_and_shrink_at_its_end():
+    mesh = lines()
+    strokes.set_moving(mesh, 0.5, mesh["t"], 2.0)
+    widths = np.array([strokes.moved_widths(mesh, share) for share in np.linspace(0, 1, 24)])
+    ends = np.isin(np.arange(mesh.n_points) % 41, [0, 40])
+    assert widths[:, ends].max() == 0
+    assert widths.min() == 0
+    assert widths.max() > 0.9
+    near = np.minimum(mesh.points[:, 0], 4 - mesh.points[:, 0])[mesh.points[:, 1] == 0]
+    # A stroke has grown when half of the distance to the next has passed.
+    assert np.all(widths[:, mesh.points[:, 1] == 0] <= np.minimum(near / 0.25, 1) + 1e-5)
+
+
+def test_where_vectors_are_zero_strokes_stand_still():
+    mesh = lines()
+    strokes.set_moving(mesh, 0.5, np.zeros((mesh.n_points, 3)), 2.0)
+    assert np.all(np.isfinite(mesh["phase"]))

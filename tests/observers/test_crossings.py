@@ -194,6 +194,15 @@ def test_crossings_beside_a_third_line_and_flat_ones_are_left_out():
     assert order(end, *shot(end, line_width=3)) is None
 
 
+def test_lines_that_bend_at_their_crossing_are_left_out():
+    """Beside a bend a line is not where its direction at the crossing points."""
+    bent = np.array([(0, -1, 0), (1, 0, 0), (0, 1, 0)])
+    for x, count in ((0.97, 0), (0.5, 2)):
+        mesh = lines(straight((x, -1, 1), (x, 1, 1)), bent.repeat(2, axis=0)[[0, 2, 4]])
+        found = order(mesh, *shot(mesh, line_width=3))
+        assert (0 if found is None else found.samples) == count
+
+
 def test_a_line_that_crosses_itself_is_asked():
     turn = np.linspace(0, 2 * np.pi, 400)[:-2]
     knot = np.stack(

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 #: Words before the path of what a step writes, where it is no mesh.
 SAID = {
-    "render.save": "picture", "movie.orbit": "movie", "vizlight.live_html": "page",
-    ".vizlight.export_html": "page",
+    "render.save": "picture", "movie.orbit": "movie", "movie.travel": "movie",
+    "vizlight.live_html": "page", ".vizlight.export_html": "page",
 }  # fmt: skip
 
 

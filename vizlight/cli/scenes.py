@@ -97,7 +97,9 @@ def wishes_of(
         light=dict(light or {}),
         eye=seen,
         picture=picture,
-        make_scene=_scene_maker(lights, common.finish, scene, dict(material or {})),
+        make_scene=_scene_maker(
+            lights, common.finish, scene, dict(material or {}), filtered=question != "auto"
+        ),
         surface=getattr(part, "surface", True),
     )
 
@@ -176,14 +178,23 @@ def known(**values: object) -> Keywords:
 
 
 def _scene_maker(
-    lights: Lights, finish: Finish, base: Scene | None, material: dict[str, float]
+    lights: Lights,
+    finish: Finish,
+    base: Scene | None,
+    material: dict[str, float],
+    *,
+    filtered: bool,
 ) -> SceneMaker | None:
-    """Return the function that makes the step of the scene of the options, None without any."""
+    """Return the function that makes the step of the scene of the options, None without any.
+
+    The question of the command is that of a filter where ``filtered``, and --for names the light.
+    """
     from vizlight.looks.wishes import plain_scene
 
     changes = known(**vars(finish))
     explicit = bool(lights.light or lights.light_position or lights.headlight)
-    if base is None and not (changes or explicit or material or lights.depth_cue):
+    named = filtered and lights.question is not None
+    if base is None and not (changes or explicit or material or lights.depth_cue or named):
         return None
 
     def make(question: str, view: Step, camera: Step, n: int) -> Step:

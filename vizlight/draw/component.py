@@ -23,6 +23,7 @@ from vizlight.filters import relight
 from vizlight.filters.key import key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
+from vizlight.mesh.strokes import PHASE, WIDTH
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import optional_scene, required_scene
@@ -113,10 +114,11 @@ class Component:
         halo : bool or float, optional
             Band of the colour of the ground on each side of lines, which tells the line in front
             where two cross: its width in widths of the line, or False for none. It is the deeper
-            the farther it is from its line, up to 5 % of the size of the lines, so that lines that
-            run together have no gap. Lines with halos have round ends and joints, and are drawn
-            nearer to the eye by their own width, so that a surface on which they lie does not hide
-            them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
+            the farther it is from its line, up to 4 widths of the line, so that lines that run
+            together have no gap. On a light ground the rim of lines that are nearly as light is
+            darker, but of colours of data. Lines with halos have round ends and joints, and are
+            drawn nearer to the eye by their own width, so that a surface on which they lie does not
+            hide them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
         width : str, optional
             Name of a point array of lines, one number per point: the width of the line there, as a
             share from 0 to 1 of ``line_width`` or ``line_diameter``, such as ``"width"`` of the
@@ -430,6 +432,16 @@ class Component:
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
         return found
+
+    def moving(self) -> list[pv.PolyData]:
+        """Return the lines whose strokes move: those of ``streamlines(travel=)`` with widths."""
+        lives = [self._live_of(actor) for actor in items(self._open_plotter().renderer.GetActors())]
+        strokes = [
+            live.source.mesh for live in lives if live is not None and live.stroke.width == WIDTH
+        ]
+        return [
+            mesh for mesh in strokes if isinstance(mesh, pv.PolyData) and PHASE in mesh.point_data
+        ]
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and what of it.

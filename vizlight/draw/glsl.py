@@ -375,8 +375,6 @@ class Stroke(NamedTuple):
         Whether each fragment has the normal of the cylinder that the line stands for.
     halo : float
         Width of the band of the ground's colour on each side of a line, in widths of the line.
-    depth : float
-        Distance by which the border of the halo is behind the line, in the unit of the mesh.
     width : str or None
         Name of the point array of widths, as shares from 0 to 1 of the width of the line; None for
         lines of one width.
@@ -385,7 +383,6 @@ class Stroke(NamedTuple):
     diameter: float | None = None
     round: bool = False
     halo: float = 0.0
-    depth: float = 0.0
     width: str | None = None
 
 

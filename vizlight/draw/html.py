@@ -25,10 +25,11 @@ from vizlight.draw import backends, dialects, glsl
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
+from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import TEXTS, preset_of
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.polylines import backdrop
 from vizlight.scene import DepthCue, Light, Scene, View, presets
 from vizlight.scene.conversion import lights_of
@@ -61,6 +62,8 @@ MOST_LAMPS = 4
 MOST_ARRAYS, MOST_VALUES = 6, 4_000_000
 #: Code of a value that is not finite.
 NO_VALUE = 65535
+#: Seconds in which a page shows a period of strokes that move, as a movie of 72 frames does.
+SECONDS = 3.0
 #: What the panel calls light by question, and says of it.
 LOOKS = {
     "direction": ("Direction", "Hue is the direction on the screen, as the key shows."),
@@ -164,10 +167,12 @@ class Page:
             "representation": prop.GetRepresentation(),
         }
         if live.stroke.halo:
-            made |= {"halo": live.stroke.halo, "depth": live.stroke.depth}
+            made |= {"halo": live.stroke.halo, "depth": DEPTH}
         if live.stroke.width is not None:
             shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
             made["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
+            if strokes.PHASE in live.source.mesh.point_data:
+                made["moving"] = _moving(live)
         if shown.frame is not None:
             made["frame"] = shown.frame
         if prop.GetEdgeVisibility():
@@ -357,6 +362,20 @@ class Page:
                 if bar.GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
                     self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
+
+
+def _moving(live: Live) -> dict[str, object]:
+    """Return the arrays by which the page moves strokes, and the shape of a stroke."""
+    phase, passing, grown = (
+        live.picked(np.asarray(live.source.mesh.point_data[name], dtype=np.float64))
+        for name in (strokes.PHASE, strokes.PASSING, strokes.GROWN)
+    )
+    return {
+        "phase": _packed(np.rint(phase % 1.0 * NO_VALUE), "u2"),
+        "passing": _packed(np.minimum(passing, NO_VALUE), "u2"),
+        "grown": _packed(np.rint(255 * grown), "u1"),
+        "tail": strokes.TAIL, "bare": strokes.BARE, "seconds": SECONDS,
+    }  # fmt: skip
 
 
 def _number_of(item: Foreign, known: list[Foreign]) -> int:

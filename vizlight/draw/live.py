@@ -312,7 +312,7 @@ class Live:
             self.source, self._placed = source, None
         self.show(scene, renderer, actor)
         if self.stroke != Stroke():
-            strokes.adapt(actor, renderer)
+            strokes.adapt(actor, renderer, of_data=self.scalars is not None)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return what the light depends on, in a form that can be compared."""

@@ -21,6 +21,7 @@ from vizlight.draw.cameras import Mesh, common_bounds
 from vizlight.files import check_output, replace_file
 from vizlight.filters.project import project
 from vizlight.filters.tint import RGB
+from vizlight.mesh import strokes
 from vizlight.mesh.blocks import all_blocks
 from vizlight.scene.presets import optional_scene
 from vizlight.shading.results import DEFAULT_NAME
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 
-__all__ = ["MovieError", "orbit", "save", "turn"]
+__all__ = ["MovieError", "orbit", "save", "travel", "turn"]
 
 FORMATS = (".png", ".gif", ".mp4")
 TURN = 2 * np.pi
@@ -290,6 +291,73 @@ def orbit(
         writer = _writer(path, fps, plotter.window_size)
         with progress("turn", count, show=progress_bar) as report:
             return writer(_counted(pictures(), report, 0))
+    finally:
+        plotter.close()
+
+
+def travel(
+    plotter: pv.Plotter,
+    path: str | Path,
+    /,
+    *,
+    frames: int = 72,
+    fps: float = 24.0,
+    progress_bar: bool = False,
+) -> list[Path]:
+    """Save what a plotter shows while strokes move along streamlines, and close the plotter.
+
+    The movie shows one period of the strokes, of which frame i is at ``i / frames``, so that it can
+    be repeated. From frame to frame a stroke moves as far as the vectors carry it: to the length of
+    a segment of its line in a uniform flow, to 0.004 radians in a solid rotation.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+        Plotter that draws offscreen, to which ``plotter.vizlight.add_mesh(lines, width="width")``
+        added lines of ``vizlight.streamlines(..., stroke_length=, travel=)``.
+    path : path
+        Path of a movie or of a sequence of PNGs, as for :func:`turn`.
+    frames : int, default: 72
+        Number of frames of the period.
+    fps : float, default: 24.0
+        Frames per second of a movie, up to 100.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError
+        If the path names a movie and imageio is not installed.
+    TypeError, ValueError
+        If an argument does not fit, the plotter has no strokes that move, or a file cannot be
+        written. No partial file is left.
+    """
+    path = _check_movie(path)
+    count = _check.integer("frames", frames, low=1)
+    fps = _check.number("fps", fps, low=0.01, high=100.0)
+
+    def pictures(moving: list[pv.PolyData]) -> Iterator[Picture]:
+        for i in range(count):
+            for lines in moving:
+                lines.point_data[strokes.WIDTH] = strokes.moved_widths(lines, i / count)
+            plotter.render()
+            yield np.array(plotter.screenshot(return_img=True))
+
+    try:
+        component: Foreign = plotter.vizlight
+        moving = component.moving()
+        if not moving:
+            expected = "a plotter that shows streamlines with travel= and width='width'"
+            raise ValueError(_check.message("plotter", expected, "none of them"))
+        plotter.reset_camera_clipping_range()
+        writer = _writer(path, fps, plotter.window_size)
+        with progress("travel", count, show=progress_bar) as report:
+            return writer(_counted(pictures(moving), report, 0))
     finally:
         plotter.close()
 

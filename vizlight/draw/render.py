@@ -465,7 +465,7 @@ def _draw(
         )
         if stroke != Stroke():
             widen(actor, stroke)
-            adapt(actor, plotter.renderer)
+            adapt(actor, plotter.renderer, of_data=panel.scalars != DEFAULT_NAME)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)

@@ -17,6 +17,7 @@ from vizlight import _check
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
 from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
+from vizlight.model import formulas
 from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
 
@@ -37,10 +38,15 @@ SHARPEST, SHARPEST_HALO = 0.5, 0.85
 AT_END = 1.75
 #: Width of a halo on each side in widths of the line, and its least width in pixels.
 WIDTHS, PIXELS = 1.0, 2.0
-#: Depth of the border of a halo behind its line, as a share of the size of the lines.
-DEPTH = 0.05
-#: Colour of halos, and pixels that are drawn for each pixel of the picture, as uniforms.
-GROUND, SAMPLES = "vizGround", "vizSamples"
+#: Depth of the border of a halo behind its line, in widths of the line: lines farther apart than
+#: that have a gap of the whole width of the halo.
+DEPTH = 4.0
+#: Contrast with a light ground below which the rim of a line is darkened, by how much at most, and
+#: the width of the rim in pixels: bright light on white would be seen neither before nor behind.
+FAINT, DARKER, RIM = 0.4, 0.6, 2.5
+#: Colour of halos, pixels that are drawn for each pixel of the picture, and by how much rims are
+#: darkened, as uniforms.
+GROUND, SAMPLES, DARKENED = "vizGround", "vizSamples", "vizDarkened"
 #: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
 #: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
 SUPERSAMPLED = 2 / 0.9
@@ -78,7 +84,7 @@ def stroke_of(mesh: pv.DataSet, drawing: Keywords) -> Stroke:
         halo = opacity is None or (isinstance(opacity, int | float) and opacity >= 1)
     if halo is False:
         return stroke
-    return with_halo(stroke, mesh, width, None if halo is True else halo)
+    return with_halo(stroke, width, None if halo is True else halo)
 
 
 def check_widths(mesh: pv.DataSet, name: str) -> None:
@@ -90,14 +96,12 @@ def check_widths(mesh: pv.DataSet, name: str) -> None:
         raise ValueError(_check.message("width", expected, got))
 
 
-def with_halo(stroke: Stroke, mesh: pv.DataSet, line_width: float, halo: float | None) -> Stroke:
+def with_halo(stroke: Stroke, line_width: float, halo: float | None) -> Stroke:
     """Return a stroke with a halo.
 
     Parameters
     ----------
     stroke : Stroke
-    mesh : pyvista.DataSet
-        Lines.
     line_width : float
         Width of the lines in pixels, where they have no diameter.
     halo : float or None
@@ -110,7 +114,7 @@ def with_halo(stroke: Stroke, mesh: pv.DataSet, line_width: float, halo: float |
     """
     if halo is None:
         halo = WIDTHS if stroke.diameter else max(WIDTHS, PIXELS / max(line_width, LEAST))
-    return stroke._replace(halo=halo, depth=DEPTH * mesh.length) if halo > 0 else stroke
+    return stroke._replace(halo=halo) if halo > 0 else stroke
 
 
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
@@ -165,12 +169,18 @@ def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> 
     replace(actor, [*widened(actor, [*passed, *unlit], stroke), *last])
 
 
-def adapt(actor: vtkActor, renderer: vtkRenderer) -> None:
-    """Give the lines of an actor the background and the pixels of a renderer."""
+def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
+    """Give the lines of an actor the background and the pixels of a renderer.
+
+    Colours ``of_data`` have no darker rim: it would be read as another value.
+    """
     shader = actor.GetShaderProperty()
-    shader.GetFragmentCustomUniforms().SetUniform3f(GROUND, list(renderer.GetBackground()))
+    fragment = shader.GetFragmentCustomUniforms()
+    fragment.SetUniform3f(GROUND, list(renderer.GetBackground()))
     samples = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
-    shader.GetGeometryCustomUniforms().SetUniformf(SAMPLES, samples)
+    fragment.SetUniformf(DARKENED, 0.0 if of_data else DARKER)
+    for uniforms in (fragment, shader.GetGeometryCustomUniforms()):
+        uniforms.SetUniformf(SAMPLES, samples)
 
 
 def has_pass(step: Foreign, kind: str) -> bool:
@@ -284,8 +294,8 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
         f"float vizSlope = -{_ratio(2)};",
         "float vizFocus = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], MCDCMatrix[2][3]) == vec3(0.0)",
         "  ? 0.0 : 1.0;",
-        "float vizNearer = vizThick[i] * vizPen.y * vizHere.w / vizSpread;",
-        "if (vizFocus > 0.0) vizNearer = min(vizNearer, 0.5 * vizHere.w);",
+        "float vizWidth = vizThick[i] * vizPen.y * vizHere.w / vizSpread;",
+        "float vizNearer = vizFocus > 0.0 ? min(vizWidth, 0.5 * vizHere.w) : vizWidth;",
     ]
     if stroke.halo:
         lines += _capped(stroke, joined=joined, ended=ended)
@@ -344,7 +354,7 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
         "vizPlace += (i == 0 ? -0.5 : 0.5) * vizCap * vizWhole * vizHere.w * vizStraight * vizPen;",
         "vizWide *= vizReach;",
         # Depths of what is nearer to the eye, and of what is behind it.
-        f"vec2 vizMoved = vec2(vizNearer, -{glsl.number(stroke.depth)});",
+        f"vec2 vizMoved = vec2(vizNearer, -{glsl.number(DEPTH)} * vizWidth);",
         "vizDeepGSOutput.xy = 0.5 * vizHere.w * ((vizHere.z + vizSlope * vizMoved)",
         "  / (vizHere.w - vizFocus * vizMoved) - vizHere.z / vizHere.w);",
         "vizDeepGSOutput.zw = vizHere.w * vizShare;",
@@ -375,7 +385,15 @@ def _border(stroke: Stroke) -> str:
     )
 
 
-#: The colour of the ground beside a line.
+#: The rim of a line that is nearly as light as its ground, and the colour of the ground beside it.
 _GROUNDED = (
-    f"//VTK::TCoord::Impl\n  gl_FragData[0].rgb = mix(gl_FragData[0].rgb, {GROUND}, vizGap);\n"
+    "//VTK::TCoord::Impl\n"
+    f"  vec3 vizLuma = {glsl.vector(formulas.LUMA)};\n"
+    f"  float vizPale = dot({GROUND}, vizLuma);\n"
+    "  vizPale = vizPale < 0.5 ? 0.0\n"
+    f"    : clamp(1.0 - (vizPale - dot(gl_FragData[0].rgb, vizLuma)) / {FAINT}, 0.0, 1.0);\n"
+    f"  float vizPixel = {SAMPLES} * 2.0 * max(vizBlur, 1e-6);\n"
+    f"  float vizRim = smoothstep(-{RIM} * vizPixel, -0.5 * vizPixel, vizAway);\n"
+    f"  gl_FragData[0].rgb *= 1.0 - {DARKENED} * vizPale * vizRim;\n"
+    f"  gl_FragData[0].rgb = mix(gl_FragData[0].rgb, {GROUND}, vizGap);\n"
 )

@@ -67,6 +67,7 @@ class StreamlineOptions(LightOptions):
     min_length: float | None = None
     max_length: float | None = None
     stroke_length: float | None = None
+    travel: float | None = None
     conditioned: bool | str | None = None
 
     def __post_init__(self) -> None:
@@ -85,8 +86,11 @@ class StreamlineOptions(LightOptions):
         else:
             records.refuse_unnamed("tangents", given)
         _check.fields(self, _check.integer, "seed", low=0)
-        for length in ("spacing", "min_length", "stroke_length"):
+        for length in ("spacing", "min_length", "stroke_length", "travel"):
             _check.fields(self, _check.positive, length, optional=True)
+        if self.travel is not None and self.stroke_length is None:
+            remedy = "pass the distance between strokes as stroke_length="
+            raise ValueError(_check.message("travel", "stroke_length beside it", "none", remedy))
 
 
 def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
@@ -120,6 +124,7 @@ def streamlines(
     min_length: float | None = None,
     max_length: float | None = None,
     stroke_length: float | None = None,
+    travel: float | None = None,
     conditioned: bool | str | None = None,
     facing: Facing = "auto",
     feature_angle: FeatureAngle = None,
@@ -185,6 +190,13 @@ def streamlines(
         theirs. They have the point array ``width``, which grows along the vectors from 0.3 at the
         tail to 1 at the head, and so tells their sense; in a line field both ends are thin. It is
         what ``plotter.vizlight.add_mesh(lines, width="width")`` takes. Default: lines are whole.
+    travel : float, optional
+        Number of stroke lengths by which strokes move along the lines in a movie, where the vectors
+        are as long as their 90th percentile; elsewhere by as much as the vectors say. The lines are
+        whole then, with the point arrays ``width``, at the start, ``phase``, ``passing`` (strokes
+        in a period, a whole number) and ``grown``, by which ``movie.travel`` moves the strokes, and
+        the field array ``period``: the time that the movie shows, in the unit of lengths over that
+        of the vectors. Each stroke is as long as what moves past it. Default: strokes stand still.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether there is a surface, but not in the light of
@@ -309,7 +321,28 @@ def _as_strokes(
         lines.point_data[own_name(mesh, key)] = values
     if options.stroke_length is None:
         return lines
+    if options.travel is not None:
+        strokes.set_moving(
+            lines,
+            options.stroke_length,
+            _velocities(lines, mesh, tangents, options),
+            options.travel,
+        )
+        return lines
     return strokes.cut(lines, options.stroke_length, tangents, signed=not options.line_field)
+
+
+def _velocities(
+    lines: pv.PolyData, mesh: pv.DataSet, tangents: str, options: StreamlineOptions
+) -> Array:
+    """Return the parts of the vectors along lines, in the coordinates of the mesh."""
+    if options.line_field or not isinstance(options.tangents, str):
+        expected = "vectors, which have a sense"
+        raise ValueError(_check.message("travel", expected, "a line field", "leave travel out"))
+    vectors: Array = np.asarray(lines.point_data[options.tangents], dtype=np.float64)
+    rows = georeference.motion(mesh, lines, np.nan_to_num(vectors), np.ones(3))
+    way = np.asarray(lines.point_data[tangents], dtype=np.float64)
+    return np.asarray(np.einsum("ij,ij->i", rows, way)[:, np.newaxis] * way)
 
 
 def _speed(lines: pv.PolyData, options: StreamlineOptions) -> Array | None:

@@ -153,7 +153,8 @@ class Look:
         ----------
         path : path
             Path of a picture (.png, .jpg, .tif, .bmp), of a page (.html) whose light follows the
-            reader's eye, of a glTF file (.glb), of a movie of one turn (.mp4, .gif), or of a mesh
+            reader's eye, of a glTF file (.glb), of a movie (.mp4, .gif) in which the strokes of a
+            field move with it, else of one turn, or of a mesh
             (.vtp, .vtu, .vtk, .vts, .vti, .vtr, .vtm). An existing file is replaced.
 
         Returns
@@ -185,10 +186,15 @@ class Look:
         """Return the steps that write a file, or one file for each part of the result."""
         path = files.check_output(path, FORMATS)
         suffix, drawing = path.suffix.lower(), self.drawing
-        if suffix in (*IMAGES, *MOVIES):
-            plotter, steps = self._picture()
-            way = "render.save" if suffix in IMAGES else "movie.orbit"
+        if suffix in MOVIES:
+            moving = fields.moving(drawing)
+            shown = self if moving is None else replace(self, drawing=moving)
+            plotter, steps = shown._picture()
+            way = "movie.orbit" if moving is None else "movie.travel"
             return [[*steps, Step("", way, plotter, path)]]
+        if suffix in IMAGES:
+            plotter, steps = self._picture()
+            return [[*steps, Step("", "render.save", plotter, path)]]
         if suffix in PAGES:
             return [self._page(path)]
         if drawing.alone is not None and suffix in files.SUFFIXES and suffix not in TOGETHER:

@@ -1,4 +1,4 @@
-"""Lines as strokes: lengths along them, without the short ones, and cut into tapered pieces."""
+"""Lines as strokes: lengths along them, without short ones, cut into pieces; moving strokes."""
 
 from __future__ import annotations
 
@@ -14,6 +14,16 @@ if TYPE_CHECKING:
 
 #: Width of the thin end of a stroke, as a share of its largest width.
 TAIL = 0.3
+#: Share of the distance from one moving stroke to the next that is bare, and share of it in which
+#: a stroke grows at the start of its line, or shrinks at the end.
+BARE, FADE = 0.25, 0.5
+#: Names of the point arrays of moving strokes: the place in the distance between strokes at the
+#: start, the number of strokes that pass in a period, and how far a stroke is grown; and of widths.
+PHASE, PASSING, GROWN, WIDTH = "phase", "passing", "grown", "width"
+#: Turns by which strokes of one line are ahead of those of the line before it.
+GOLDEN = 0.6180339887
+#: Share of the median speed below which vectors move a stroke no slower, as at the end of a line.
+SLOWEST = 1e-3
 
 
 class Segments(NamedTuple):
@@ -80,8 +90,13 @@ def ages(mesh: pv.PolyData, tangents: AnyArray) -> Array:
         Lengths in the unit of the mesh; the first point of a closed line has the length 0.
     """
     segments = segments_of(mesh)
+    return _run_through(mesh, segments, against(mesh, segments, tangents))
+
+
+def _run_through(mesh: pv.PolyData, segments: Segments, turned: Bools) -> Array:
+    """Return what lines have before each point, where some are run through from their ends."""
     after = segments.before + segments.lengths
-    turned = against(mesh, segments, tangents)[segments.lines]
+    turned = turned[segments.lines]
     totals = segments.totals()[segments.lines]
     found = np.zeros(mesh.n_points)
     found[segments.ends] = np.where(turned, totals - after, after)
@@ -129,8 +144,78 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
         whole[ends] = parts.totals()[parts.lines]
     place = run / np.where(whole > 0, whole, 1.0)
     full = place if signed else 1 - np.abs(2 * place - 1)
-    strokes.point_data["width"] = (TAIL + (1 - TAIL) * full).astype(np.float32)
+    strokes.point_data[WIDTH] = (TAIL + (1 - TAIL) * full).astype(np.float32)
     return strokes
+
+
+def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: float) -> None:
+    """Give lines the point arrays of strokes that move along them with the vectors.
+
+    Each line has a whole number of strokes that pass in a period, so that a movie can be repeated.
+    Strokes are as long as what moves past in that time: longer where the vectors are.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines, which get ``phase``, ``passing``, ``grown``, and ``width`` at the start, and the
+        field array ``period``, in the unit of lengths over that of the velocities.
+    length : float
+        Distance from one stroke to the next on a line of any speed, as far as the whole number of
+        strokes allows.
+    velocities : array_like, shape (n_points, 3)
+        Velocities in the coordinates of the mesh, along the lines.
+    travel : float
+        Number of these distances that the 90th percentile of the speeds moves in a period.
+    """
+    segments = segments_of(mesh)
+    speed = np.linalg.norm(np.asarray(velocities, dtype=np.float64), axis=1)
+    least = SLOWEST * float(np.median(speed[speed > 0])) if speed.any() else 1.0
+    speed = np.maximum(speed, least)
+    # The mean of what a step takes at both ends, which is exact where the speed is even.
+    slow = (1 / speed[segments.starts] + 1 / speed[segments.ends]) / 2
+    times = segments.lengths * slow
+    sums = np.cumsum(times) - times
+    first = np.flatnonzero(np.diff(segments.lines, prepend=-1))
+    before = sums - np.repeat(sums[first], np.diff(first, append=len(times)))
+    timed = segments._replace(before=before, lengths=times)
+    totals, period = timed.totals(), travel * length / float(np.percentile(speed, 90))
+    mean = segments.totals() / np.maximum(totals, 1e-300)
+    passing = np.maximum(np.round(period * mean / length), 1)
+    found = _run_through(mesh, timed, against(mesh, segments, velocities))
+    line = np.zeros(mesh.n_points, dtype=np.intp)
+    line[segments.starts], line[segments.ends] = segments.lines, segments.lines
+    apart = period / passing[line]
+    # Neighbours are out of step, by a ratio that repeats last.
+    phase = found / apart + np.arange(len(totals))[line] * GOLDEN
+    near = np.minimum(found, totals[line] - found)
+    arrays = {PHASE: phase, PASSING: passing[line], GROWN: np.clip(near / (FADE * apart), 0, 1)}
+    for name, values in arrays.items():
+        mesh.point_data[name] = values.astype(np.float32)
+    mesh.field_data["period"] = [period]
+    mesh.point_data[WIDTH] = moved_widths(mesh, 0.0)
+
+
+def moved_widths(mesh: pv.PolyData, share: float) -> Array:
+    """Return the widths of strokes that have moved for a share of their period.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines with the arrays of :func:`set_moving`.
+    share : float
+        Time in periods.
+
+    Returns
+    -------
+    ndarray of float32, shape (n_points,)
+        0 where there is no stroke, from 0.3 at its tail to 1 at its head, less where it grows.
+    """
+    phase, passing, grown = (
+        np.asarray(mesh.point_data[name], dtype=np.float64) for name in (PHASE, PASSING, GROWN)
+    )
+    place = (phase - passing * share) % 1.0
+    width = TAIL + (1 - TAIL) * (place - BARE) / (1 - BARE)
+    return np.asarray(np.where(place < BARE, 0.0, grown * width), dtype=np.float32)
 
 
 def _rebuilt(mesh: pv.PolyData, segments: Segments, kept: Bools, pieces: Indices) -> pv.PolyData:

@@ -30,6 +30,8 @@ APART = 40.0
 #: Distances in pixels beyond the border of a line at which its border is looked for, and the one
 #: inside, where tubes and outlined lines are darker.
 BESIDE, INSIDE = (1.0, 2.0, 3.0, 5.0), (-1.0,)
+#: Cosine of the angle by which lines turn at most within the farthest of these: 30 degrees.
+STRAIGHT = 0.866
 #: Distance in pixels around both lines in which there is no third.
 CLEAR = 5.5
 #: Distance in pixels within which two crossings are one.
@@ -88,6 +90,8 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     back = np.where(front == first, second, first)
     found = Crossings(at, front, back)
     keep = _near(lines, shown, front)
+    for one, other in ((front, back), (back, front)):
+        keep &= _straight(lines, at, one, other)
     for one, other in ((front, back), (back, front)):
         for side in _arms(lines, found, one, other):
             numbers = [_number(lines, places) for places in side]
@@ -152,6 +156,20 @@ def _arms(
     far = np.maximum(lines.width[other] / 2 + np.array(distances)[:, np.newaxis], 0.0) / sine
     step = far[..., np.newaxis] * u
     return np.stack([found.at + step, found.at - step])
+
+
+def _straight(lines: Segments, at: Array, one: Indices, other: Indices) -> Bools:
+    """Return whether lines go straight on through crossings, as far as they are looked at."""
+    u, v = _unit(lines.way[one]), _unit(lines.way[other])
+    sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    reach = (lines.width[other] / 2 + BESIDE[-1]) / sine
+    place = lines.along[one] + np.einsum("ij,ij->i", at - lines.start[one], u)
+    straight = np.ones(len(one), dtype=np.bool_)
+    for far in (place - reach, place + reach):
+        there = np.clip(np.searchsorted(lines.along, far, side="right") - 1, 0, None)
+        way = _unit(lines.way[there])
+        straight &= np.einsum("ij,ij->i", way, u) >= STRAIGHT
+    return straight
 
 
 def _read(seen: SeenPicture, places: Array) -> Array:

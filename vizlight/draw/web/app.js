@@ -201,6 +201,22 @@ class App {
     this.due ??= requestAnimationFrame(() => { this.due = null; this.draw(); });
   }
 
+  // Strokes run, and go on from where they stood; readers who want no motion start them.
+  play(on) {
+    this.playing = on;
+    const moving = this.meshes.filter((mesh) => mesh.moving);
+    let before = performance.now();
+    const step = (now) => {
+      if (!this.playing) return;
+      this.time = ((this.time || 0) + Math.max(0, now - before) / 1000) % 3600;
+      before = now;
+      moving.forEach((mesh) => mesh.move((this.time / mesh.given.moving.seconds) % 1));
+      this.draw();
+      requestAnimationFrame(step);
+    };
+    if (on) requestAnimationFrame(step);
+  }
+
   // Pixels of the canvas for each of the window, fewer while a slow picture moves; whether they have changed.
   sized(ratio = window.devicePixelRatio || 1) {
     const { clientWidth, clientHeight } = this.canvas;

@@ -151,11 +151,11 @@ const CAPSULE = `
   float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));
   float focus = ROW(MCPCMatrix, 3) == vec3(0.0) ? 0.0 : 1.0;
   float nearer = 2.0 * ownWide * w / (spread * ownSize.y);
-  vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth);
+  vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth * nearer);
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB;';
-const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
+const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform float ownDarker; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
 const CAPSULE_SHAPE = `
   vec3 at = ownAt * gl_FragCoord.w; vec2 halves = ownHalves * gl_FragCoord.w; vec2 deep = ownDeep * gl_FragCoord.w;
   float away = length(vec2(at.x, max(max(-at.y, at.y - at.z), 0.0))) - mix(halves.x, halves.y, clamp(at.y / max(at.z, 1e-6), 0.0, 1.0));
@@ -163,7 +163,16 @@ const CAPSULE_SHAPE = `
   if (away > ownHalo) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
-const CAPSULE_GROUND = '\n  if (ownHalo > 0.0) ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));\n}';
+const CAPSULE_GROUND = `
+  if (ownHalo > 0.0) {
+    // The rim of a line that is nearly as light as its ground is darker, as in pictures, but of colours of data.
+    vec3 luma = vec3(0.2126, 0.7152, 0.0722);
+    float ground = dot(ownGround, luma);
+    float pale = ground < 0.5 ? 0.0 : clamp(1.0 - (ground - dot(ownOut.rgb, luma)) / 0.4, 0.0, 1.0);
+    ownOut.rgb *= 1.0 - ownDarker * pale * smoothstep(-2.5, -0.5, away);
+    ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));
+  }
+}`;
 const FRAGMENT = `#version 300 es
 #define varying in
 precision highp float;
@@ -320,6 +329,7 @@ class Mesh {
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
     mesh.capsules = Boolean(given.halo || given.widths);
+    if (given.moving) mesh.moving = Object.fromEntries(await Promise.all(['phase', 'passing', 'grown'].map(async (k) => [k, await unpack(given.moving[k])])));
     await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
     // VTK's numbers: 0 for points, 1 for wires, 2 for faces.
     const style = given.representation;
@@ -352,6 +362,7 @@ class Mesh {
     // All of the width where the points have none of their own.
     if (kind === 'strokes' && this.capsules && !edge) batch.put('ownShare', gathered(found.widths || new Uint8Array(this.places.length / 3).fill(255), from, 1), 1);
     if (kind === 'strokes') batch.put('ownGap', Uint8Array.from(owners, (cell, i) => Number(cell !== owners[i + 1])), 1);
+    batch.points = from;
     batch.from = this.given.ofCells ? owners : from;
     if (edge) {
       batch.plain([...this.given.edgeColor, 1]);
@@ -384,6 +395,18 @@ class Mesh {
     this.paint(colors, true);
   }
 
+  // Strokes that have moved for a share of their period; Python says the same of a movie.
+  move(share) {
+    const { phase, passing, grown } = this.moving;
+    const { tail, bare } = this.given.moving;
+    const widths = Uint8Array.from(grown, (most, i) => {
+      const at = (phase[i] / NO_VALUE - passing[i] * share) % 1;
+      const here = at < 0 ? at + 1 : at;
+      return here < bare ? 0 : most * (tail + ((1 - tail) * (here - bare)) / (1 - bare));
+    });
+    this.batches.forEach((batch) => { if (batch.kind === 'strokes') batch.put('ownShare', gathered(widths, batch.points, 1), 1); });
+  }
+
   program(key, strokes, capsules = strokes && this.capsules) {
     const name = `${key}${strokes}${capsules}`;
     const text = key === '' ? UNLIT : this.texts[this.given.texts[key]];
@@ -402,7 +425,7 @@ class Mesh {
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
       const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
-      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0] });
+      this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0], ownDarker: [this.data ? 0 : 0.6] });
       if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
       batch.draw();
     });

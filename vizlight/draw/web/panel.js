@@ -319,6 +319,18 @@ function frameControl(app) {
   return show;
 }
 
+// Strokes that move can be held.
+function motionControl(app) {
+  if (!app.meshes.some((mesh) => mesh.moving)) return;
+  const button = make('button', { type: 'button', onclick: () => play(!app.playing) });
+  const play = (on) => {
+    app.play(on);
+    button.textContent = on ? 'Hold' : 'Move';
+  };
+  document.getElementById('frames').append(button);
+  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
+}
+
 function copies(app) {
   const text = make('pre', { tabIndex: 0 });
   const said = make('span', { role: 'status' });
@@ -415,6 +427,7 @@ async function start() {
     await new Promise((done) => { requestAnimationFrame(() => setTimeout(done)); });
     build(app);
     steer(app);
+    motionControl(app);
     new ResizeObserver(() => { if (app.sized()) app.draw(); }).observe(app.canvas);
     matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
     addEventListener('beforeprint', () => app.draw());

@@ -15,6 +15,7 @@ import pyvista as pv
 
 from vizlight.draw.legends import data_share
 from vizlight.draw.render import KEY_SIZE
+from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
@@ -59,6 +60,8 @@ WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
 #: Length below which streamlines of a volume are left out, in distances between them: many are cut
 #: short where the field is noise.
 SHORTEST = 4 * SPACING_IN_VOLUME
+#: Stroke lengths that strokes move in a movie where vectors are long.
+TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
 EVEN = 0.05
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
@@ -257,6 +260,37 @@ def flow(case: Case) -> Drawing:
         notes = [f"lines shorter than {least}, four times their distance, are left out: {left_out}"]
     layers = [lines, _hull(mesh)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
+
+
+def moving(drawing: Drawing) -> Drawing | None:
+    """Return a drawing whose strokes move in a movie, None where it has none with a sense.
+
+    The key says how much time a movie shows.
+    """
+    layers, period = [], 0.0
+    for layer in drawing.layers:
+        step = layer.mesh
+        if "width" in layer.keywords and _have_sense(step):
+            step = Step(step.name, step.path, *step.arguments, **step.keywords, travel=TRAVEL)
+            step.quiet = layer.mesh.quiet
+            period = float(step.run().field_data["period"][0])
+        layers.append(replace(layer, mesh=step))
+    if not period:
+        return None
+    title = drawing.keys[0].get("title", "") if drawing.keys else ""
+    head = str(title).replace("; strokes run from thin to thick", "")
+    unit = " s" if head.endswith("/s)") else ""
+    said = f"{head}; strokes move with it, {period:.3g}{unit} of its time in all"
+    keys = [dict(key, title=said) if i == 0 else key for i, key in enumerate(drawing.keys)]
+    return replace(drawing, layers=layers, keys=keys)
+
+
+def _have_sense(strokes: Step) -> bool:
+    """Return whether a step lays strokes along vectors, which are not a line field."""
+    if "stroke_length" not in strokes.keywords or strokes.keywords.get("line_field"):
+        return False
+    arrays = strokes.run().point_data
+    return any(name in arrays for name in (SPEED_OF_LINES, f"vizlight {SPEED_OF_LINES}"))
 
 
 def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Step:
