@@ -13,6 +13,7 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES
+from vizlight.draw.vector.figure import VECTORS
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
@@ -36,7 +37,7 @@ __all__ = ["Look", "look"]
 
 #: Endings of the names of pages, movies and glTF, and of all files that a look writes.
 PAGES, MOVIES, GLTF = (".html", ".htm"), (".mp4", ".gif"), (".glb",)
-FORMATS = (*IMAGES, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
+FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
 #: Files that hold all parts of a result.
 TOGETHER = (*PAGES, ".vtm")
 #: Most other questions that are listed.
@@ -150,9 +151,10 @@ class Look:
         Parameters
         ----------
         path : path
-            Path of a picture (.png, .jpg, .tif, .bmp), of a page (.html) whose light follows the
-            reader's eye, of a glTF file (.glb), of a movie of one turn (.mp4, .gif), or of a mesh
-            (.vtp, .vtu, .vtk, .vts, .vti, .vtr, .vtm). An existing file is replaced.
+            Path of a picture (.png, .jpg, .tif, .bmp), of vector graphics (.svg, .pdf), of a page
+            (.html) whose light follows the reader's eye, of a glTF file (.glb), of a movie of one
+            turn (.mp4, .gif), or of a mesh (.vtp, .vtu, .vtk, .vts, .vti, .vtr, .vtm). An existing
+            file is replaced.
 
         Returns
         -------
@@ -183,8 +185,10 @@ class Look:
         """Return the steps that write a file, or one file for each part of the result."""
         path = files.check_output(path, FORMATS)
         suffix, drawing = path.suffix.lower(), self.drawing
-        if suffix in (*IMAGES, *MOVIES):
+        if suffix in (*IMAGES, *VECTORS, *MOVIES):
             plotter, steps = self._picture()
+            if suffix in VECTORS:
+                return [[*steps, Step("", ".vizlight.save_graphic", plotter, path)]]
             way = "render.save" if suffix in IMAGES else "movie.orbit"
             return [[*steps, Step("", way, plotter, path)]]
         if suffix in PAGES:
