@@ -446,7 +446,7 @@ class Component:
         # It draws, which a page does not.
         from vizlight.draw.vector.figure import save_graphic
 
-        return save_graphic(self._open_plotter(), path, error=error)
+        return save_graphic(self._open_plotter(), path, self._live_of, error=error)
 
     def shown(self) -> list[Shown]:
         """Return the visible meshes with live light, for a page whose camera is set.

@@ -11,6 +11,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.vector.files import Fill, Picture, Sheet, pdf_of, svg_of
+from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
 from vizlight.draw.vector.samples import Samples, enlarged, samples_of
 from vizlight.draw.vector.words import words_of
 from vizlight.files import check_output, replace_file
@@ -18,7 +19,12 @@ from vizlight.geometry.contours.faces import faces
 from vizlight.geometry.contours.palette import palette_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vtkmodules.vtkRenderingCore import vtkActor
+
     from vizlight._types import Array, Bools, Color, Slice
+    from vizlight.draw.live import Live
     from vizlight.draw.vector.files import Item
 
 __all__ = ["VECTORS", "save_graphic"]
@@ -38,13 +44,27 @@ SAMPLES, FINE = 12_000_000, 4
 
 
 def save_graphic(
-    plotter: pv.BasePlotter, path: str | Path, /, *, error: float | None = None
+    plotter: pv.BasePlotter,
+    path: str | Path,
+    live_of: Callable[[vtkActor], Live | None],
+    /,
+    *,
+    error: float | None = None,
 ) -> Path:
-    """Write what a plotter shows as an SVG or PDF file; see ``plotter.vizlight.save_graphic``."""
+    """Write what a plotter shows as an SVG or PDF file; see ``plotter.vizlight.save_graphic``.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    path : path
+    live_of : callable
+        Function that returns the live light of an actor, or None.
+    error : float, optional
+    """
     path = check_output(path, VECTORS)
     if error is not None:
         error = _check.number("error", error, low=0.1, high=128.0)
-    drawn = _Drawn.of(plotter)
+    drawn = _Drawn.of(plotter, live_of)
     first = FIRST[drawn.samples.colors.shape[2] > 1] if error is None else error
     best = drawn.attempt(path.suffix, first)
     if error is None:
@@ -70,10 +90,11 @@ class _Drawn:
     scale: int
     samples: Samples
     place: tuple[int, int]
-    over: dict[str, list[Item]]
+    courses: list[Course]
+    words: list[Item]
 
     @classmethod
-    def of(cls, plotter: pv.BasePlotter) -> _Drawn:
+    def of(cls, plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]) -> _Drawn:
         """Draw a plotter, and put it back as it was."""
         plotter.reset_camera_clipping_range()
         # PyVista sets the camera with the first picture.
@@ -81,15 +102,20 @@ class _Drawn:
         width, height = plotter.window_size
         scale = int(min(max((SAMPLES / (width * height)) ** 0.5, 1), FINE))
         words, props = words_of(plotter)
-        with enlarged(plotter, scale, props):
+        lines, courses = lines_of(plotter, live_of), []
+        with enlarged(plotter, scale, [*props, *(one.actor for one in lines)]):
             samples = samples_of(plotter)
+        if lines:
+            with enlarged(plotter, scale, props):
+                whole = samples_of(plotter)
+                courses = [course_of(one, whole, samples, scale) for one in lines]
         red, green, blue = pv.Color(plotter.background_color).float_rgb
         ground = np.rint(255 * np.array((red, green, blue)))
         shown = np.any(samples.colors != ground[: samples.colors.shape[2]], axis=2)
         rows, columns = (_span(shown.any(axis=axis), scale) for axis in (1, 0))
         samples = Samples(samples.colors[rows, columns], samples.depth[rows, columns])
         place = columns.start // scale, rows.start // scale
-        return cls((width, height), (red, green, blue), scale, samples, place, {"words": words})
+        return cls((width, height), (red, green, blue), scale, samples, place, courses, words)
 
     def attempt(self, suffix: str, error: float) -> _Attempt:
         """Return the figure with an error that is asked."""
@@ -100,10 +126,12 @@ class _Drawn:
             Fill(_rgb(face.color), [ring + self.place for ring in face.rings])
             for face in faces(palette, colors, self.scale)
         ]
+        courses = [_in_channels(course, 3) for course in self.courses]
+        strokes: list[Item] = [*strokes_of(courses, self.background, error)]
         words = (
             f"{len(palette.colors)} colours, each within {palette.error:.1f} of 255 of the light"
         )
-        return _Attempt(self._written(suffix, fills, words), error, palette.error)
+        return _Attempt(self._written(suffix, fills, strokes, words), error, palette.error)
 
     def pixels(self, suffix: str) -> _Attempt:
         """Return the figure with the picture as pixels, two for each of its own."""
@@ -115,11 +143,20 @@ class _Drawn:
         shown = np.broadcast_to(mean, (*mean.shape[:2], 3))
         size = (columns / self.scale, rows / self.scale)
         picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size)]
-        return _Attempt(self._written(suffix, picture, "pixels, and words"), 0.0, np.inf)
+        courses = [_in_channels(course, 3) for course in self.courses]
+        strokes: list[Item] = [*strokes_of(courses, self.background, COARSEST)]
+        data = self._written(suffix, picture, strokes, "pixels, strokes and words")
+        return _Attempt(data, 0.0, np.inf)
 
-    def _written(self, suffix: str, faces: list[Item], words: str) -> bytes:
-        sheet = Sheet(self.size, self.background, {"faces": faces, **self.over}, words)
+    def _written(self, suffix: str, faces: list[Item], lines: list[Item], words: str) -> bytes:
+        groups = {"faces": faces, "lines": lines, "words": self.words}
+        sheet = Sheet(self.size, self.background, groups, words)
         return svg_of(sheet).encode() if suffix.lower() == ".svg" else pdf_of(sheet)
+
+
+def _in_channels(course: Course, count: int) -> Course:
+    """Return a course whose colours have some channels, all alike where there was one."""
+    return course._replace(color=np.broadcast_to(course.color, (len(course.color), count)))
 
 
 def _span(shown: Bools, scale: int) -> Slice:

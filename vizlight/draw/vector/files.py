@@ -139,15 +139,18 @@ def _drawn(every: Iterable[Item]) -> Iterable[str]:
     for item in every:
         if small != isinstance(item, Fill | Stroke):
             small = not small
-            yield f'<g transform="scale({1 / STEPS:g})">\n' if small else "</g>\n"
+            yield (
+                f'<g transform="scale({1 / STEPS:g})" fill="none" stroke-linejoin="round">\n'
+                if small
+                else "</g>\n"
+            )
         if isinstance(item, Fill):
             if path := _path(item.rings):
                 yield f'<path fill="{_hex(item.color)}" d="{path}"/>\n'
         elif isinstance(item, Stroke):
             cap = ' stroke-linecap="round"' if item.round else ""
             yield (
-                f'<path fill="none" stroke="{_hex(item.color)}" stroke-width="'
-                f'{STEPS * item.width:.3g}" stroke-linejoin="round"{cap} '
+                f'<path stroke="{_hex(item.color)}" stroke-width="{STEPS * item.width:.3g}"{cap} '
                 f'd="{_path([item.points], closed=False)}"/>\n'
             )
         elif isinstance(item, Words):

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
 
-__all__ = ["Face", "faces"]
+__all__ = ["SEEN", "Face", "faces", "simplified"]
 
 #: Reach of a face beneath a later one, in pixels: tried from the largest.
 REACHES = (1.5, 1.0, 0.6, 0.3)
@@ -120,7 +120,7 @@ def faces(palette: Palette, samples: Array, scale: int) -> Iterator[Face]:
     points, reach = _spread(borders, padded, scale)
     pixels = (points - 0.5) / scale
     limit = np.where(borders.sharp, max(SEEN, STAIR / scale), SEEN)
-    kept = _simplified(pixels, borders.starts, np.maximum(limit, SLACK * reach))
+    kept = simplified(pixels, borders.starts, np.maximum(limit, SLACK * reach))
     which = borders.face[borders.starts[:-1]]
     for face in range(1, len(palette.colors)):
         rings: list[Array] = []
@@ -296,7 +296,7 @@ def _shifted(starts: Indices, steps: Indices) -> Indices:
     return ahead
 
 
-def _simplified(points: Array, starts: Indices, limit: Array) -> Bools:
+def simplified(points: Array, starts: Indices, limit: Array) -> Bools:
     """Return which vertices of rings are kept: others are within limits of the lines between them.
 
     It is the method of Douglas and Peucker for all rings at once, a round for each halving.

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-__all__ = ["JUMP", "Palette", "palette_of"]
+__all__ = ["JUMP", "Palette", "nearest_colors", "palette_of"]
 
 #: Share of the samples above which one exact colour is its own face.
 FLAT = 2e-3
@@ -77,7 +77,7 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     labels = np.zeros(rows * columns, dtype=np.int32)
     if not len(shown):
         return Palette(background[np.newaxis], background[np.newaxis], labels.reshape(rows, -1), 0)
-    centres, number = _nearest(own, error)
+    centres, number = nearest_colors(own, error)
     # From dark to light, and none that no sample has.
     count = np.bincount(number, minlength=len(centres))
     order = np.argsort(centres.sum(axis=1), kind="stable")
@@ -93,7 +93,7 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     return Palette(kept, colors, labels.reshape(rows, columns), found)
 
 
-def _nearest(own: Array, error: float) -> tuple[Array, Indices]:
+def nearest_colors(own: Array, error: float) -> tuple[Array, Indices]:
     """Return colours of which one is near to each sample, and which."""
     some, count = np.unique(own[::FEWER], axis=0, return_counts=True)
     common = np.argsort(-count, kind="stable")[:MOST_FLAT]
