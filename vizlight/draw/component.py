@@ -432,9 +432,8 @@ class Component:
         Warns
         -----
         UserWarning
-            If the default error is more than 4, if a file with the error that is asked for has
-            more than 500 kB, or if there are so many details that the file holds pixels in place
-            of paths.
+            If the default error is more than 4, if the file has more than 500 kB, or if surfaces
+            have so many details that the file holds pixels in place of their paths.
 
         Notes
         -----

@@ -175,7 +175,7 @@ def _rgb(color: Array) -> Color:
 
 def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
     """Return the most accurate figure that is not too large, from a first attempt."""
-    best: _Attempt | None = None
+    best, first = None, attempt
     for _ in range(4):
         size = len(attempt.data)
         if size <= LARGEST and (best is None or attempt.asked < best.asked):
@@ -189,7 +189,11 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
         if attempt.asked == COARSEST:
             break
         attempt = drawn.attempt(suffix, error)
-    return best or drawn.pixels(suffix)
+    if best is not None:
+        return best
+    # Pixels in place of faces help nothing where it is the strokes that are many.
+    pixels = drawn.pixels(suffix)
+    return pixels if len(pixels.data) <= LARGEST else first
 
 
 def _note(path: Path, made: _Attempt, *, asked: float | None) -> None:
@@ -200,13 +204,14 @@ def _note(path: Path, made: _Attempt, *, asked: float | None) -> None:
             f"'{path.name}' holds pixels and words, in {size}: as paths it would be larger than "
             f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; error= makes paths"
         )
+    elif len(made.data) > LARGEST:
+        remedy = "draw fewer lines" if asked is None else "leave error= out, or draw fewer lines"
+        _check.warn(
+            f"'{path.name}' has {size} at an error of {made.error:.1f} of 255, more than "
+            f"{LARGEST // 1000} kB: {remedy}"
+        )
     elif asked is None and made.error > UNSAID:
         _check.warn(
             f"colours of '{path.name}' are within {made.error:.1f} of 255, so that it has at most "
             f"{LARGEST // 1000} kB ({size}); error={UNSAID:g} makes a larger file"
-        )
-    elif asked is not None and len(made.data) > LARGEST:
-        _check.warn(
-            f"'{path.name}' has {size} at an error of {made.error:.1f} of 255; without error= it "
-            f"has at most {LARGEST // 1000} kB"
         )

@@ -256,7 +256,8 @@ def _across(place: Array, line: Indices) -> Array:
     way[:-1] += step
     way[1:] += step
     length = np.hypot(*way.T)[:, np.newaxis]
-    return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.maximum(length, 1e-9)
+    across: Array = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.maximum(length, 1e-9)
+    return across
 
 
 def _continued(color: Array, found: Bools, line: Indices) -> tuple[Array, Bools]:

@@ -105,6 +105,8 @@ def faces(palette: Palette, samples: Array, scale: int) -> Iterator[Face]:
         samples, at which colours that change steadily are crossed linearly; where two surfaces meet
         it is half way between two samples.
     """
+    if not np.any(palette.labels):
+        return
     inner = binary_erosion(palette.labels > 0, iterations=scale)
     if palette.error >= 0 and inner.any():
         # Specks between three faces show the mean colour in place of the background's.
@@ -115,8 +117,6 @@ def faces(palette: Palette, samples: Array, scale: int) -> Iterator[Face]:
         yield from faces(under, 255 * inner[..., np.newaxis].astype(np.float32), scale)
     padded = np.pad(palette.labels, 1, constant_values=-1)
     borders = _borders(padded, samples, palette)
-    if not len(borders.points):
-        return
     points, reach = _spread(borders, padded, scale)
     pixels = (points - 0.5) / scale
     limit = np.where(borders.sharp, max(SEEN, STAIR / scale), SEEN)

@@ -18,6 +18,8 @@ __all__ = ["JUMP", "Palette", "nearest_colors", "palette_of"]
 FLAT = 2e-3
 #: Most colours of this kind, and the step by which samples are looked through for them.
 MOST_FLAT, FEWER = 24, 37
+#: Least number of samples of one exact colour among those that are looked through.
+LEAST = 20
 #: Difference of channels that is rounding.
 ROUNDED = 0.1
 #: Colours that differ by less than this, as a share of the error, are one for the palette.
@@ -97,7 +99,7 @@ def nearest_colors(own: Array, error: float) -> tuple[Array, Indices]:
     """Return colours of which one is near to each sample, and which."""
     some, count = np.unique(own[::FEWER], axis=0, return_counts=True)
     common = np.argsort(-count, kind="stable")[:MOST_FLAT]
-    common = common[count[common] > max(FLAT * count.sum(), 2)]
+    common = common[count[common] > max(FLAT * count.sum(), LEAST)]
     number = np.full(len(own), -1)
     flat = np.zeros((0, own.shape[1]))
     # What has one colour, but for rounding, over a large part keeps it.
