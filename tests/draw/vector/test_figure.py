@@ -55,7 +55,8 @@ def test_a_cube_has_three_fills_of_its_exact_colours(plotter, tmp_path):
     picture = plotter.screenshot(return_img=True)
     text = plotter.vizlight.save_graphic(tmp_path / "cube.svg").read_text()
     flat, count = np.unique(picture.reshape(-1, 3), axis=0, return_counts=True)
-    expected = {"#%02x%02x%02x" % tuple(c) for c in flat[np.argsort(-count)[:4]]} - {"#ffffff"}
+    common = [bytes(color).hex() for color in flat[np.argsort(-count)[:4]]]
+    expected = {f"#{color}" for color in common} - {"#ffffff"}
     assert set(fills(text)) == expected
     assert len(fills(text)) == 3
     assert len(text) < 3000
