@@ -35,7 +35,9 @@ VECTORS = (".svg", ".pdf")
 LARGEST = 500_000
 #: Errors in 1/255: the finest and the coarsest of which one is chosen, the first to try with one
 #: channel and with three, and the largest that is not worth a warning.
-FINEST, COARSEST, FIRST, UNSAID = 2.0, 32.0, (4.0, 12.0), 4.0
+FINEST, COARSEST, FIRST, UNSAID = 2.0, 32.0, (4.0, 16.0), 4.0
+#: Error that would be needed above which no coarser figure is tried.
+HOPELESS = 48.0
 #: Power of the error to which the size falls, as measured, and share of the largest size that is
 #: aimed at.
 POWER, AIM = 1.5, 0.9
@@ -181,6 +183,8 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
         if size <= LARGEST and (best is None or attempt.asked < best.asked):
             best = attempt
         error = attempt.asked * (size / (AIM * LARGEST)) ** (1 / POWER)
+        if error > HOPELESS:
+            break
         error = float(np.clip(error, FINEST, COARSEST))
         # A finer one is worth its time once, a coarser one until it fits.
         fine = attempt.error <= FINEST or error > 0.8 * attempt.asked

@@ -23,14 +23,14 @@ LEAST = 20
 #: Difference of channels that is rounding.
 ROUNDED = 0.1
 #: Colours that differ by less than this, as a share of the error, are one for the palette.
-BIN = 0.2
+BIN = 0.35
 #: Rounds in which specks join what is beside them.
 ROUNDS = 4
 #: Neighbours of a sample, and the number of those of its colour below which it is a speck.
 AROUND = [(down, right) for down in (-1, 0, 1) for right in (-1, 0, 1) if down or right]
 FEW = 4
 #: Colours that are tried for one of the palette.
-CANDIDATES = 12
+CANDIDATES = 4
 #: Difference of neighbouring samples, in errors, above which they are of two surfaces.
 JUMP = 4.0
 
