@@ -209,7 +209,7 @@ def _note(path: Path, made: _Attempt, *, asked: float | None) -> None:
             f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; error= makes paths"
         )
     elif len(made.data) > LARGEST:
-        remedy = "draw fewer lines" if asked is None else "leave error= out, or draw fewer lines"
+        remedy = "a larger error= makes it smaller, and so do fewer details"
         _check.warn(
             f"'{path.name}' has {size} at an error of {made.error:.1f} of 255, more than "
             f"{LARGEST // 1000} kB: {remedy}"
