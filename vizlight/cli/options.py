@@ -204,7 +204,7 @@ class Output:
     Parameters
     ----------
     output
-        File .png .html .mp4 .glb .vtp .vtu .vtk .vts .vti .vtr .vtm, or a folder.
+        File .png .svg .pdf .html .mp4 .glb .vtp .vtu .vtk .vts .vti .vtr .vtm, or a folder.
     paraview
         Script .py that shows it in ParaView, lit in each fragment, and a .vtp beside it.
     size

@@ -399,6 +399,56 @@ class Component:
             source=source,
         )  # fmt: skip
 
+    def save_graphic(self, path: str | Path, /, *, error: float | None = None) -> Path:
+        """Write what the plotter shows as vector graphics: filled paths, strokes and text.
+
+        Light is drawn as areas of one colour each, which are painted from dark to light and reach
+        a little beneath those that follow, so that no seams show at any scale. What is hidden has
+        no path. Lines are strokes of their widths, with halos; words of texts, keys and scalar
+        bars stay text.
+
+        Parameters
+        ----------
+        path : path
+            Path of the file, which ends in .svg or .pdf. An existing file is replaced.
+        error : float, optional
+            Largest difference from the light, in 1/255 of each channel, from 0.1 to 128. Default:
+            the smallest from 2 on with which the file has at most 500 kB.
+
+        Returns
+        -------
+        pathlib.Path
+            Path of the file.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        BackendError
+            If no OpenGL library can draw here.
+        RuntimeError
+            If the plotter is closed.
+        TypeError, ValueError
+            If the error does not fit.
+
+        Warns
+        -----
+        UserWarning
+            If the default error is more than 4, if the file has more than 500 kB, or if surfaces
+            have so many details that the file holds pixels in place of their paths.
+
+        Notes
+        -----
+        The light is read back from the plotter's own drawing in 24 bits, at 2 to 4 samples along
+        the side of a pixel; what shines through has 8 bits. Edges are within half a sample. Paths
+        are within 0.1 pixels of the borders between samples. The source is the rendering by filled
+        polygons in the painter's order of Conway and Cottingham, The Isoluminance Contour Model.
+        """
+        # It draws, which a page does not.
+        from vizlight.draw.vector.figure import save_graphic
+
+        return save_graphic(self._open_plotter(), path, self._live_of, error=error)
+
     def shown(self) -> list[Shown]:
         """Return the visible meshes with live light, for a page whose camera is set.
 

@@ -14,6 +14,7 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
+from vizlight.draw.vector.figure import VECTORS
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
@@ -38,7 +39,7 @@ __all__ = ["Look", "look"]
 
 #: Endings of the names of pages, movies and glTF, and of all files that a look writes.
 PAGES, MOVIES, GLTF = (".html", ".htm"), (".mp4", ".gif"), (".glb",)
-FORMATS = (*IMAGES, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
+FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
 #: Files that hold all parts of a result.
 TOGETHER = (*PAGES, ".vtm")
 #: Most other questions that are listed.
@@ -152,9 +153,9 @@ class Look:
         Parameters
         ----------
         path : path
-            Path of a picture (.png, .jpg, .tif, .bmp), of a page (.html) whose light follows the
-            reader's eye, of a glTF file (.glb), of a movie (.mp4, .gif) in which the strokes of a
-            field move with it, else of one turn, or of a mesh
+            Path of a picture (.png, .jpg, .tif, .bmp), of vector graphics (.svg, .pdf), of a page
+            (.html) whose light follows the reader's eye, of a glTF file (.glb), of a movie (.mp4,
+            .gif) in which the strokes of a field move with it, else of one turn, or of a mesh
             (.vtp, .vtu, .vtk, .vts, .vti, .vtr, .vtm). An existing file is replaced.
 
         Returns
@@ -192,8 +193,10 @@ class Look:
             plotter, steps = shown._picture()
             way = "movie.orbit" if moving is None else "movie.travel"
             return [[*steps, Step("", way, plotter, path)]]
-        if suffix in IMAGES:
+        if suffix in (*IMAGES, *VECTORS):
             plotter, steps = self._picture()
+            if suffix in VECTORS:
+                return [[*steps, Step("", ".vizlight.save_graphic", plotter, path)]]
             return [[*steps, Step("", "render.save", plotter, path)]]
         if suffix in PAGES:
             return [self._page(path)]

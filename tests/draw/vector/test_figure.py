@@ -1,0 +1,177 @@
+"""Vector graphics of plotters: exact colours, hidden faces, text, sizes, whole files."""
+
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+import vizlight
+from vizlight import Scene
+from vizlight.draw.vector import figure
+from vizlight.files import FileError
+
+pytestmark = pytest.mark.opengl
+
+
+@pytest.fixture
+def plotter():
+    """Return an empty plotter with a parallel camera above the origin."""
+    plotter = pv.Plotter(off_screen=True, window_size=(150, 120))
+    plotter.background_color = "white"
+    plotter.enable_anti_aliasing("msaa", multi_samples=8)
+    yield plotter
+    plotter.close()
+
+
+def seen_from_above(plotter, scale=1.2):
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = scale
+
+
+def drawn(path, size):
+    """Return the picture of an independent renderer."""
+    if shutil.which("rsvg-convert") is None:
+        pytest.skip("no rsvg-convert of librsvg2-bin")
+    png = path.with_suffix(".png")
+    subprocess.run(["rsvg-convert", path, "-o", png], check=True)
+    picture = np.asarray(Image.open(png).convert("RGB")).astype(int)
+    assert picture.shape[:2] == size
+    return picture
+
+
+def fills(text):
+    """Return the colours of paths, without the ground beneath all faces."""
+    return re.findall(r'<path fill="(#\w+)"', text)[1:]
+
+
+def test_a_cube_has_three_fills_of_its_exact_colours(plotter, tmp_path):
+    plotter.add_mesh(pv.Cube(), color="white")
+    plotter.view_isometric()
+    picture = plotter.screenshot(return_img=True)
+    text = plotter.vizlight.save_graphic(tmp_path / "cube.svg").read_text()
+    flat, count = np.unique(picture.reshape(-1, 3), axis=0, return_counts=True)
+    common = [bytes(color).hex() for color in flat[np.argsort(-count)[:4]]]
+    expected = {f"#{color}" for color in common} - {"#ffffff"}
+    assert set(fills(text)) == expected
+    assert len(fills(text)) == 3
+    assert len(text) < 3000
+
+
+def test_what_is_hidden_has_no_path_and_the_plotter_is_as_before(plotter, tmp_path):
+    plotter.add_mesh(pv.Plane(i_size=2, j_size=2), color=(0.0, 1.0, 0.0), lighting=False)
+    plotter.add_mesh(
+        pv.Plane(center=(0, 0, -1), i_size=1, j_size=1), color=(1.0, 0.0, 0.0), lighting=False
+    )
+    seen_from_above(plotter)
+    before = plotter.screenshot(return_img=True)
+    text = plotter.vizlight.save_graphic(tmp_path / "planes.svg").read_text()
+    assert fills(text) == ["#00ff00"]
+    assert np.array_equal(plotter.screenshot(return_img=True), before)
+    assert plotter.window_size == [150, 120]
+
+
+def test_lines_are_strokes_of_their_width_and_those_behind_end_at_the_halo(plotter, tmp_path):
+    plotter.vizlight.add_mesh(
+        pv.Line((-1, 0, 0), (1, 0, 0)), color="red", lighting=False, line_width=2
+    )
+    plotter.clear()
+    for ends, color in ((((-1, 0, 0), (1, 0, 0)), "red"), (((0, -1, 1), (0, 1, 1)), "blue")):
+        line = pv.Line(*ends, resolution=20)
+        line["c"] = np.tile(np.array(pv.Color(color).int_rgb, np.uint8), (line.n_points, 1))
+        plotter.vizlight.add_mesh(line, scalars="c", rgb=True, line_width=4, halo=1.0)
+    seen_from_above(plotter)
+    text = plotter.vizlight.save_graphic(tmp_path / "lines.svg").read_text()
+    strokes = re.findall(r'stroke="(#\w+)" stroke-width="([\d.]+)"', text)
+    cores = [(color, float(width) / 10) for color, width in strokes if color != "#ffffff"]
+    assert [width for _, width in cores] == pytest.approx([4.0] * len(cores))
+    # The line behind is in two parts; the nearer one comes last and is whole.
+    assert len(cores) == 3
+    assert cores[-1][0] != cores[0][0] == cores[1][0]
+
+
+def test_words_of_texts_keys_and_bars_are_text(plotter, tmp_path):
+    ball = pv.Sphere()
+    ball["height"] = ball.points[:, 2]
+    plotter.add_mesh(ball, scalars="height", scalar_bar_args={"title": "height & depth"})
+    plotter.add_text("above", position="upper_edge")
+    plotter.vizlight.add_key("shape")
+    path = plotter.vizlight.save_graphic(tmp_path / "words.svg", error=20)
+    words = re.findall(r"<tspan[^>]*>([^<]*)</tspan>", path.read_text())
+    assert {"height &amp; depth", "above", "-0.500", "0.500"} <= set(words)
+    assert "a ball in" in " ".join(words)
+
+
+def test_a_pdf_keeps_its_words_and_its_bytes(plotter, tmp_path):
+    plotter.add_mesh(pv.Cube(), color="white")
+    plotter.add_text("words", position=(10, 10), font_size=8)
+    paths = [plotter.vizlight.save_graphic(tmp_path / name) for name in ("a.pdf", "b.pdf")]
+    first, second = (path.read_bytes() for path in paths)
+    assert first == second
+    assert b"/Subtype /Type0" in first or b"/Subtype /TrueType" in first
+    assert b"/Subtype /Image" not in first
+
+
+def test_a_grey_ball_is_drawn_within_its_error(plotter, tmp_path):
+    ball = pv.Sphere(radius=1, theta_resolution=60, phi_resolution=60)
+    plotter.vizlight.add_mesh(ball, scene=Scene())
+    seen_from_above(plotter)
+    picture = plotter.screenshot(return_img=True).astype(int)
+    path = plotter.vizlight.save_graphic(tmp_path / "ball.svg", error=4)
+    assert "within" in path.read_text()
+    away = np.abs(drawn(path, picture.shape[:2]) - picture).max(axis=2)
+    y, x = np.mgrid[:120, :150]
+    radius = np.hypot(x - 74.5, y - 59.5)
+    # Away from the edge, whose pixels are mixtures with the ground.
+    assert np.mean(away[radius < 47] <= 5) > 0.995
+    assert away[radius > 52].max() == 0
+
+
+def test_details_that_are_too_many_become_pixels_with_a_note(plotter, tmp_path, monkeypatch):
+    monkeypatch.setattr(figure, "LARGEST", 20_000)
+    plane = pv.Plane(i_size=2, j_size=2, i_resolution=60, j_resolution=60)
+    colors = np.random.default_rng(3).integers(0, 255, (plane.n_cells, 3), dtype=np.uint8)
+    plane.cell_data["c"] = colors
+    plotter.add_mesh(plane, scalars="c", rgb=True, lighting=False)
+    seen_from_above(plotter)
+    with pytest.warns(UserWarning, match=r"'noise.svg' (holds pixels|has \d+ kB)"):
+        text = plotter.vizlight.save_graphic(tmp_path / "noise.svg").read_text()
+    assert "data:image/png" in text or "<path" in text
+
+
+def test_the_error_falls_until_the_file_fits_and_is_told(plotter, tmp_path, monkeypatch):
+    monkeypatch.setattr(figure, "LARGEST", 12_000)
+    plotter.add_mesh(pv.Sphere(theta_resolution=60, phi_resolution=60), smooth_shading=True)
+    with pytest.warns(UserWarning, match="within .* of 255, so that it has at most 12 kB"):
+        path = plotter.vizlight.save_graphic(tmp_path / "ball.svg")
+    assert path.stat().st_size <= 12_000
+    with pytest.warns(UserWarning, match="kB at an error of .* of 255"):
+        plotter.vizlight.save_graphic(tmp_path / "ball.svg", error=1)
+
+
+@pytest.mark.parametrize(
+    ("name", "error", "match"),
+    [("a.eps", None, "ends in .svg, .pdf"), ("no/a.svg", None, "a folder that exists")],
+)
+def test_bad_paths(plotter, tmp_path, name, error, match):
+    plotter.add_mesh(pv.Cube())
+    with pytest.raises(FileError, match=match):
+        plotter.vizlight.save_graphic(tmp_path / name, error=error)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("error", [0.0, 200.0, np.nan])
+def test_bad_errors(plotter, tmp_path, error):
+    plotter.add_mesh(pv.Cube())
+    with pytest.raises(ValueError, match="error: expected"):
+        plotter.vizlight.save_graphic(tmp_path / "a.svg", error=error)
+
+
+def test_looks_save_vector_graphics_and_say_so_in_their_script(tmp_path):
+    look = vizlight.look(pv.Cube(), "shape", size=(120, 90))
+    assert look.save(tmp_path / "cube.svg").read_text().startswith("<svg")
+    assert 'plotter.vizlight.save_graphic("cube.pdf")' in look.script("cube.pdf")

@@ -1,0 +1,1 @@
+"""Figures of plotters as filled paths, strokes and words: SVG and PDF."""

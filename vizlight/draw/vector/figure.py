@@ -1,0 +1,221 @@
+"""The figure of a plotter as vector graphics: what is drawn, as accurate as its size allows."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+from vizlight.draw.vector.files import Fill, Picture, Sheet, pdf_of, svg_of
+from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
+from vizlight.draw.vector.samples import Samples, enlarged, samples_of
+from vizlight.draw.vector.words import words_of
+from vizlight.files import check_output, replace_file
+from vizlight.geometry.contours.faces import faces
+from vizlight.geometry.contours.palette import palette_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vtkmodules.vtkRenderingCore import vtkActor
+
+    from vizlight._types import Array, Bools, Color, Slice
+    from vizlight.draw.live import Live
+    from vizlight.draw.vector.files import Item
+
+__all__ = ["VECTORS", "save_graphic"]
+
+#: File name extensions of vector graphics.
+VECTORS = (".svg", ".pdf")
+#: Largest file in bytes that is made where no error is asked for.
+LARGEST = 500_000
+#: Errors in 1/255: the finest and the coarsest of which one is chosen, the first to try with one
+#: channel and with three, and the largest that is not worth a warning.
+FINEST, COARSEST, FIRST, UNSAID = 2.0, 32.0, (4.0, 16.0), 4.0
+#: Error that would be needed above which no coarser figure is tried.
+HOPELESS = 48.0
+#: Power of the error to which the size falls, as measured, and share of the largest size that is
+#: aimed at.
+POWER, AIM = 1.5, 0.9
+#: Most samples of a picture, and most along a side of a pixel.
+SAMPLES, FINE = 12_000_000, 4
+
+
+def save_graphic(
+    plotter: pv.BasePlotter,
+    path: str | Path,
+    live_of: Callable[[vtkActor], Live | None],
+    /,
+    *,
+    error: float | None = None,
+) -> Path:
+    """Write what a plotter shows as an SVG or PDF file; see ``plotter.vizlight.save_graphic``.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    path : path
+    live_of : callable
+        Function that returns the live light of an actor, or None.
+    error : float, optional
+    """
+    path = check_output(path, VECTORS)
+    if error is not None:
+        error = _check.number("error", error, low=0.1, high=128.0)
+    drawn = _Drawn.of(plotter, live_of)
+    first = FIRST[drawn.samples.colors.shape[2] > 1] if error is None else error
+    best = drawn.attempt(path.suffix, first)
+    if error is None:
+        best = _fitting(drawn, path.suffix, best)
+    _note(path, best, asked=error)
+    return replace_file(path, lambda draft: Path(draft).write_bytes(best.data))
+
+
+class _Attempt(NamedTuple):
+    """A file, and the largest error of its colours in 1/255; infinite where it holds pixels."""
+
+    data: bytes
+    asked: float
+    error: float
+
+
+@dataclasses.dataclass(frozen=True)
+class _Drawn:
+    """What a plotter draws: samples of its surfaces, and what lies over them."""
+
+    size: tuple[int, int]
+    background: Color
+    scale: int
+    samples: Samples
+    place: tuple[int, int]
+    courses: list[Course]
+    words: list[Item]
+
+    @classmethod
+    def of(cls, plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]) -> _Drawn:
+        """Draw a plotter, and put it back as it was."""
+        plotter.reset_camera_clipping_range()
+        # PyVista sets the camera with the first picture.
+        plotter.screenshot(return_img=True)
+        width, height = plotter.window_size
+        scale = int(min(max((SAMPLES / (width * height)) ** 0.5, 1), FINE))
+        words, props = words_of(plotter)
+        lines, courses = lines_of(plotter, live_of), []
+        with enlarged(plotter, scale, [*props, *(one.actor for one in lines)]):
+            samples = samples_of(plotter)
+        if lines:
+            with enlarged(plotter, scale, props):
+                whole = samples_of(plotter)
+                courses = [course_of(one, whole, samples, scale) for one in lines]
+        red, green, blue = pv.Color(plotter.background_color).float_rgb
+        ground = np.rint(255 * np.array((red, green, blue)))
+        shown = np.any(samples.colors != ground[: samples.colors.shape[2]], axis=2)
+        rows, columns = (_span(shown.any(axis=axis), scale) for axis in (1, 0))
+        samples = Samples(samples.colors[rows, columns], samples.depth[rows, columns])
+        place = columns.start // scale, rows.start // scale
+        return cls((width, height), (red, green, blue), scale, samples, place, courses, words)
+
+    def attempt(self, suffix: str, error: float) -> _Attempt:
+        """Return the figure with an error that is asked."""
+        colors = self.samples.colors
+        ground = np.rint(255 * np.array(self.background))[: colors.shape[2]]
+        palette = palette_of(colors, ground, error)
+        fills: list[Item] = [
+            Fill(_rgb(face.color), [ring + self.place for ring in face.rings])
+            for face in faces(palette, colors, self.scale)
+        ]
+        courses = [_in_channels(course, 3) for course in self.courses]
+        strokes: list[Item] = [*strokes_of(courses, self.background, error)]
+        words = (
+            f"{len(palette.colors)} colours, each within {palette.error:.1f} of 255 of the light"
+        )
+        return _Attempt(self._written(suffix, fills, strokes, words), error, palette.error)
+
+    def pixels(self, suffix: str) -> _Attempt:
+        """Return the figure with the picture as pixels, two for each of its own."""
+        step = max(self.scale // 2, 1)
+        colors = np.clip(np.rint(self.samples.colors), 0, 255).astype(np.uint8)
+        rows, columns = (side // step * step for side in colors.shape[:2])
+        parts = colors[:rows, :columns].reshape(rows // step, step, columns // step, step, -1)
+        mean = np.rint(parts.mean(axis=(1, 3))).astype(np.uint8)
+        shown = np.broadcast_to(mean, (*mean.shape[:2], 3))
+        size = (columns / self.scale, rows / self.scale)
+        picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size)]
+        courses = [_in_channels(course, 3) for course in self.courses]
+        strokes: list[Item] = [*strokes_of(courses, self.background, COARSEST)]
+        data = self._written(suffix, picture, strokes, "pixels, strokes and words")
+        return _Attempt(data, 0.0, np.inf)
+
+    def _written(self, suffix: str, faces: list[Item], lines: list[Item], words: str) -> bytes:
+        groups = {"faces": faces, "lines": lines, "words": self.words}
+        sheet = Sheet(self.size, self.background, groups, words)
+        return svg_of(sheet).encode() if suffix.lower() == ".svg" else pdf_of(sheet)
+
+
+def _in_channels(course: Course, count: int) -> Course:
+    """Return a course whose colours have some channels, all alike where there was one."""
+    return course._replace(color=np.broadcast_to(course.color, (len(course.color), count)))
+
+
+def _span(shown: Bools, scale: int) -> Slice:
+    """Return the whole pixels that hold all samples that are shown, and one on each side."""
+    where = np.flatnonzero(shown)
+    if not len(where):
+        return slice(0, scale)
+    first, last = where[0] // scale - 1, where[-1] // scale + 2
+    return slice(max(first, 0) * scale, min(last * scale, len(shown)))
+
+
+def _rgb(color: Array) -> Color:
+    red, green, blue = np.broadcast_to(color, 3) / 255
+    return float(red), float(green), float(blue)
+
+
+def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
+    """Return the most accurate figure that is not too large, from a first attempt."""
+    best, first = None, attempt
+    for _ in range(4):
+        size = len(attempt.data)
+        if size <= LARGEST and (best is None or attempt.asked < best.asked):
+            best = attempt
+        error = attempt.asked * (size / (AIM * LARGEST)) ** (1 / POWER)
+        if error > HOPELESS:
+            break
+        error = float(np.clip(error, FINEST, COARSEST))
+        # A finer one is worth its time once, a coarser one until it fits.
+        fine = attempt.error <= FINEST or error > 0.8 * attempt.asked
+        if best is not None and (best is not attempt or fine):
+            return best
+        if attempt.asked == COARSEST:
+            break
+        attempt = drawn.attempt(suffix, error)
+    if best is not None:
+        return best
+    # Pixels in place of faces help nothing where it is the strokes that are many.
+    pixels = drawn.pixels(suffix)
+    return pixels if len(pixels.data) <= LARGEST else first
+
+
+def _note(path: Path, made: _Attempt, *, asked: float | None) -> None:
+    """Say where a figure is larger or less accurate than is usual."""
+    size = f"{len(made.data) / 1000:.0f} kB"
+    if not np.isfinite(made.error):
+        _check.warn(
+            f"'{path.name}' holds pixels and words, in {size}: as paths it would be larger than "
+            f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; error= makes paths"
+        )
+    elif len(made.data) > LARGEST:
+        remedy = "a larger error= makes it smaller, and so do fewer details"
+        _check.warn(
+            f"'{path.name}' has {size} at an error of {made.error:.1f} of 255, more than "
+            f"{LARGEST // 1000} kB: {remedy}"
+        )
+    elif asked is None and made.error > UNSAID:
+        _check.warn(
+            f"colours of '{path.name}' are within {made.error:.1f} of 255, so that it has at most "
+            f"{LARGEST // 1000} kB ({size}); error={UNSAID:g} makes a larger file"
+        )

@@ -1,0 +1,331 @@
+"""Lines of a plotter as strokes: what of them is seen, in which colours and widths."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.draw.glsl import Stroke as Style
+from vizlight.draw.live import matrix_of
+from vizlight.draw.strokes import LEAST
+from vizlight.draw.vector.files import Stroke
+from vizlight.draw.vector.samples import actors_of
+from vizlight.geometry.contours.faces import SEEN, simplified
+from vizlight.geometry.contours.palette import nearest_colors
+from vizlight.vtk.polylines import cells_of, has_lines_only
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
+
+    from vizlight._types import Array, Bools, Color, Indices
+    from vizlight.draw.live import Live
+    from vizlight.draw.vector.samples import Samples
+
+__all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
+
+#: Distance of a line behind what is drawn, in its widths, up to which it is what is drawn.
+BEHIND = 1.5
+#: Ratio of two widths that are drawn as one, and difference from the ground that is rounding.
+ALIKE, SAME = 1.12, 2.0
+#: Width in pixels below which nothing is drawn, and most places on a segment.
+THIN, LONGEST = 0.05, 20_000
+#: Distance by which lines may be drawn nearer to the eye than they are, as a share of their size.
+LIFTED = 1e-3
+#: Share of a halo that is drawn where it covers no surface: other lines end at its border, and
+#: those that run together keep most of their width.
+NARROW = 0.3
+#: Shares of the width at which the colour of a line is read; its mean is that of a round one.
+ACROSS = (-0.25, 0.0, 0.25)
+
+
+class Lines(NamedTuple):
+    """Lines that an actor draws.
+
+    Attributes
+    ----------
+    renderer : vtkRenderer
+    actor : vtkActor
+    style : Style
+        How they are drawn.
+    width : float
+        Width in pixels, where they have no diameter.
+    """
+
+    renderer: vtkRenderer
+    actor: vtkActor
+    style: Style
+    width: float
+
+
+class Course(NamedTuple):
+    """Places along lines, at most a pixel apart.
+
+    Attributes
+    ----------
+    place : ndarray, shape (n, 2)
+        Pixels from the upper left.
+    distance : ndarray, shape (n,)
+        Distance from the plane of the eye.
+    line : ndarray of int, shape (n,)
+        Number of the line.
+    end : ndarray of bool, shape (n,)
+        Whether the line ends there.
+    width : ndarray, shape (n,)
+        Width in pixels.
+    seen : ndarray of bool, shape (n,)
+    color : ndarray, shape (n, c)
+        Channels from 0 to 255.
+    halo : ndarray, shape (n,)
+        Width of the band on each side in pixels; 0 where none is seen.
+    """
+
+    place: Array
+    distance: Array
+    line: Indices
+    end: Bools
+    width: Array
+    seen: Bools
+    color: Array
+    halo: Array
+
+
+def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]) -> list[Lines]:
+    """Return the lines of a plotter that can be strokes: all that shaders of others do not widen.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    live_of : callable
+        Function that returns the live light of an actor, or None.
+    """
+    found = []
+    for renderer in plotter.renderers:
+        for actor in actors_of(renderer):
+            mesh = actor.GetMapper().GetInputDataObject(0, 0)
+            style = actor.GetProperty()
+            is_mesh = mesh is not None and mesh.IsA("vtkPolyData") and mesh.GetNumberOfPoints()
+            if not is_mesh or style.GetOpacity() < 1 or not has_lines_only(mesh):
+                continue
+            live = live_of(actor)
+            shaded = actor.GetShaderProperty().GetNumberOfShaderReplacements()
+            if live is None and (shaded or style.GetRenderLinesAsTubes()):
+                continue
+            how = Style() if live is None else live.stroke
+            found.append(Lines(renderer, actor, how, float(style.GetLineWidth())))
+    return found
+
+
+def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Course:
+    """Return the course of lines in a picture that shows them.
+
+    Parameters
+    ----------
+    lines : Lines
+    samples : Samples
+        The whole picture, at the size at which the renderer draws now.
+    bare : Samples
+        The same without lines.
+    scale : int
+        Samples for each pixel, along a side.
+    """
+    renderer, style = lines.renderer, lines.style
+    camera = renderer.GetActiveCamera()
+    mesh = pv.wrap(lines.actor.GetMapper().GetInputDataObject(0, 0))
+    points, ids, offsets = cells_of(mesh)
+    matrix = matrix_of(lines.actor.GetMatrix())
+    world = points[ids] @ matrix[:3, :3].T + matrix[:3, 3]
+    corners = _projected(world, renderer)
+    share = np.ones((len(ids), 1))
+    if style.width is not None:
+        widths = np.asarray(mesh.point_data[style.width], dtype=np.float64)
+        share[:, 0] = np.clip(np.nan_to_num(widths[ids]), 0, 1)
+    number = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    start, along, ends = _places(corners, number, scale)
+    rows = np.concatenate([corners[:, :3], share], axis=1)
+    at = rows[start] + along[:, np.newaxis] * (rows[start + 1] - rows[start])
+    distance = _distance(at[:, 2], camera)
+    footprint = scale * _footprint(distance, camera, renderer.GetSize()[1])
+    width = np.full(len(at), lines.width)
+    if style.diameter is not None:
+        width = np.maximum(style.diameter / footprint, LEAST)
+    # The depth of a stroke is nearer by its width, and changes along a line that is seen end on.
+    reach = BEHIND * width * footprint + 2 * np.abs(np.diff(distance, prepend=distance[:1]))
+    reach += LIFTED * np.linalg.norm(np.ptp(world, axis=0))
+    place = np.stack([at[:, 0], samples.depth.shape[0] - at[:, 1]], axis=1)
+    across = scale * _across(place, number[start])
+    beside = (0.5 + 0.5 * style.halo) * width
+    covers = _over_surface(samples, bare, place, beside, across, renderer)
+    halo = style.halo * width * np.where(covers, 1.0, NARROW)
+    width = width * at[:, 3]
+    # A surface on which a line lies hides part of its width, and must not make it dashed.
+    seen = distance - _distance(_read(samples.depth, place), camera) <= reach
+    color: Array = np.zeros((len(place), samples.colors.shape[2]))
+    found = np.zeros(len(place))
+    for part in ACROSS:
+        side = place + part * width[:, np.newaxis] * across
+        drawn = _read(samples.depth, side)
+        near = np.abs(distance - _distance(drawn, camera)) <= reach
+        near &= drawn < _read(bare.depth, side)
+        color[near] += _read(samples.colors, side)[near]
+        found += near
+    mean = color / np.maximum(found, 1)[:, np.newaxis]
+    color, colored = _continued(mean, found > 0, number[start])
+    seen &= colored & (width > THIN)
+    return Course(place / scale, distance, number[start], ends, width, seen, color, halo)
+
+
+def _over_surface(
+    samples: Samples, bare: Samples, place: Array, away: Array, across: Array, renderer: vtkRenderer
+) -> Bools:
+    """Return where the colour of the ground beside a line covers a surface."""
+    ground = 255 * np.array(renderer.GetBackground())[: samples.colors.shape[2]]
+    hides = np.zeros(len(place), dtype=np.bool_)
+    for sign in (-1, 1):
+        side = place + sign * away[:, np.newaxis] * across
+        own, other = _read(samples.colors, side), _read(bare.colors, side)
+        covers = np.all(np.abs(own - ground) < SAME, axis=1)
+        hides |= covers & np.any(np.abs(other - ground) >= SAME, axis=1)
+    return hides
+
+
+def _projected(points: Array, renderer: vtkRenderer) -> Array:
+    """Return places in samples from the lower left, depths from 0 to 1, and whether in front."""
+    camera = renderer.GetActiveCamera()
+    aspect = renderer.GetTiledAspectRatio()
+    matrix = matrix_of(camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1))
+    whole = points @ matrix[:, :3].T + matrix[:, 3]
+    front = whole[:, 3] > 0
+    shown = whole[:, :3] / np.where(front, whole[:, 3], 1)[:, np.newaxis]
+    size, origin = np.array(renderer.GetSize()), np.array(renderer.GetOrigin())
+    places = origin + (shown[:, :2] + 1) / 2 * size
+    return np.column_stack([places, (shown[:, 2] + 1) / 2, front])
+
+
+def _distance(depth: Array, camera: vtkCamera) -> Array:
+    """Return the distances from the plane of the eye of what has some depth."""
+    near, far = camera.GetClippingRange()
+    if camera.GetParallelProjection():
+        return np.asarray(near + depth * (far - near))
+    return np.asarray(near * far / (far - depth * (far - near)))
+
+
+def _footprint(distance: Array, camera: vtkCamera, height: float) -> Array:
+    """Return the sizes of a sample at some distances, in the unit of the mesh."""
+    if camera.GetParallelProjection():
+        return np.full(len(distance), 2 * camera.GetParallelScale() / height)
+    return np.asarray(2 * distance * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
+
+
+def _places(corners: Array, number: Indices, scale: int) -> tuple[Indices, Array, Bools]:
+    """Return places along lines at most a pixel apart, and which of them are ends.
+
+    Returns
+    -------
+    start : ndarray of int
+        Corner before each place.
+    along : ndarray
+        Share of the way to the next corner.
+    ends : ndarray of bool
+    """
+    joined = (number[:-1] == number[1:]) & (corners[:-1, 3] > 0) & (corners[1:, 3] > 0)
+    segment = np.flatnonzero(joined)
+    length = np.hypot(*(corners[segment + 1, :2] - corners[segment, :2]).T) / scale
+    count = np.clip(np.ceil(length), 1, LONGEST).astype(np.intp)
+    # The last corner of a line, and one before what is behind the eye, is a place too.
+    last = np.append(np.diff(segment) != 1, True)[: len(segment)]
+    last[:-1] |= number[segment[1:]] != number[segment[:-1]]
+    count += last
+    first = np.repeat(np.cumsum(count) - count, count)
+    parts = np.repeat(count - last, count)
+    along = (np.arange(len(first)) - first) / parts
+    ends = np.zeros(len(first), dtype=np.bool_)
+    finish = np.cumsum(count)[last] - 1
+    ends[finish] = ends[np.append(0, finish[:-1] + 1)[: len(finish)]] = True
+    return np.repeat(segment, count), along, ends
+
+
+def _across(place: Array, line: Indices) -> Array:
+    """Return the unit vectors across lines at their places."""
+    way = np.zeros_like(place)
+    same = line[1:] == line[:-1]
+    step = np.diff(place, axis=0) * same[:, np.newaxis]
+    way[:-1] += step
+    way[1:] += step
+    length = np.hypot(*way.T)[:, np.newaxis]
+    across: Array = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.maximum(length, 1e-9)
+    return across
+
+
+def _continued(color: Array, found: Bools, line: Indices) -> tuple[Array, Bools]:
+    """Return colours with those of the place before, or of the first after, where none is found."""
+    where = np.where(found, np.arange(len(found)), -1)
+    before = np.maximum.accumulate(where) if len(where) else where
+    first = np.append(np.flatnonzero(found), -1)
+    after = first[np.minimum(np.searchsorted(first[:-1], np.arange(len(found))), len(first) - 1)]
+    same = (before >= 0) & (line[before] == line)
+    chosen = np.where(same, before, after)
+    valid = (chosen >= 0) & (line[chosen] == line)
+    return color[chosen], valid
+
+
+def _read(picture: Array, place: Array) -> Array:
+    """Return the samples of a picture at places, those at the border for places beyond."""
+    rows, columns = picture.shape[:2]
+    at = np.floor(place).astype(np.intp)
+    values: Array = picture[np.clip(at[:, 1], 0, rows - 1), np.clip(at[:, 0], 0, columns - 1)]
+    return values
+
+
+def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Stroke]:
+    """Yield strokes from the farthest to the nearest, each after its halo.
+
+    Parameters
+    ----------
+    courses : sequence of Course
+    ground : (r, g, b)
+        Colour of halos, from 0 to 1.
+    error : float
+        Largest difference of a colour, in 1/255.
+    """
+    if not any(np.any(course.seen) for course in courses):
+        return
+    every = Course(*(np.concatenate(part) for part in zip(*courses, strict=True)))
+    line = np.repeat(np.arange(len(courses)), [len(course.line) for course in courses])
+    centres, label = nearest_colors(every.color[every.seen].astype(np.float32), error)
+    kind = np.full((len(line), 4), -1)
+    kind[every.seen, 0] = label
+    kind[:, 1], kind[:, 2] = line, every.line
+    kind[every.seen, 3] = np.rint(np.log(every.width[every.seen]) / np.log(ALIKE))
+    begins = np.flatnonzero(np.append(True, np.any(np.diff(kind, axis=0) != 0, axis=1)))
+    begins = begins[every.seen[begins]]
+    changes = np.append(np.flatnonzero(np.any(np.diff(kind, axis=0) != 0, axis=1)), len(line) - 1)
+    finishes = changes[np.searchsorted(changes, begins)]
+    # Each reaches to the first place of the next, so that they join.
+    following = np.minimum(finishes + 1, len(line) - 1)
+    joined = np.all(kind[following, 1:3] == kind[begins, 1:3], axis=1) & every.seen[following]
+    finishes = np.where(joined, following, finishes)
+    kept = finishes > begins
+    begins, finishes = begins[kept], finishes[kept]
+    spans = [np.arange(a, b + 1) for a, b in zip(begins, finishes, strict=True)]
+    if not spans:
+        return
+    rows = np.concatenate(spans)
+    starts = np.append(0, np.cumsum(finishes - begins + 1))
+    limit = np.full(len(rows), SEEN)
+    limit[starts[1:] - 1] = 1e-9
+    corners = simplified(every.place[rows], starts, limit)
+    mean = np.add.reduceat(every.distance[rows], starts[:-1]) / np.diff(starts)
+    for run in np.argsort(-mean, kind="stable"):
+        span = slice(starts[run], starts[run + 1])
+        here = rows[span]
+        points = every.place[here][corners[span]]
+        red, green, blue = (centres[kind[here[0], 0]] / 255).tolist()
+        width = float(np.mean(every.width[here]))
+        if (halo := float(np.median(every.halo[here]))) > 0:
+            yield Stroke(ground, points, width + 2 * halo)
+        whole = bool(every.end[here[0]] and every.end[here[-1]])
+        yield Stroke((red, green, blue), points, width, whole)

@@ -1,0 +1,177 @@
+"""Pictures of a plotter at several samples per pixel, with more than 8 bits per channel.
+
+Colours are read back in three bytes for each channel: a line at the end of the fragment shaders
+writes one channel in the place of the colour. What is drawn otherwise, such as what shines through,
+keeps its 8 bits.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkUnsignedCharArray
+from vtkmodules.vtkRenderingCore import vtkActor, vtkProp
+
+from vizlight.draw.live import items
+from vizlight.draw.strokes import has_pass
+from vizlight.vtk.cells import as_numpy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    from vizlight._types import Array
+
+__all__ = ["Samples", "actors_of", "enlarged", "samples_of"]
+
+#: Mark of VTK's fragment shaders after which the colour is final, and the uniform with the channel.
+LAST, CHANNEL = "//VTK::Picking::Impl", "vizChannel"
+#: Statement that writes a channel from 0 to 1 as 24 bits; below 0 there is none to write.
+PACKED = f"""//VTK::Picking::Impl
+  if ({CHANNEL} > -0.5) {{
+    int vizPick = int({CHANNEL} + 0.5);
+    float vizValue = vizPick == 0 ? gl_FragData[0].r : (vizPick == 1 ? gl_FragData[0].g
+      : gl_FragData[0].b);
+    float vizWhole = floor(clamp(vizValue, 0.0, 1.0) * 16777215.0 + 0.5);
+    float vizHigh = floor(vizWhole / 65536.0);
+    float vizMiddle = floor((vizWhole - 65536.0 * vizHigh) / 256.0);
+    gl_FragData[0] = vec4(vizHigh, vizMiddle, vizWhole - 65536.0 * vizHigh - 256.0 * vizMiddle,
+      255.0) / 255.0;
+  }}
+"""
+#: Largest difference of a channel in 24 bits from the one in 8, in 1/255, that is its rounding.
+ROUNDING = 0.51
+
+
+class Samples(NamedTuple):
+    """Colours and depths of what a plotter draws.
+
+    Attributes
+    ----------
+    colors : ndarray of float32, shape (rows, columns, c)
+        Channels from 0 to 255, from the upper left; one where all three are equal everywhere.
+    depth : ndarray of float32, shape (rows, columns)
+        Depth from 0, near, to 1, of what is behind all.
+    """
+
+    colors: Array
+    depth: Array
+
+
+def actors_of(renderer: vtkRenderer) -> list[vtkActor]:
+    """Return the visible actors in space of a renderer."""
+    actors = items(renderer.GetActors())
+    return [actor for actor in actors if isinstance(actor, vtkActor) and actor.GetVisibility()]
+
+
+@contextlib.contextmanager
+def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> Iterator[None]:
+    """Let a plotter draw several samples per pixel, each of one colour, and without some props.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    scale : int
+        Samples for each pixel, along a side.
+    hidden : sequence of vtkProp
+        What is not drawn.
+    """
+    window = plotter.render_window
+    assert window is not None
+    size, multisamples = window.GetSize(), window.GetMultiSamples()
+    actors = [actor for renderer in plotter.renderers for actor in actors_of(renderer)]
+    properties = [(actor.GetProperty(), actor.GetProperty().GetLineWidth(),
+                   actor.GetProperty().GetPointSize()) for actor in actors]  # fmt: skip
+    smoothed = [(renderer, renderer.GetPass(), renderer.GetUseFXAA())
+                for renderer in plotter.renderers]  # fmt: skip
+    visible = [prop for prop in hidden if prop.GetVisibility()]
+    try:
+        window.SetMultiSamples(0)
+        for renderer, drawn_by, _ in smoothed:
+            renderer.SetUseFXAA(False)
+            if has_pass(drawn_by, "vtkSSAAPass"):
+                renderer.SetPass(None)
+        for style, width, point in properties:
+            style.SetLineWidth(scale * width)
+            style.SetPointSize(scale * point)
+        for prop in visible:
+            prop.SetVisibility(False)
+        window.SetSize(scale * size[0], scale * size[1])
+        yield
+    finally:
+        window.SetSize(*size)
+        window.SetMultiSamples(multisamples)
+        for prop in visible:
+            prop.SetVisibility(True)
+        for style, width, point in properties:
+            style.SetLineWidth(width)
+            style.SetPointSize(point)
+        for renderer, drawn_by, fxaa in smoothed:
+            renderer.SetPass(drawn_by)
+            renderer.SetUseFXAA(fxaa)
+        # What is read back next is a picture of the old size again.
+        window.Render()
+
+
+def samples_of(plotter: pv.BasePlotter) -> Samples:
+    """Return what a plotter draws now, sample by sample."""
+    window = plotter.render_window
+    assert window is not None
+    window.Render()
+    coarse = _bytes(plotter)
+    depths = vtkFloatArray()
+    width, height = window.GetSize()
+    window.GetZbufferData(0, 0, width - 1, height - 1, depths)
+    depth = as_numpy(depths).reshape(height, width)[::-1]
+    gray = bool(np.all(coarse[..., :1] == coarse[..., 1:]))
+    colors = coarse[..., : 1 if gray else 3].astype(np.float32)
+    every = [prop for renderer in plotter.renderers for prop in _props(renderer)]
+    # Bytes of a value do not blend.
+    if not any(prop.HasTranslucentPolygonalGeometry() for prop in every):
+        actors = [actor for renderer in plotter.renderers for actor in actors_of(renderer)]
+        for channel, fine in enumerate(_packed(plotter, actors, colors.shape[2])):
+            near = np.abs(fine - colors[..., channel]) <= ROUNDING
+            colors[..., channel][near] = fine[near]
+    return Samples(colors, depth)
+
+
+def _props(renderer: vtkRenderer) -> list[vtkProp]:
+    return [prop for prop in items(renderer.GetViewProps()) if prop.GetVisibility()]
+
+
+def _packed(plotter: pv.BasePlotter, actors: Iterable[vtkActor], count: int) -> Iterator[Array]:
+    """Yield each channel as it is before it is rounded to 8 bits."""
+    shaders = [actor.GetShaderProperty() for actor in actors]
+    for shader in shaders:
+        shader.AddFragmentShaderReplacement(LAST, True, PACKED, False)
+    try:
+        for channel in range(count):
+            for shader in shaders:
+                shader.GetFragmentCustomUniforms().SetUniformf(CHANNEL, float(channel))
+            plotter.render_window.Render()  # type: ignore[union-attr]
+            byte = _bytes(plotter)
+            whole = byte[..., 0].astype(np.float32)
+            whole += byte[..., 1] * np.float32(2**-8)
+            whole += byte[..., 2] * np.float32(2**-16)
+            # 255 parts of 2^24 - 1, of which the first byte counts 2^16.
+            whole *= np.float32(255 * 65536 / 16777215)
+            yield whole
+    finally:
+        for shader in shaders:
+            shader.ClearFragmentShaderReplacement(LAST, True)
+            shader.GetFragmentCustomUniforms().RemoveUniform(CHANNEL)
+
+
+def _bytes(plotter: pv.BasePlotter) -> Array:
+    """Return the picture that was drawn last, in 8 bits per channel."""
+    window = plotter.render_window
+    assert window is not None
+    width, height = window.GetSize()
+    pixels = vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0)
+    picture: Array = as_numpy(pixels).reshape(height, width, 3)[::-1]
+    return picture

@@ -1,0 +1,211 @@
+"""Few colours for many samples, of which one is near to each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Indices
+
+__all__ = ["JUMP", "Palette", "nearest_colors", "palette_of"]
+
+#: Share of the samples above which one exact colour is its own face.
+FLAT = 2e-3
+#: Most colours of this kind, and the step by which samples are looked through for them.
+MOST_FLAT, FEWER = 24, 37
+#: Least number of samples of one exact colour among those that are looked through.
+LEAST = 20
+#: Difference of channels that is rounding.
+ROUNDED = 0.1
+#: Colours that differ by less than this, as a share of the error, are one for the palette.
+BIN = 0.35
+#: Rounds in which specks join what is beside them.
+ROUNDS = 4
+#: Neighbours of a sample, and the number of those of its colour below which it is a speck.
+AROUND = [(down, right) for down in (-1, 0, 1) for right in (-1, 0, 1) if down or right]
+FEW = 4
+#: Colours that are tried for one of the palette.
+CANDIDATES = 4
+#: Difference of neighbouring samples, in errors, above which they are of two surfaces.
+JUMP = 4.0
+
+
+class Palette(NamedTuple):
+    """Colours of faces.
+
+    Attributes
+    ----------
+    centres : ndarray, shape (K, c)
+        Colours whose bisectors are the borders of faces; the first is the background's.
+    colors : ndarray, shape (K, c)
+        Colours in which faces are painted: of each the middle of what it stands for.
+    labels : ndarray of int32, shape (rows, columns)
+        Number of the colour of each sample.
+    error : float
+        Largest difference of a sample's channel from the colour of its face.
+    """
+
+    centres: Array
+    colors: Array
+    labels: NDArray[np.int32]
+    error: float
+
+
+def palette_of(samples: Array, background: Array, error: float) -> Palette:
+    """Return few colours of which one is near to each sample.
+
+    Parameters
+    ----------
+    samples : ndarray of float32, shape (rows, columns, c)
+        Channels; samples that equal the background are background.
+    background : ndarray, shape (c,)
+    error : float
+        Largest difference of a channel, in the unit of the samples.
+
+    Returns
+    -------
+    Palette
+        Colours from dark to light; equal samples keep their colour exactly.
+    """
+    rows, columns, channels = samples.shape
+    flat = samples.reshape(-1, channels)
+    shown = np.flatnonzero(np.any(flat != background.astype(flat.dtype), axis=1))
+    own = flat[shown].astype(np.float32)
+    labels = np.zeros(rows * columns, dtype=np.int32)
+    if not len(shown):
+        return Palette(background[np.newaxis], background[np.newaxis], labels.reshape(rows, -1), 0)
+    centres, number = nearest_colors(own, error)
+    # From dark to light, and none that no sample has.
+    count = np.bincount(number, minlength=len(centres))
+    order = np.argsort(centres.sum(axis=1), kind="stable")
+    order = order[count[order] > 0]
+    rank = np.zeros(len(centres), dtype=np.int32)
+    rank[order] = np.arange(1, len(order) + 1)
+    labels[shown] = rank[number]
+    low, high = _extremes(own, labels[shown], len(order) + 1)
+    colors = np.concatenate([background[np.newaxis], (low + high)[1:] / 2])
+    found = float(np.max((high - low)[1:]) / 2)
+    kept = np.concatenate([background[np.newaxis], centres[order]])
+    _settle(labels.reshape(rows, columns), samples, kept, error)
+    return Palette(kept, colors, labels.reshape(rows, columns), found)
+
+
+def nearest_colors(own: Array, error: float) -> tuple[Array, Indices]:
+    """Return colours of which one is near to each sample, and which."""
+    some, count = np.unique(own[::FEWER], axis=0, return_counts=True)
+    common = np.argsort(-count, kind="stable")[:MOST_FLAT]
+    common = common[count[common] > max(FLAT * count.sum(), LEAST)]
+    number = np.full(len(own), -1)
+    flat = np.zeros((0, own.shape[1]))
+    # What has one colour, but for rounding, over a large part keeps it.
+    for color in some[common]:
+        if not np.any(np.all(np.abs(flat - color) < 2 * ROUNDED, axis=1)):
+            number[np.all(np.abs(own - color) < ROUNDED, axis=1)] = len(flat)
+            flat = np.concatenate([flat, color[np.newaxis]])
+    rest = np.flatnonzero(number < 0)
+    if not len(rest):
+        return flat, number
+    centres, nearest = (_even if own.shape[1] == 1 else _net)(own[rest], error)
+    number[rest] = len(flat) + nearest
+    return np.concatenate([flat, centres]), number
+
+
+def _settle(labels: NDArray[np.int32], samples: Array, centres: Array, error: float) -> None:
+    """Give samples that touch few others of their colour the nearest colour beside them.
+
+    Where colours change within a pixel, faces would be specks that nobody sees. A corner of a face
+    whose colour is unlike those around it stays.
+    """
+    limit = (JUMP * error) ** 2
+    for _ in range(ROUNDS):
+        padded = np.pad(labels, 1, constant_values=-1)
+        rows, columns = labels.shape
+        alike = np.zeros(labels.shape, dtype=np.int8)
+        for down, right in AROUND:
+            alike += padded[1 + down : 1 + down + rows, 1 + right : 1 + right + columns] == labels
+        row, column = np.nonzero((alike < FEW) & (labels > 0))
+        if not len(row):
+            return
+        firm = np.pad(alike >= FEW, 1)
+        color = samples[row, column]
+        best, nearest = labels[row, column].copy(), np.full(len(row), np.inf)
+        for down, right in AROUND:
+            at = row + 1 + down, column + 1 + right
+            other = padded[at]
+            away = np.sum((centres[other] - color) ** 2, axis=1)
+            better = firm[at] & (away < nearest) & ((away < limit) | (alike[row, column] < 2))
+            best[better], nearest[better] = other[better], away[better]
+        labels[row, column] = best
+
+
+def _even(own: Array, error: float) -> tuple[Array, Indices]:
+    """Return evenly spaced levels of one channel, and the nearest to each sample."""
+    low, high = float(own.min()), float(own.max())
+    count = max(int(np.ceil((high - low) / (2 * error))), 1)
+    width = (high - low) / count or 1.0
+    number = np.clip((own[:, 0] - low) / width, 0, count - 1).astype(np.intp)
+    return low + width * (np.arange(count)[:, np.newaxis] + 0.5), number
+
+
+def _net(own: Array, error: float) -> tuple[Array, Indices]:
+    """Return colours that cover those of samples, and the nearest to each sample."""
+    size = BIN * error
+    cells = np.floor(own / size).astype(np.int64)
+    base = cells.min(axis=0)
+    cells -= base
+    spans = cells.max(axis=0) + 1
+    code = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
+    codes, inverse = np.unique(code, return_inverse=True)
+    unique = np.stack(np.unravel_index(codes, spans), axis=1)
+    middles = (unique + base + 0.5) * size
+    # The half diagonal of a bin is added to the distance of its middle.
+    centres = middles[_cover(middles, error - np.sqrt(3) / 2 * size)]
+    tree = cKDTree(centres)
+    away, nearest = (np.asarray(a) for a in tree.query(middles, k=[1, min(2, len(centres))]))
+    number = nearest[inverse, 0]
+    # Samples of a bin that is not on one side of all bisectors have each their own.
+    near = np.flatnonzero((away[:, 1] - away[:, 0] < np.sqrt(3) * size)[inverse])
+    number[near] = tree.query(own[near], workers=-1)[1]
+    return centres, number
+
+
+def _cover(points: Array, reach: float) -> Indices:
+    """Return points of which one is within reach of each point, and few of them.
+
+    Points are taken along the axis of their largest spread. The first that is not covered is, by
+    the one of its neighbours that covers most.
+    """
+    left = np.ones(len(points), dtype=np.bool_)
+    chosen: list[int] = []
+    if len(points) < 2:
+        return np.arange(len(points))
+    tree = cKDTree(points)
+    _, _, axes = np.linalg.svd(np.cov(points.T))
+    for first in np.argsort(points @ axes[0], kind="stable"):
+        if not left[first]:
+            continue
+        near = np.sort(tree.query_ball_point(points[first], reach))
+        near = near[:: max(len(near) // CANDIDATES, 1)]
+        balls = tree.query_ball_point(points[near], reach)
+        best = max(range(len(near)), key=lambda i: np.count_nonzero(left[balls[i]]))
+        # A candidate within reach by rounding only may not cover the point itself.
+        left[balls[best]] = left[first] = False
+        chosen.append(near[best])
+    return np.array(chosen)
+
+
+def _extremes(own: Array, number: Indices, count: int) -> tuple[Array, Array]:
+    """Return the least and the largest channels of the samples of each number from 1."""
+    order = np.argsort(number, kind="stable")
+    starts = np.searchsorted(number[order], np.arange(1, count))
+    blank = np.zeros((1, own.shape[1]))
+    low, high = (
+        np.concatenate([blank, part.reduceat(own[order], starts, axis=0)])
+        for part in (np.minimum, np.maximum)
+    )
+    return low, high
