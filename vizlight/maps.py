@@ -193,9 +193,10 @@ def directions(names: Sequence[str] = ("x", "y", "z")) -> pv.LookupTable:
     >>> maps.directions().annotations
     {0.0: 'x', 1.0: 'y', 2.0: 'z'}
     """
+    if not isinstance(names, list | tuple) or len(names) != 3:
+        kind = ValueError if isinstance(names, list | tuple) else TypeError
+        raise kind(_check.message("names", "a sequence of three words", _check.describe(names)))
     words = [_check.text(f"names[{i}]", name) for i, name in enumerate(names)]
-    if len(words) != 3:
-        raise ValueError(_check.message("names", "three words", f"{len(words)} words"))
     table = kinds([0, 1, 2])
     colors = np.zeros((3, 4), dtype=np.uint8)
     colors[:, :3] = 255 * np.eye(3, dtype=np.uint8)
