@@ -329,7 +329,7 @@ def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, st
     values = [i * step for i in range(first, last + 1)]
     size = max(abs(low), abs(high))
     places = max(-math.floor(math.log10(step) + 1e-9), 0) + (step / power == 2.5)
-    if size >= 1e5 or size < 1e-3:
+    if size >= 1e6 or size < 1e-3:
         return [(value, _power(value)) for value in values]
     return [(value, f"{value:.{places}f}") for value in values]
 

@@ -33,8 +33,8 @@ MOST_POINTS, LEVELS, SMALL = 100_000, 8, 0.75
 #: Parts of a colour map that have one ink, and the lightness in CIELAB from which on it is black:
 #: white lines let more of the values be read, but are not seen on pale ground.
 INKS, LIGHT = 16, 75.0
-#: Radius of the coasts of a ball of radius 1.
-ABOVE_BALL = 1.002
+#: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
+ABOVE_BALL, BELOW_BALL = 1.002, 0.99
 
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
@@ -86,6 +86,11 @@ def shore() -> Step:
     flat = Step("", "vizlight.cartography.coasts", (-180.0, 180.0, -90.0, 90.0))
     # Sides of cells are chords of the ball, which would hide lines on it.
     return Step("coasts", ".scale", Step("", "vizlight.cartography.globe", flat), ABOVE_BALL)
+
+
+def ball() -> Step:
+    """Return the step that makes the ball below a globe."""
+    return Step("ball", "pyvista.Icosphere", radius=BELOW_BALL, nsub=5)
 
 
 def coasts(mesh: Step) -> Step | None:

@@ -18,7 +18,7 @@ from vizlight.looks.contents import kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.steps import Step
-from vizlight.mesh import meaning
+from vizlight.mesh import globes, meaning
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -192,12 +192,20 @@ class Case:
         up = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
         return map_parts.frame(self.data, wishes, up)
 
+    @cached_property
+    def on_globe(self) -> bool:
+        """Whether the mesh lies on the earth as a ball, and is alone in the picture."""
+        return self.wishes.frame is None and globes.is_globe(self.contents.mesh)
+
     def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
         """Return the step that sets the camera on a mesh, by the options or by what suits it."""
         eye = self.eye(mesh) if eye is None else eye
         if self.frame is not None:
             # There is room for what stands around the map.
             mesh = Step("", "pyvista.MultiBlock", [mesh, self.frame])
+        elif self.on_globe:
+            # The ball is seen whole, wherever there are data.
+            mesh = map_parts.ball()
         return self.wishes.camera(mesh, eye)
 
     def scene(self, camera: Step) -> Step:

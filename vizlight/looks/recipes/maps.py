@@ -13,7 +13,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import georeference, globes
+from vizlight.mesh import georeference
 
 if TYPE_CHECKING:
     from vizlight._types import Keywords
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Width of the band beside coasts that sets them apart from dark colours, in widths of the line.
 BAND = 0.5
+#: Colour of the ball where a globe has no data, which hides its far side.
+BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
 UNDER_STROKES = "#9a4f1f"
 
@@ -33,11 +35,12 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     beside: Keywords = {"scene": even_light(drawing.camera), "pickable": False}
     ink = ink_on(pv.Color(drawing.background or case.wishes.background))
     coasts = map_parts.coasts(case.data) if _has_coasts(case) else None
-    if case.wishes.frame is None and globes.is_globe(case.contents.mesh):
+    if case.on_globe:
         coasts = map_parts.shore()
+        layers.append(Layer(map_parts.ball(), {**beside, "color": BALL}))
     if coasts is not None:
         lines: Keywords = {"color": ink, "line_width": case.width, "halo": BAND}
-        if len(layers) > 1:
+        if len(drawing.layers) > 1:
             # Below strokes, and unlike them.
             lines |= {"color": UNDER_STROKES, "halo": False}
         layers.insert(1, Layer(coasts, {**beside, **lines}))
