@@ -123,7 +123,7 @@ class Lights:
     Parameters
     ----------
     question
-        Question that the light answers, with its key: direction, slope, heading, shape, value.
+        Question that the light answers, with its key.
     key
         Draw the key of the colours and of the light beside the picture.
     light

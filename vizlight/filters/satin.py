@@ -30,7 +30,7 @@ class SatinOptions(StreamlineOptions):
     """
 
     DECIDED: ClassVar = frozenset(
-        {"conditioned", "surface", "confined", "stroke_length", "min_length"}
+        {"conditioned", "surface", "confined", "stroke_length", "min_length", "travel"}
     )
     tangents: str | None = None
     seeds: int | ArrayLike | pv.DataSet = 300

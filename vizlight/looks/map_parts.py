@@ -39,6 +39,8 @@ ABOVE_BALL, BELOW_BALL = 1.002, 0.99
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
     """Return the step that makes what stands around a map, None where nothing is known of it."""
+    if not 0 < max(mesh.run().bounds_size[:2]) < np.inf:
+        return None
     keywords: dict[str, object] = {"letters": letters(mesh.run(), wishes, up)}
     if not np.allclose(up, (0, 1)):
         keywords["up"] = tuple(up)

@@ -117,7 +117,12 @@ class Sheet:
 
 
 def svg_of(sheet: Sheet) -> str:
-    """Return a sheet as the text of an SVG file."""
+    """Return a sheet as the text of an SVG file.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
     width, height = sheet.size
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
@@ -209,7 +214,12 @@ def _hex(color: Color) -> str:
 
 
 def figure_of(sheet: Sheet) -> Figure:
-    """Return a sheet as a figure of matplotlib, of the same size in inches."""
+    """Return a sheet as a figure of matplotlib, of the same size in inches.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
@@ -256,7 +266,12 @@ def _closed(item: Fill) -> list[Array]:
 
 
 def pdf_of(sheet: Sheet) -> bytes:
-    """Return a sheet as the bytes of a PDF file, whose text is text."""
+    """Return a sheet as the bytes of a PDF file, whose text is text.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    """
     from matplotlib import rc_context
 
     data = io.BytesIO()

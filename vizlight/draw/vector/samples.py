@@ -63,7 +63,12 @@ class Samples(NamedTuple):
 
 
 def actors_of(renderer: vtkRenderer) -> list[vtkActor]:
-    """Return the visible actors in space of a renderer."""
+    """Return the visible actors in space of a renderer.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+    """
     actors = items(renderer.GetActors())
     return [actor for actor in actors if isinstance(actor, vtkActor) and actor.GetVisibility()]
 
@@ -118,7 +123,12 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
 
 
 def samples_of(plotter: pv.BasePlotter) -> Samples:
-    """Return what a plotter draws now, sample by sample."""
+    """Return what a plotter draws now, sample by sample.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    """
     window = plotter.render_window
     assert window is not None
     window.Render()

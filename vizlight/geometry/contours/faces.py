@@ -300,6 +300,15 @@ def simplified(points: Array, starts: Indices, limit: Array) -> Bools:
     """Return which vertices of rings are kept: others are within limits of the lines between them.
 
     It is the method of Douglas and Peucker for all rings at once, a round for each halving.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 2)
+        Vertices, ring after ring.
+    starts : ndarray of int
+        Where each ring begins, and the end of the last.
+    limit : ndarray, shape (N,)
+        Largest distance of each vertex.
     """
     lengths = np.diff(starts)
     first = np.repeat(starts[:-1], lengths)

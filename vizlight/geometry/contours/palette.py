@@ -96,7 +96,15 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
 
 
 def nearest_colors(own: Array, error: float) -> tuple[Array, Indices]:
-    """Return colours of which one is near to each sample, and which."""
+    """Return colours of which one is near to each sample, and which.
+
+    Parameters
+    ----------
+    own : ndarray, shape (N, c)
+        Samples.
+    error : float
+        Largest difference of a channel.
+    """
     some, count = np.unique(own[::FEWER], axis=0, return_counts=True)
     common = np.argsort(-count, kind="stable")[:MOST_FLAT]
     common = common[count[common] > max(FLAT * count.sum(), LEAST)]
