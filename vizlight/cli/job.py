@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 #: Words before the path of what a step writes, where it is no mesh.
 SAID = {
     "render.save": "picture", "movie.orbit": "movie", "movie.travel": "movie",
-    "vizlight.live_html": "page", ".vizlight.export_html": "page",
+    ".vizlight.save_graphic": "picture", "vizlight.live_html": "page",
+    ".vizlight.export_html": "page",
 }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight import _check
 from vizlight.draw import isolines as iso
 from vizlight.draw import legends
 from vizlight.draw.cameras import MARGIN
@@ -60,7 +61,8 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
         sides = sides[::-1]
     # The data and the room of the frame are to fill the picture together.
     scale = float(np.max(sides / (room - np.array(ROOM) * pixels)))
-    return float(f"{pixels * scale / float(wishes.eye.get('zoom', 1.0)):.4g}")
+    zoom = _check.positive("zoom", wishes.eye.get("zoom", 1.0))
+    return float(f"{pixels * scale / zoom:.4g}")
 
 
 def isolines(mesh: Step, array: Named, ends: tuple[float, float], letters: float) -> Step | None:

@@ -133,7 +133,8 @@ def _closed(mesh: pv.DataSet) -> pv.DataSet:
     columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
     if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
         return mesh.copy(deep=False)
-    grid = mesh.cast_to_structured_grid()
+    is_curved = isinstance(mesh, pv.StructuredGrid)
+    grid = mesh if is_curved else mesh.cast_to_structured_grid()
     points = np.asarray(grid.points, dtype=np.float64).reshape(rows, columns, 3)
     step = (points[0, -1, 0] - points[0, 0, 0]) / (columns - 1)
     if abs(points[0, 0, 0] + AROUND - points[0, -1, 0] - step) > 0.01 * abs(step):

@@ -53,12 +53,15 @@ class Lines(NamedTuple):
         How they are drawn.
     width : float
         Width in pixels, where they have no diameter.
+    colors : ndarray, shape (N, 3), or None
+        Channels of each point from 0 to 255, where no light changes them.
     """
 
     renderer: vtkRenderer
     actor: vtkActor
     style: Style
     width: float
+    colors: Array | None
 
 
 class Course(NamedTuple):
@@ -115,8 +118,29 @@ def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]
             if live is None and (shaded or style.GetRenderLinesAsTubes()):
                 continue
             how = Style() if live is None else live.stroke
-            found.append(Lines(renderer, actor, how, float(style.GetLineWidth())))
+            colors = _unlit_colors(actor, pv.wrap(mesh), live)
+            found.append(Lines(renderer, actor, how, float(style.GetLineWidth()), colors))
     return found
+
+
+def _unlit_colors(actor: vtkActor, mesh: pv.PolyData, live: Live | None) -> Array | None:
+    """Return the colours of points, from 0 to 255, None where light or cells may change them."""
+    if live is None:
+        is_plain = not actor.GetProperty().GetLighting()
+    else:
+        scene = live.scene
+        is_plain = scene is not None and not scene.lights and scene.depth_cue is None
+        is_plain = is_plain and scene is not None and scene.material.ambient == 1
+    mapper = actor.GetMapper()
+    values = mesh.point_data.get(mapper.GetArrayName()) if is_plain else None
+    if not is_plain or (mapper.GetScalarVisibility() and (values is None or values.ndim > 1)):
+        return None
+    if not mapper.GetScalarVisibility():
+        colors: Array = 255 * np.tile(actor.GetProperty().GetColor(), (mesh.n_points, 1))
+        return colors
+    plain = pv.convert_array(np.ascontiguousarray(values))
+    table = pv.convert_array(mapper.GetLookupTable().MapScalars(plain, 1, -1))
+    return np.asarray(table[:, :3], dtype=np.float64)
 
 
 def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Course:
@@ -174,6 +198,9 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
         found += near
     mean = color / np.maximum(found, 1)[:, np.newaxis]
     color, colored = _continued(mean, found > 0, number[start])
+    if lines.colors is not None:
+        own = lines.colors[ids][:, : color.shape[1]]
+        color = own[start] + along[:, np.newaxis] * (own[start + 1] - own[start])
     seen &= colored & (width > THIN)
     return Course(place / scale, distance, number[start], ends, width, seen, color, halo)
 

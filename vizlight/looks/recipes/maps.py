@@ -54,8 +54,9 @@ def _isolines(case: Case, beside: Keywords) -> list[Layer]:
     """Return the layers of isolines and of their numbers, of a smooth field that nothing lights."""
     array = case.array
     colors: Keywords = {"cmap": LIGHTNESS} | case.wishes.colors
-    is_field = array is not None and array.role == "values" and case.question == "none"
-    if case.frame is None or array is None or not is_field or case.contents.dimension != 2:
+    is_field = array is not None and array.role == "values" and not array.of_cells
+    is_field = is_field and case.question == "none" and case.contents.dimension == 2
+    if case.frame is None or array is None or not is_field:
         return []
     size = case.frame.keywords["letters"]
     assert isinstance(size, float)
