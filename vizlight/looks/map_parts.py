@@ -35,7 +35,7 @@ MOST_POINTS, LEVELS, SMALL = 100_000, 8, 0.75
 #: white lines let more of the values be read, but are not seen on pale ground.
 INKS, LIGHT = 16, 75.0
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
-ABOVE_BALL, BELOW_BALL = 1.002, 0.99
+ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
