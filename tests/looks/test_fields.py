@@ -118,7 +118,8 @@ def test_a_picture_in_doubt_is_read_back_and_not_chosen_where_it_cannot_be_read(
 
 def test_hues_are_asked_for_after_strokes(monkeypatch):
     monkeypatch.setattr(fields, "CLEAR", 1e9)
-    kind = type(vizlight.look(sheet(0, 12)))
+    monkeypatch.setattr(fields, "SPACING", 1 / 8)
+    kind = type(vizlight.look(pv.Sphere()))
     read = []
 
     def figures(look):
@@ -138,6 +139,7 @@ def test_without_a_library_that_draws_the_data_decide(monkeypatch):
     def no_picture(look):
         raise BackendError("no library")
 
-    monkeypatch.setattr(type(vizlight.look(sheet(0.05))), "figures", no_picture)
     monkeypatch.setattr(fields, "CLEAR", 1e9)
+    monkeypatch.setattr(fields, "SPACING", 1 / 8)
+    monkeypatch.setattr(type(vizlight.look(pv.Sphere())), "figures", no_picture)
     assert "with strokes" in vizlight.look(sheet(0.05)).drawing.words

@@ -167,6 +167,7 @@ def test_a_look_is_a_page_a_mesh_and_a_movie(tmp_path):
     assert html.startswith('<img alt="p in colours')
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_strokes_of_a_movie_move_and_the_key_says_how_much_time_it_shows(tmp_path):
     pytest.importorskip("imageio")
