@@ -203,7 +203,7 @@ def worst_of(pairs: list[tuple[float, float]]) -> Result:
 
 
 class Recorder:
-    """Plugin of pytest that collects what the fixture ``claim`` was told, by test."""
+    """Plugin of pytest that collects the figures that tests give to the fixture ``claim``."""
 
     def __init__(self) -> None:
         self.found: list[tuple[str, str, tuple[float, float]]] = []

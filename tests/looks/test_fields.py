@@ -26,14 +26,14 @@ def test_the_turn_of_a_field_is_that_per_length_around_its_cells(turn, kind):
     grid = sheet(turn)
     mesh = grid if kind == "image" else grid.extract_surface(algorithm="dataset_surface")
     # Along the columns it does not turn, and each cell has as many edges along them.
-    assert fields._turn(mesh, "wind") == pytest.approx(turn / 2, rel=1e-6, abs=1e-7)
+    assert fields.turn_of(mesh, "wind") == pytest.approx(turn / 2, rel=1e-6, abs=1e-7)
 
 
 def test_a_field_at_rest_does_not_turn():
     grid = sheet(1.0)
     grid["wind"][:] = 0
     grid["wind"][0] = np.nan
-    assert fields._turn(grid, "wind") == 0
+    assert fields.turn_of(grid, "wind") == 0
 
 
 def test_a_slow_field_is_strokes_that_grow_along_it_over_its_speed():

@@ -28,18 +28,8 @@ LINE, TICK, GAP = 0.06, 0.35, 0.3
 DIGIT, BESIDE, ABOVE = 0.73, 1.6, 3.0
 #: Steps between ticks in degrees: whole parts of a right angle, or of a degree.
 STEPS = (
-    *(s * 10.0**p for p in range(-4, 0) for s in (1, 2, 5)),
-    1,
-    2,
-    5,
-    10,
-    15,
-    20,
-    30,
-    45,
-    60,
-    90,
-)
+    *(s * 10.0**p for p in range(-4, 0) for s in (1, 2, 5)), 1, 2, 5, 10, 15, 20, 30, 45, 60, 90,
+)  # fmt: skip
 #: Difference of a direction from an axis that is none.
 ALMOST = 1e-6
 #: Largest number of ticks along a side.

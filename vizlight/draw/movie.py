@@ -277,22 +277,13 @@ def orbit(
     TypeError, ValueError
         If an argument does not fit, or a file cannot be written. No partial file is left.
     """
-    path = _check_movie(path)
-    count = _check.integer("frames", frames, low=1)
-    fps = _check.number("fps", fps, low=0.01, high=100.0)
 
-    def pictures() -> Iterator[Picture]:
-        for _ in range(count):
-            plotter.reset_camera_clipping_range()
-            yield np.array(plotter.screenshot(return_img=True))
+    def frame(i: int, count: int) -> None:
+        if i:
             plotter.camera.Azimuth(360.0 / count)
+        plotter.reset_camera_clipping_range()
 
-    try:
-        writer = _writer(path, fps, plotter.window_size)
-        with progress("turn", count, show=progress_bar) as report:
-            return writer(_counted(pictures(), report, 0))
-    finally:
-        plotter.close()
+    return _filmed(plotter, path, frames, fps, "turn", frame, progress_bar=progress_bar)
 
 
 def travel(
@@ -337,27 +328,46 @@ def travel(
         If an argument does not fit, the plotter has no strokes that move, or a file cannot be
         written. No partial file is left.
     """
+    component: Foreign = plotter.vizlight
+    moving: list[pv.PolyData] = component.moving()
+    if not moving:
+        plotter.close()
+        expected = "a plotter that shows streamlines with travel= and width='width'"
+        raise ValueError(_check.message("plotter", expected, "none of them"))
+    plotter.reset_camera_clipping_range()
+
+    def frame(i: int, count: int) -> None:
+        for lines in moving:
+            lines.point_data[strokes.WIDTH] = strokes.moved_widths(lines, i / count)
+        plotter.render()
+
+    return _filmed(plotter, path, frames, fps, "travel", frame, progress_bar=progress_bar)
+
+
+def _filmed(
+    plotter: pv.Plotter,
+    path: str | Path,
+    frames: object,
+    fps: object,
+    name: str,
+    frame: Callable[[int, int], None],
+    *,
+    progress_bar: bool,
+) -> list[Path]:
+    """Save the pictures of a plotter that a function sets to a frame of some, and close it."""
     path = _check_movie(path)
     count = _check.integer("frames", frames, low=1)
     fps = _check.number("fps", fps, low=0.01, high=100.0)
 
-    def pictures(moving: list[pv.PolyData]) -> Iterator[Picture]:
+    def pictures() -> Iterator[Picture]:
         for i in range(count):
-            for lines in moving:
-                lines.point_data[strokes.WIDTH] = strokes.moved_widths(lines, i / count)
-            plotter.render()
+            frame(i, count)
             yield np.array(plotter.screenshot(return_img=True))
 
     try:
-        component: Foreign = plotter.vizlight
-        moving = component.moving()
-        if not moving:
-            expected = "a plotter that shows streamlines with travel= and width='width'"
-            raise ValueError(_check.message("plotter", expected, "none of them"))
-        plotter.reset_camera_clipping_range()
         writer = _writer(path, fps, plotter.window_size)
-        with progress("travel", count, show=progress_bar) as report:
-            return writer(_counted(pictures(moving), report, 0))
+        with progress(name, count, show=progress_bar) as report:
+            return writer(_counted(pictures(), report, 0))
     finally:
         plotter.close()
 

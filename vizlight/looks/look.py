@@ -195,9 +195,8 @@ class Look:
             return [[*steps, Step("", way, plotter, path)]]
         if suffix in (*IMAGES, *VECTORS):
             plotter, steps = self._picture()
-            if suffix in VECTORS:
-                return [[*steps, Step("", ".vizlight.save_graphic", plotter, path)]]
-            return [[*steps, Step("", "render.save", plotter, path)]]
+            way = "render.save" if suffix in IMAGES else ".vizlight.save_graphic"
+            return [[*steps, Step("", way, plotter, path)]]
         if suffix in PAGES:
             return [self._page(path)]
         if drawing.alone is not None and suffix in files.SUFFIXES and suffix not in TOGETHER:
@@ -418,7 +417,7 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
     look = _look_of(rule, case, rule.recipe(case), notes)
     while (doubt := look.drawing.doubt) is not None and (why := _unread(look, doubt.figures)):
         notes = [*notes, why]
-        look = _look_of(rule, case, doubt.instead(case), notes)
+        look = _look_of(rule, case, doubt.instead(), notes)
     return look
 
 

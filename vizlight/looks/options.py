@@ -30,17 +30,9 @@ if TYPE_CHECKING:
 
 #: Options of what is taken of the data, of the camera, and of the picture.
 PART = (
-    "time",
-    "overlay",
-    "clip",
-    "threshold",
-    "contour",
-    "level",
-    "slice",
-    "warp",
-    "exaggeration",
+    "time", "overlay", "clip", "threshold", "contour", "level", "slice", "warp", "exaggeration",
     "globe",
-)
+)  # fmt: skip
 EYE = ("up", "parallel", "zoom")
 PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "backend", "progress",

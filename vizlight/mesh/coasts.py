@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["coasts"]
 
-#: Degrees around the earth, and the farthest ends of a map from 0.
-AROUND, FARTHEST = 360.0, 720.0
+#: Farthest ends of a map from 0, in degrees.
+FARTHEST = 720.0
 
 
 def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
@@ -62,11 +62,11 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
     west, east, south, north = _sides(bounds)
     corner, size = np.array([west, south]), np.array([east - west, north - south])
     points, first = _segments()
-    low = math.floor((west - points[..., 0].max()) / AROUND)
-    high = math.ceil((east - points[..., 0].min()) / AROUND)
+    low = math.floor((west - points[..., 0].max()) / georeference.AROUND)
+    high = math.ceil((east - points[..., 0].min()) / georeference.AROUND)
     parts = []
     for turn in range(low, high + 1):
-        moved = points + np.array([AROUND * turn, 0.0])
+        moved = points + np.array([georeference.AROUND * turn, 0.0])
         inside, kept = _clipped(moved, corner, size)
         # A line goes on where a segment begins at the end of the one before.
         goes_on = ~first[kept][1:] & (np.diff(kept) == 1) if len(kept) else np.empty(0, np.bool_)

@@ -28,6 +28,8 @@ __all__ = [
 
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
+#: Degrees around the earth.
+AROUND = 360.0
 #: Field array with the latitude of the centre of a map that was in degrees and is in metres.
 LATITUDE = "latitude"
 #: Latitude beyond which a parallel is taken for that of this latitude.

@@ -20,8 +20,8 @@ __all__ = ["globe"]
 
 #: Field array that says that a mesh is the earth as a ball around 0, with its radius.
 GLOBE = "globe"
-#: Degrees around the earth, and those of a side of a line at most.
-AROUND, FINE = 360.0, 1.0
+#: Degrees of a side of a line at most.
+FINE = 1.0
 #: Degrees from a pole within which an edge of a map is closed to it, and those of a circle.
 NEAR_POLE = 15.0
 
@@ -137,9 +137,9 @@ def _closed(mesh: pv.DataSet) -> pv.DataSet:
     grid = mesh if is_curved else mesh.cast_to_structured_grid()
     points = np.asarray(grid.points, dtype=np.float64).reshape(rows, columns, 3)
     step = (points[0, -1, 0] - points[0, 0, 0]) / (columns - 1)
-    if abs(points[0, 0, 0] + AROUND - points[0, -1, 0] - step) > 0.01 * abs(step):
+    if abs(points[0, 0, 0] + georeference.AROUND - points[0, -1, 0] - step) > 0.01 * abs(step):
         return mesh.copy(deep=False)
-    wide = np.concatenate([points, points[:, :1] + (AROUND, 0.0, 0.0)], axis=1)
+    wide = np.concatenate([points, points[:, :1] + (georeference.AROUND, 0.0, 0.0)], axis=1)
     closed = pv.StructuredGrid()
     closed.dimensions = (columns + 1, rows, 1)
     closed.points = wide.reshape(-1, 3)

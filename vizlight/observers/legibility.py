@@ -163,7 +163,7 @@ def legibility(
     crossings the borders of the nearer line, darker ones inside it too, or gaps beside it, differ
     by 3 deviations of the noise (Rose 1948), on both sides and by more than those of the other;
     crossings with a third line within 5.5 pixels are left out. Of two narrow lines of 3 pixels on
-    black without halos the darker one is told wrongly. *sense*: a stroke has a sense to a reader
+    black without halos the darker one is told wrongly. *sense*: the sense of a stroke is told
     where its ends differ by 3 deviations of the noise, in lightness or in contrast, each as the
     mean of 8 arc minutes. It needs lines that have ``tangents``, or VTK's ``IntegrationTime``.
 

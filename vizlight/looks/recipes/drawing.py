@@ -79,11 +79,11 @@ class Doubt:
     figures : sequence of str
         Figures of legibility that the picture must have.
     instead : callable
-        Recipe of what is drawn where one of them is unreadable.
+        Function that draws what is shown where one of them is unreadable.
     """
 
     figures: Sequence[str]
-    instead: Recipe
+    instead: Callable[[], Drawing]
 
 
 @dataclass(frozen=True)

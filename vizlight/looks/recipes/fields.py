@@ -60,6 +60,8 @@ WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
 #: Length below which streamlines of a volume are left out, in distances between them: many are cut
 #: short where the field is noise.
 SHORTEST = 4 * SPACING_IN_VOLUME
+#: Words of the key for the sense of strokes.
+SENSE = "; strokes run from thin to thick"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
@@ -76,12 +78,12 @@ def vectors(case: Case) -> Drawing:
     if case.wishes.question != "auto" or has_lines_only(mesh.run()):
         spacing = mesh.run().length * SPACING
         return _lit(case, mesh, camera, _strokes(mesh, case.scene(camera), array, spacing))
-    pixel = _pixel(case, camera)
-    turn = turn_in_pixels(case, mesh, camera, array.name)
+    pixel = pixel_of(case, camera)
+    turn = turn_of(mesh.run(), array.name) * pixel
     # Distances over which the field turns by a radian, in least widths of lines.
     room = 1 / max(turn * case.width, 1e-9)
     if room * TURN < LEAST_SPACING:
-        return _without_strokes(case, room)
+        return _without_strokes(case, mesh, camera, room)
     spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
     strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
     if strokes is None or _is_even(mesh.run(), array.name):
@@ -89,30 +91,24 @@ def vectors(case: Case) -> Drawing:
     drawing = _speed(case, mesh, camera, strokes)
     if room * TURN > CLEAR * LEAST_SPACING:
         return drawing
-    doubt = Doubt(("direction",), lambda case: _without_strokes(case, room))
+    doubt = Doubt(("direction",), lambda: _without_strokes(case, mesh, camera, room))
     return replace(drawing, doubt=doubt)
 
 
-def _without_strokes(case: Case, room: float) -> Drawing:
+def _without_strokes(case: Case, mesh: Step, camera: Step, room: float) -> Drawing:
     """Draw vectors by hue, or by their lengths alone where places of one hue are too small."""
-    array = case.needed_array
-    mesh = case.wishes.joined(case.surface, array)
-    camera = case.camera(mesh)
+    name = case.needed_array.name
+
+    def lengths_alone() -> Drawing:
+        note = f"{name} turns too fast here for its course to be seen: colours are its length"
+        return replace(_speed(case, mesh, camera, None), notes=[note])
+
     if room * TURN_HUE < LEAST_PLACE:
-        return _too_fast(case)
-    drawing = _lit(case, mesh, camera, strokes=None)
-    note = f"{array.name} turns too fast here for strokes: hue tells its course, not its sense"
+        return lengths_alone()
+    note = f"{name} turns too fast here for strokes: hue tells its course, not its sense"
     in_doubt = room * TURN_HUE < CLEAR * LEAST_PLACE
-    doubt = Doubt(("direction",), _too_fast) if in_doubt else None
-    return replace(drawing, notes=[note], doubt=doubt)
-
-
-def _too_fast(case: Case) -> Drawing:
-    """Draw vectors by their lengths alone."""
-    array = case.needed_array
-    mesh = case.wishes.joined(case.surface, array)
-    note = f"{array.name} turns too fast here for its course to be seen: colours are its length"
-    return replace(_speed(case, mesh, case.camera(mesh), None), notes=[note])
+    doubt = Doubt(("direction",), lengths_alone) if in_doubt else None
+    return replace(_lit(case, mesh, camera, strokes=None), notes=[note], doubt=doubt)
 
 
 def lengths(case: Case) -> Drawing:
@@ -158,7 +154,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     finite = _lengths(mesh.run(), array.name)
-    sense = "" if strokes is None else "; strokes run from thin to thick"
+    sense = "" if strokes is None else SENSE
     title = f"{titled_length(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
     bar |= {} if bent else {"scene": scene}
@@ -190,12 +186,7 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     )
 
 
-def turn_in_pixels(case: Case, mesh: Step, camera: Step, name: str) -> float:
-    """Return by how much vectors at the points of a mesh turn within a pixel, in radians."""
-    return _turn(records.averaged(mesh.run(), name), name) * _pixel(case, camera)
-
-
-def _pixel(case: Case, camera: Step) -> float:
+def pixel_of(case: Case, camera: Step) -> float:
     """Return the size of a pixel at the focus of a camera, in the unit of the mesh."""
     eye: pv.Camera = camera.run()
     key = case.wishes.picture.get("key", True)
@@ -203,8 +194,9 @@ def _pixel(case: Case, camera: Step) -> float:
     return float(footprint(eye, np.array([eye.focal_point]), case.wishes.size[1] * share[1])[0])
 
 
-def _turn(mesh: pv.DataSet, name: str) -> float:
+def turn_of(mesh: pv.DataSet, name: str) -> float:
     """Return by how much vectors turn around cells, in radians for each unit."""
+    mesh = records.averaged(mesh, name)
     first, starts, counts = sampled_corners(mesh)
     last = np.roll(first, -1)
     last[starts + counts - 1] = first[starts]
@@ -244,7 +236,7 @@ def flow(case: Case) -> Drawing:
         speed = own_name(mesh.run(), "speed")
         colors = {"cmap": case.map_on_ground} | case.wishes.colors
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
-        title = f"{titled_length(mesh.run(), array.name)}; strokes run from thin to thick"
+        title = f"{titled_length(mesh.run(), array.name)}{SENSE}"
         bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
         bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
         keys = [bar]
@@ -278,7 +270,7 @@ def moving(drawing: Drawing) -> Drawing | None:
     if not period:
         return None
     title = drawing.keys[0].get("title", "") if drawing.keys else ""
-    head = str(title).replace("; strokes run from thin to thick", "")
+    head = str(title).replace(SENSE, "")
     unit = " s" if head.endswith("/s)") else ""
     said = f"{head}; strokes move with it, {period:.3g}{unit} of its time in all"
     keys = [dict(key, title=said) if i == 0 else key for i, key in enumerate(drawing.keys)]

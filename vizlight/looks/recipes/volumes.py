@@ -68,7 +68,7 @@ def isosurface(case: Case) -> Drawing:
         words += f" in the colours of {second.name}"
     drawing = replace(drawing, words=words, notes=[*drawing.notes, *notes])
     if wishes.question == "auto" and _is_rough(case, mesh, drawing.camera):
-        drawing = replace(drawing, doubt=Doubt((figure,), lambda _: slices(whole)))
+        drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(whole)))
     if notes or not around:
         return drawing
     box = Layer(Step("", ".outline", volume), {"color": "gray", "line_width": 1}, live=False)
@@ -88,8 +88,8 @@ def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
 
 def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
     """Return whether the normals of an isosurface may turn too fast to be seen."""
-    normals = Step("", ".compute_normals", mesh, **PLAIN_NORMALS)
-    return fields.turn_in_pixels(case, normals, camera, "Normals") > ROUGH
+    normals = mesh.run().compute_normals(**PLAIN_NORMALS)
+    return fields.turn_of(normals, "Normals") * fields.pixel_of(case, camera) > ROUGH
 
 
 def slices(case: Case, why: str = "") -> Drawing:
