@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import ArrayLike
+    from vtkmodules.vtkRenderingCore import vtkCamera
 
     from vizlight._types import Array
 
@@ -30,6 +31,21 @@ MARGIN = 1.05
 SOME = 1 << 16
 #: Least and largest size of a box that a camera shows; VTK's are no nearer than 1e-20.
 SIZES = 1e-15, 1e100
+
+
+def pixel_sizes(camera: vtkCamera, distance: Array, height: float) -> Array:
+    """Return the sizes of a pixel at distances from the plane of the eye, in the unit of the mesh.
+
+    Parameters
+    ----------
+    camera : vtkCamera
+    distance : ndarray, shape (N,)
+    height : float
+        Height of the picture in pixels.
+    """
+    if camera.GetParallelProjection():
+        return np.full(len(distance), 2 * camera.GetParallelScale() / height)
+    return np.asarray(2 * distance * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
 
 
 def camera_on(

@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from vizlight.draw.backends import choose_backend, window_class
+from vizlight.draw.cameras import pixel_sizes
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
@@ -187,11 +188,8 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
 
 def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
     """Return the size of a pixel at points, in the unit of the mesh."""
-    if camera.GetParallelProjection():
-        return np.full(len(points), 2 * camera.GetParallelScale() / height)
     away = np.array(camera.GetDirectionOfProjection())
-    depth = (points - np.array(camera.GetPosition())) @ away
-    return np.asarray(2 * depth * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
+    return pixel_sizes(camera, (points - np.array(camera.GetPosition())) @ away, height)
 
 
 def _actor(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
 from vizlight.draw.live import matrix_of
 from vizlight.draw.strokes import LEAST
@@ -172,7 +173,7 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
     rows = np.concatenate([corners[:, :3], share], axis=1)
     at = rows[start] + along[:, np.newaxis] * (rows[start + 1] - rows[start])
     distance = _distance(at[:, 2], camera)
-    footprint = scale * _footprint(distance, camera, renderer.GetSize()[1])
+    footprint = scale * pixel_sizes(camera, distance, renderer.GetSize()[1])
     width = np.full(len(at), lines.width)
     if style.diameter is not None:
         width = np.maximum(style.diameter / footprint, LEAST)
@@ -238,13 +239,6 @@ def _distance(depth: Array, camera: vtkCamera) -> Array:
     if camera.GetParallelProjection():
         return np.asarray(near + depth * (far - near))
     return np.asarray(near * far / (far - depth * (far - near)))
-
-
-def _footprint(distance: Array, camera: vtkCamera, height: float) -> Array:
-    """Return the sizes of a sample at some distances, in the unit of the mesh."""
-    if camera.GetParallelProjection():
-        return np.full(len(distance), 2 * camera.GetParallelScale() / height)
-    return np.asarray(2 * distance * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
 
 
 def _places(corners: Array, number: Indices, scale: int) -> tuple[Indices, Array, Bools]:
