@@ -164,7 +164,9 @@ def test_two_ranks_are_equal_to_one(tmp_path, files):
     assert "ghost cells before they are contoured" not in before, before
     assert "ghost cells before they are contoured" in after
     start(tmp_path, files, RANKS, ".vtp", ranks=1)
-    for name, limit in (("given", 1e-6), ("one", 1e-6), ("ghosts", 1e-6), ("bare", 1)):
+    # Two ranks may find a point of an edge from either of its ends, one rounding of float32 apart,
+    # which turns the normals of small faces.
+    for name, limit in (("given", 1e-6), ("one", 1e-6), ("ghosts", 1e-5), ("bare", 1)):
         whole = pv.read(tmp_path / f"{name}.vtp")
         tree, count, largest = cKDTree(whole.points), 0, 0.0
         for path in (tmp_path / name).glob("*.vtp"):
