@@ -136,6 +136,7 @@ def test_public_names_are_declared_and_described(name):
             assert "Parameters\n---" in inspect.getdoc(value), public
 
 
+@pytest.mark.slow
 def test_windows_of_qt_find_the_component():
     """Their class looks attributes up by itself, so that it never asks PyVista for components."""
     lines = [

@@ -11,6 +11,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Li
 RUN = runner.Run(2, "", "vizlight: file: no\n", [])
 
 
+@pytest.mark.slow
 def test_hostile_files(tmp_path):
     """Each gives the exit code and the line that are written down."""
     wrong = corpus.faults(tmp_path)

@@ -48,10 +48,12 @@ def run(code, folder):
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_every_module_loads(tmp_path):
     run(LOADED, tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_a_file_is_read_lit_drawn_and_written(tmp_path):
     run(USED, tmp_path)

@@ -78,6 +78,7 @@ def mended(names):
     assert roughness[1] < 0.5 * roughness[0]
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @pytest.mark.parametrize("path", GUIDE, ids=lambda path: path.stem)
 def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkeypatch):

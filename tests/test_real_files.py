@@ -27,6 +27,11 @@ class Real(NamedTuple):
     command: str = "light FILE"
 
 
+def slow(real: Real):
+    """Mark a file whose picture takes seconds."""
+    return pytest.param(real, marks=pytest.mark.slow)
+
+
 #: Endings of a part that PyVista and meshio write.
 DRAWN = (".stl", ".vtp", ".obj", ".wrl", ".glb")
 MESHIO = (".msh", ".off", ".inp", ".mesh", ".vtu", ".bdf")
@@ -37,15 +42,17 @@ FILES = [
     Real("pyvista", "examples/hexbeam.vtk", "light FILE --scalars sample_cell_scalars"),
     Real("pyvista", "examples/uniform.vtk", "light FILE --scalars 'Spatial Cell Data'"),
     Real("pyvista", "examples/rectilinear.vtk"),
-    Real("pyvista", "examples/channels.vti", "light FILE --contour facies --level 2.5"),
-    Real("pyvista", "examples/frog_tissues.vti", "light FILE --contour MetaImage --level 14.5"),
+    slow(Real("pyvista", "examples/channels.vti", "light FILE --contour facies --level 2.5")),
+    slow(
+        Real("pyvista", "examples/frog_tissues.vti", "light FILE --contour MetaImage --level 14.5")
+    ),
     *(
         Real("nibabel", f"tests/data/{name}")
         for name in ("standard.trk", "standard.LPS.trk", "standard.tck")
     ),
     Real("nibabel", "gifti/tests/data/ascii.gii"),
-    Real("data", "Data/carotid.vtk", "streamlines FILE --tangents vectors"),
-    Real("data", "Data/SainteHelens.dem", "relief FILE --light 315,20"),
+    slow(Real("data", "Data/carotid.vtk", "streamlines FILE --tangents vectors")),
+    slow(Real("data", "Data/SainteHelens.dem", "relief FILE --light 315,20")),
     Real("made", "int16.tif", "relief FILE"),
     Real("made", "tiled.tif", "relief FILE"),
     Real("made", "degrees.tif", "relief FILE"),
@@ -55,7 +62,7 @@ FILES = [
     Real("made", "grid.asc", "relief FILE"),
     Real("made", "ascii.gii.gz"),
     Real("made", "lh.pial"),
-    Real("made", "case/case.foam", "streamlines FILE"),
+    slow(Real("made", "case/case.foam", "streamlines FILE")),
     Real("made", "scan.ply"),
     *(Real("made", f"part{suffix}") for suffix in (*DRAWN, *MESHIO)),
     Real("made", "part.stl", "fur FILE --fibres 2000"),

@@ -149,6 +149,7 @@ def test_ctrl_c_reaches_the_child_also_if_it_was_sent_to_the_parent_alone():
     assert signalled(body, "SIGINT")[0] == 5
 
 
+@pytest.mark.slow
 def test_a_child_that_ignores_ctrl_c_is_killed():
     body = """
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -38,9 +38,8 @@ COMMANDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name != "light")) for name in COMMANDS]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COMMANDS)
 def test_nothing_listens_and_nothing_is_open_to_others(name, tmp_path):
     work, temporary, home = (tmp_path / part for part in ("work", "tmp", "home"))
     for folder in (work, temporary, home):

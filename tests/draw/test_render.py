@@ -235,6 +235,7 @@ def test_pictures_stand_in_rows():
         render.make_plotter(shown, rows=0)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not render.probe("osmesa").works, reason="libosmesa6 is not installed")
 def test_egl_and_osmesa_draw_the_same(tmp_path):
     """In two processes, for one process keeps to one library."""

@@ -93,6 +93,7 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
     assert "transmittance" not in bare.point_data
 
 
+@pytest.mark.slow
 def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
     mesh = lines(60)
     # Compiled code may take over between two calls.

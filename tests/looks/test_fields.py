@@ -53,6 +53,7 @@ def test_a_slow_field_is_strokes_that_grow_along_it_over_its_speed():
     assert np.all(np.diff(age) * along > 0)
 
 
+@pytest.mark.slow
 def test_strokes_are_nearer_where_the_field_turns_faster():
     spacings = []
     for turn in (0.05, 0.5):
@@ -97,8 +98,8 @@ def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
 
 
 def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
-    image = pv.ImageData(dimensions=(9, 9, 9))
-    x, y, _ = (np.asarray(image.points) - 4).T
+    image = pv.ImageData(dimensions=(5, 5, 5))
+    x, y, _ = (np.asarray(image.points) - 2).T
     vectors = np.stack([-y, x, 0 * x + 3], axis=1)
     image["m"] = vectors
     assert vizlight.look(image, size=(120, 80)).drawing.keys[0]["question"] == "value"

@@ -187,10 +187,10 @@ def test_strokes_of_a_movie_move_and_the_key_says_how_much_time_it_shows(tmp_pat
 
 def test_options_win_over_the_rule():
     mesh = volume(V=turning, T=edge)
-    assert vizlight.look(mesh, array="T").shown == "isosurface"
-    assert vizlight.look(mesh, "shape").question == "shape"
-    assert vizlight.look(mesh, "flow", spacing=2.0).shown == "streamlines"
-    on = vizlight.look(mesh, contour="T", level=0.5)
+    assert vizlight.look(mesh, array="T", size=SIZE).shown == "isosurface"
+    assert vizlight.look(mesh, "shape", size=SIZE).question == "shape"
+    assert vizlight.look(mesh, "flow", spacing=2.0, size=SIZE).shown == "streamlines"
+    on = vizlight.look(mesh, contour="T", level=0.5, size=SIZE)
     assert (on.question, on.array) == ("direction", "V")
     look = vizlight.look(mesh, view="x", size=SIZE, scene="shape")
     toward = np.subtract(look.view.position, look.view.focal_point)

@@ -230,6 +230,7 @@ def test_a_seed_repeats_and_another_one_does_not():
     assert runs[0].shape != runs[2].shape
 
 
+@pytest.mark.slow
 def test_more_noise_is_read_worse():
     how = {"tangents": "swirl", "exponent": 2}
     bits = [

@@ -114,6 +114,7 @@ def test_arrays_of_the_user_with_names_of_vtk_are_kept(tmp_path, monkeypatch):
         np.testing.assert_array_equal(part["vtkOriginalPointIds"], np.asarray(part.points)[:, 0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "options"),
     [

@@ -122,6 +122,7 @@ def always_killed(_):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="kills by a signal")
 def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     work = pieces.Processes(2)

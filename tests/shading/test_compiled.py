@@ -106,13 +106,13 @@ def test_a_cylinder_of_low_shininess_has_the_light_of_the_oracle(shininess):
         assert ratio <= 1, made
 
 
-@pytest.mark.parametrize("seed", [1001, 1002])
+@pytest.mark.parametrize("seed", [1001, pytest.param(1002, marks=pytest.mark.slow)])
 def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
     pytest.importorskip("numba")
     form = differential.frame(np.random.default_rng(seed))
     random = np.random.default_rng(seed)
     with _compiled.setting("1"):
-        for _ in range(40):
+        for _ in range(20):
             made = differential.case(form, random)
             ratio, _ = differential.compare(made, differential.truth(made), differential.by_kernel)
             assert ratio <= 1
@@ -177,6 +177,7 @@ def worst_of(cases, light):
     return worst
 
 
+@pytest.mark.slow
 def test_a_loop_with_a_table_is_made_of_vector_instructions(fast, random):
     """It is where the compiler knows that tables and results do not overlap."""
     points, tangents, _ = cloud(random, 64)

@@ -3,6 +3,7 @@
 import time
 
 import numpy as np
+import pytest
 import pyvista as pv
 
 import vizlight
@@ -29,6 +30,7 @@ def grid():
     return field
 
 
+@pytest.mark.slow
 def test_the_check_is_no_cost_of_the_light(monkeypatch):
     for module, name in ((oracle, "light"), (rays, "relief_ratio")):
         monkeypatch.setattr(module, name, slowed(getattr(module, name)))

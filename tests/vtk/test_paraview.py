@@ -91,6 +91,7 @@ def start(folder, files, text, suffix, **options):
     return real_paraview.run(folder, HEAD + text, *arguments, path=files["start"], **options)
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 @real_paraview.needed
 def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):

@@ -54,8 +54,7 @@ def truth(x, y, z, j, i, count=512):
 
 
 @FAST
-@pytest.mark.parametrize("angle", [0.0, 0.3, 0.8, 1.3])
-@pytest.mark.parametrize("turn", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize(("angle", "turn"), [(0.0, 0.0), (0.3, 2.0), (0.8, 0.5), (1.3, 2.0)])
 def test_an_endless_slope(angle, turn, fast):
     x, y = np.linspace(0, 400, 41), np.linspace(0, 300, 21)
     z = np.tan(angle) * (x * np.cos(turn) + y[:, None] * np.sin(turn))
@@ -99,7 +98,7 @@ def test_a_bowl():
 
 
 @pytest.mark.parametrize("slope", [0.2, 1.0])
-@pytest.mark.parametrize("error", [0.02, 0.0015])
+@pytest.mark.parametrize("error", [0.02, pytest.param(0.0015, marks=pytest.mark.slow)])
 def test_the_error_holds_on_rough_ground(slope, error):
     z = rough(96, slope, seed=int(10 * slope))
     x = np.arange(96.0)
@@ -127,7 +126,7 @@ def city(count):
 
 
 @FAST
-@pytest.mark.parametrize("field", [posts, city])
+@pytest.mark.parametrize("field", [posts, pytest.param(city, marks=pytest.mark.slow)])
 def test_what_is_asked_is_kept(field, fast):
     """Where horizons are narrow, by both codes."""
     z, x = field(48), np.arange(48.0)
@@ -138,7 +137,9 @@ def test_what_is_asked_is_kept(field, fast):
     assert np.quantile(missed, 0.9) <= 0.01
 
 
-@pytest.mark.parametrize(("seed", "fast"), [(1, "0"), (1, "1"), (2, "1")])
+@pytest.mark.parametrize(
+    ("seed", "fast"), [pytest.param(1, "0", marks=pytest.mark.slow), (1, "1"), (2, "1")]
+)
 def test_very_uneven_cells(seed, fast):
     """From the foot of an endless wall of elevation b, (1 + cos b) / 2 is seen."""
     random = np.random.default_rng(seed)
@@ -150,6 +151,7 @@ def test_very_uneven_cells(seed, fast):
     assert np.quantile(np.abs(found.share[:, :20] - wanted), 0.95) <= max(found.error, 0.003)
 
 
+@pytest.mark.slow
 def test_the_way_depends_on_the_field_and_the_error_alone(monkeypatch):
     """Not on what ran before, nor on the number of threads."""
     monkeypatch.delenv("VIZLIGHT_FAST")
@@ -163,6 +165,7 @@ def test_the_way_depends_on_the_field_and_the_error_alone(monkeypatch):
             assert np.array_equal(sky(x, x, z).share, first.share)
 
 
+@pytest.mark.slow
 def test_steps_of_numpy_give_way_to_every_cell(monkeypatch):
     """Where they miss more than is asked."""
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
