@@ -25,7 +25,8 @@ for name in ("fcntl", "grp", "pwd", "resource", "termios"):
 LOADED = """
 import vizlight
 for found in pkgutil.walk_packages(vizlight.__path__, "vizlight."):
-    if not found.name.endswith("__main__") and ".vtk.paraview." not in found.name:
+    left_out = (".vtk.paraview.", "__main__", "vizlight.xarray")
+    if not any(name in found.name for name in left_out):
         importlib.import_module(found.name)
 """
 USED = """

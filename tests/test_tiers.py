@@ -37,12 +37,12 @@ TIERS = [
     {"draw", "pieces"},
     {"observers"},
     {"looks"},
-    {"accessor", "cartography", "demo", "doctor", "presets"},
+    {"accessor", "cartography", "demo", "doctor", "presets", "xarray"},
     {"cli"},
     {"__main__"},
 ]
 #: Names that the package gives by itself are those of all tiers: only what stands last uses them.
-USES_ALL = {"accessor", "cli", "demo", "doctor", "looks"}
+USES_ALL = {"accessor", "cli", "demo", "doctor", "looks", "xarray"}
 TIER = {part: i for i, tier in enumerate(TIERS) for part in tier}
 
 

@@ -201,6 +201,8 @@ def read_parts(
     *,
     time: float | str | None = None,
     overlay: str | Path | Sequence[str | Path] = (),
+    at: Mapping[str, object] | None = None,
+    nodata: float | None = None,
 ) -> list[pv.DataSet]:
     """Read a file of blocks as one mesh for each dimension of their cells, the highest first.
 
@@ -208,7 +210,7 @@ def read_parts(
 
     Parameters
     ----------
-    path, time, overlay
+    path, time, overlay, at, nodata
         As for :func:`vizlight.read`.
 
     Returns
@@ -221,7 +223,7 @@ def read_parts(
     FileError
         As for :func:`vizlight.read`.
     """
-    return _read(path, time, overlay, whole=False)
+    return _read(path, time, overlay, at, nodata, whole=False)
 
 
 def _read(

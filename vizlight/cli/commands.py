@@ -332,7 +332,7 @@ def _light_pieces(
     # The key of a light belongs to what is shown of the whole.
     wishes = replace(wishes, picture={**wishes.picture, "key": False})
     for part, names in (
-        (target, "time times overlay clip threshold slice warp"),
+        (target, "time times overlay at nodata clip threshold slice warp"),
         (color, "scalars array"),
         (out, "report paraview"),
     ):

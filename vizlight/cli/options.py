@@ -56,11 +56,15 @@ class Part:
     Parameters
     ----------
     time
-        Time of the step that is taken, or its index; first or last, the default.
+        Time of the step, or its index; first, or last, the default.
     times
         Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
     overlay
         File with values for the points of a surface of a brain.
+    at
+        Place NAME=VALUE along another axis of a grid: number=3.
+    nodata
+        Value of a grid that stands for none; nan for no such value.
     clip
         Plane NORMAL:OFFSET beyond which is cut away: 0,0,1:5 or z:5.
     threshold
@@ -74,6 +78,8 @@ class Part:
     time: Text | None = None
     times: str | None = None
     overlay: Overlays | None = None
+    at: Texts | None = None
+    nodata: float | None = None
     clip: Texts | None = None
     threshold: Texts | None = None
     contour: str | None = None
@@ -181,9 +187,9 @@ class Eye:
     Parameters
     ----------
     view
-        Direction x,y,z to the eye, or a JSON file of a camera. Default: what suits the data.
+        Direction x,y,z to the eye, or a JSON file of a camera. Default: by the data.
     up
-        Direction x,y,z that is up in the picture, or x, y or z. Default: z, or y seen along z.
+        Direction x,y,z that is up, or x, y or z. Default: z, or y seen along z.
     parallel
         Parallel projection.
     zoom
@@ -357,6 +363,16 @@ def interval(name: str, text: str) -> tuple[str, float, float]:
             return array, low, high
     expected = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
     raise ValueError(message(f"--{name}", expected, repr(text)))
+
+
+def place(name: str, text: str) -> tuple[str, float | str]:
+    """Return the name of an axis and a value along it."""
+    axis, _, value = text.partition("=")
+    if not (axis and value):
+        raise ValueError(message(f"--{name}", "the name of an axis, = and a value", repr(text)))
+    number = numbers(value, (1,))
+    # A whole number can be an index.
+    return axis, (int(number[0]) if number[0].is_integer() else number[0]) if number else value
 
 
 def fraction(

@@ -123,7 +123,12 @@ def _check_lights(lights: Lights) -> None:
 
 def _part_of(part: Part) -> Keywords:
     """Return what is taken of the data, its texts read."""
-    taken = known(time=part.time, overlay=part.overlay, contour=part.contour, level=part.level)
+    taken = known(
+        time=part.time, overlay=part.overlay, nodata=part.nodata, contour=part.contour,
+        level=part.level,
+    )  # fmt: skip
+    if part.at:
+        taken["at"] = dict(options.place("at", text) for text in part.at)
     if isinstance(part, Shape):
         taken |= known(warp=part.warp, exaggeration=part.exaggeration, globe=part.globe)
     if part.threshold:

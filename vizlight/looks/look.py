@@ -340,7 +340,8 @@ def look(
     style : {"paper", "dark"}
         Background of the picture: white or nearly black.
     **options
-        Further options. What is taken of the data: ``time``, ``overlay``, ``contour``, ``level``,
+        Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
+        ``nodata``, as by :func:`vizlight.read`. What is taken of the data: ``contour``, ``level``,
         ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
         ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
         as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
@@ -451,12 +452,10 @@ def _unread(look: Look, names: Sequence[str]) -> str:
 
 def read_steps(data: object, wishes: Wishes) -> list[Step]:
     """Return the steps that read data: one for each dimension of the cells of a file of blocks."""
-    part = wishes.part
+    keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
     if cf_grids.is_grid(data):
-        keywords = {"time": part["time"]} if part.get("time") is not None else {}
         return [Step("data", "vizlight.read", Step("ds", "-", data), **keywords)]
     if isinstance(data, str | Path):
-        keywords = {name: part[name] for name in ("time", "overlay") if name in part}
         every = Step("parts", "files.read_parts", data, **keywords)
         meshes = every.run()
         if len(meshes) > 1:
@@ -471,6 +470,9 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
     if not isinstance(mesh, pv.DataSet):
         expected = "a PyVista mesh, a path or an xarray object"
         raise TypeError(message("data", expected, _check.describe(data)))
+    for name in keywords:
+        expected = "no such option beside a mesh, which is read already"
+        raise ValueError(message(name, expected, _check.describe(wishes.part[name])))
     return [Step("mesh", "-", mesh)]
 
 

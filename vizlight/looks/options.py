@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
-#: Options of what is taken of the data, of the camera, and of the picture.
+#: Options of how data are read, of what is taken of them, of the camera, and of the picture.
+READ = ("time", "overlay", "at", "nodata")
 PART = (
-    "time", "overlay", "clip", "threshold", "contour", "level", "slice", "warp", "exaggeration",
-    "globe",
+    *READ, "clip", "threshold", "contour", "level", "slice", "warp", "exaggeration", "globe",
 )  # fmt: skip
 EYE = ("up", "parallel", "zoom")
 PICTURE = (

@@ -100,8 +100,8 @@ class Wishes:
     style : {"paper", "dark"}
         Background.
     part : mapping
-        What of the data is taken: time, overlay, clip, threshold, contour, level, slice, warp,
-        exaggeration.
+        What of the data is taken: time, overlay, at, nodata, clip, threshold, contour, level,
+        slice, warp, exaggeration.
     light : mapping
         Options of the filter that lights.
     eye : mapping

@@ -571,9 +571,8 @@ class _Reader:
             if str(value) in texts:
                 result[name] = texts.index(str(value))
             else:
-                result[name] = series.chosen(
-                    [tick if isinstance(tick, int | float) else np.nan for tick in ticks], value
-                )
+                found = [tick if isinstance(tick, int | float) else np.nan for tick in ticks]
+                result[name] = series.chosen(found, value, f"at, along {name}")
             self.said.notes.append(f"{name} {texts[result[name]]}")
         return result
 

@@ -78,6 +78,11 @@ def read(
     suffix = path.suffix.lower()
     if suffix in cf_grids.SUFFIXES:
         return cf_grids.read(path, time, at, nodata)
+    if at:
+        raise ValueError(f"at: expected a netCDF file beside it, got a {suffix} file; leave it out")
+    if nodata is not None and suffix not in georeference.SUFFIXES:
+        expected = "expected a netCDF file or a raster beside it"
+        raise ValueError(f"nodata: {expected}, got a {suffix} file; leave it out")
     if suffix in _BY_SUFFIX:
         return _BY_SUFFIX[suffix](path)
     if path.name.lower().endswith((".tt", ".tt.gz")):

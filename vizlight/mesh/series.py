@@ -173,8 +173,8 @@ class NoStepError(ValueError):
     """A file has no step of the time that was asked for."""
 
 
-def chosen(times: Sequence[float], time: object) -> int:
-    """Return the index of a step.
+def chosen(times: Sequence[float], time: object, name: str = "time") -> int:
+    """Return the index of a step, or of a place along another axis.
 
     Parameters
     ----------
@@ -183,6 +183,8 @@ def chosen(times: Sequence[float], time: object) -> int:
     time : float, int, str, optional
         A time of a step, ``"last"``, ``"first"`` or, if it is an integer and no time of a step,
         the index of a step, from the end if negative. Default: the last.
+    name : str
+        What an error names.
 
     Raises
     ------
@@ -206,9 +208,10 @@ def chosen(times: Sequence[float], time: object) -> int:
         return int(np.nanargmin(off))
     if number == np.floor(number) and -count <= number < count:
         return int(number) % count
-    expected = f"a time of a step, {listed(times)}, an index from 0 to {count - 1}, or last"
+    noun = "a time of a step" if name == "time" else "a value"
+    expected = f"{noun}, {listed(times)}, an index from 0 to {count - 1}, or last"
     got = f"{number:g}" if np.isfinite(number) else repr(time)
-    raise NoStepError(_check.message("time", expected, got))
+    raise NoStepError(_check.message(name, expected, got))
 
 
 def listed(times: Sequence[float]) -> str:

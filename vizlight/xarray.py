@@ -1,0 +1,39 @@
+"""The accessor ``ds.vizlight`` of data of xarray, which ``import vizlight.xarray`` adds."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING
+
+import xarray
+
+import vizlight
+
+if TYPE_CHECKING:
+    import pyvista as pv
+
+    from vizlight._types import Foreign
+
+__all__ = ["GridAccessor"]
+
+
+@xarray.register_dataset_accessor("vizlight")
+@xarray.register_dataarray_accessor("vizlight")
+class GridAccessor:
+    """Methods of datasets and arrays of xarray: what they hold as a mesh, and its picture.
+
+    Parameters
+    ----------
+    data : xarray.Dataset or xarray.DataArray
+    """
+
+    def __init__(self, data: Foreign) -> None:
+        self._data = data
+
+    @functools.wraps(vizlight.look)
+    def look(self, *args: Foreign, **options: Foreign) -> vizlight.Look:  # noqa: D102
+        return vizlight.look(self._data, *args, **options)
+
+    @functools.wraps(vizlight.read)
+    def read(self, **options: Foreign) -> pv.DataSet:  # noqa: D102
+        return vizlight.read(self._data, **options)
