@@ -215,7 +215,7 @@ class Kernel(Generic[P, R]):
         self.apart = apart
         self.missed = 0.0
         self._compiled: Callable[P, R] | None = None
-        self._proven = False
+        self._proven = self._on_disk = False
         self.__doc__ = function.__doc__
 
     def pays(self, saved: float, *, counted: bool = False) -> bool:
@@ -257,12 +257,16 @@ class Kernel(Generic[P, R]):
         """Return the seconds to read or to compile the function, as far as this process pays."""
         if self._proven:
             return 0.0
+        # Looked for once, since a folder takes longer to read than a small mesh to light.
+        if self._on_disk:
+            return READ
         folder = self._folder()
         if folder is None:
             return self.seconds
         # numba names the files of its index after the function and the line on which it begins.
         name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
-        return READ if any(folder.rglob(f"*{name}")) else self.seconds * SHARED
+        self._on_disk = any(folder.rglob(f"*{name}"))
+        return READ if self._on_disk else self.seconds * SHARED
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from typing import TYPE_CHECKING, NamedTuple, cast
 
@@ -31,6 +32,9 @@ class _Kept(NamedTuple):
 
 
 _KEPT: dict[tuple[str, ...], _Kept] = {}
+#: Where more things than this are kept, those of deleted points are looked for after so many calls.
+_SWEEP = 16
+_CALLS = itertools.count()
 _LOCK = threading.Lock()
 
 
@@ -63,8 +67,9 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     points = vtkWeakReference()
     points.Set((mesh if owner is None else owner).GetPoints())
     with _LOCK:
-        for old in [old for old, kept in _KEPT.items() if kept.points.Get() is None]:
-            del _KEPT[old]
+        if len(_KEPT) <= _SWEEP or next(_CALLS) % _SWEEP == 0:
+            for old in [old for old, kept in _KEPT.items() if kept.points.Get() is None]:
+                del _KEPT[old]
         while len(_KEPT) >= MOST:
             del _KEPT[next(iter(_KEPT))]
         _KEPT[key] = _Kept(points, value)
