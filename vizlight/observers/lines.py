@@ -269,17 +269,20 @@ def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyph
                 np.asarray(rows[:], dtype=np.float64)
                 for rows in (part.inputs.points, part.inputs.tangents)
             )
-            ways = unit_rows(vectors)
-            mean, way = means(points, part.glyph), means(ways, part.glyph)
-            along = dots(points - mean[part.glyph], ways)
+            glyph = np.full(len(points), -1)
+            glyph[part.cells] = part.glyph[:, np.newaxis]
+            used = glyph >= 0
+            own, ways = glyph[used], unit_rows(vectors[used])
+            mean, way = means(points[used], own), means(ways, own)
+            along = dots(points[used] - mean[own], ways)
             low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
-            np.minimum.at(low, part.glyph, along)
-            np.maximum.at(high, part.glyph, along)
+            np.minimum.at(low, own, along)
+            np.maximum.at(high, own, along)
             middle = mean + ((low + high) / 2)[:, np.newaxis] * way
             ends.append((middle, middle + ((high - low) / 2)[:, np.newaxis] * way))
-            turned = pv.vtk_points(2 * middle[part.glyph] - points)
+            turned = pv.vtk_points(2 * middle[glyph] - points)
             cells.append(part.drawn._replace(points=turned))
-            own = count + part.glyph[part.cells[:, 0]]
+            own = count + part.glyph
             count += len(mean)
         numbers.append(own)
     if not cells:
@@ -289,9 +292,9 @@ def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyph
         in_pixels(camera, pixels.size, np.concatenate(each)) for each in zip(*ends, strict=True)
     )
     way = np.nan_to_num(end - middle)
-    shown = _numbered(pixels, numbers), _numbered(visible(cells, camera, pixels.size), glyphs)
+    ways = _numbered(pixels, numbers), _numbered(visible(cells, camera, pixels.size), glyphs)
     reach = np.linalg.norm(way, axis=1)
-    return Glyphs(*shown, np.nan_to_num(middle), unit_rows(way), reach)
+    return Glyphs(*ways, np.nan_to_num(middle), unit_rows(way), reach)
 
 
 def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:

@@ -219,8 +219,8 @@ class Part:
     ahead : ndarray, shape (C,), or None
         1 for segments that run in the sense of the data, -1 against it, 0 without; None where the
         data have no sense.
-    glyph : ndarray of int, shape (N,), or None
-        Numbers of the glyphs that points belong to; None where they are no glyphs.
+    glyph : ndarray of int, shape (C,), or None
+        Numbers of the glyphs that cells belong to; None where they are no glyphs.
     by_axes : bool
         Whether the hues of lines are those of the axes along which they run.
     """
@@ -298,7 +298,7 @@ def part_on(
     ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells, inputs, options)
     return Part(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
-        glyph=_glyphs(mesh) if is_glyphs else None, **more,
+        glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
     )  # fmt: skip
 
 
@@ -309,13 +309,13 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
     return options
 
 
-def _glyphs(mesh: pv.DataSet) -> Indices:
-    """Return the numbers of the glyphs that points belong to, all of as many points.
+def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
+    """Return the numbers of the glyphs that cells belong to, all of as many cells.
 
-    The vectors of neighbours may be alike, so that as many points as all runs of equal vectors
-    have in common are taken for one.
+    The vectors of neighbours may be alike, so that as many cells as all runs of equal vectors have
+    in common are taken for one.
     """
-    vectors = np.asarray(mesh.point_data[GLYPH])
+    vectors = np.asarray(mesh.point_data[GLYPH])[cells[:, 0]]
     starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
     size = np.gcd.reduce(np.diff([0, *starts, len(vectors)]))
     return np.asarray(np.arange(len(vectors)) // size)
