@@ -258,43 +258,49 @@ class Glyphs(NamedTuple):
 
 def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyphs | None:
     """Return the glyphs of a picture, None without glyphs; as for :func:`segments_of`."""
-    ends: list[tuple[Array, Array]] = []
     cells: list[Cells] = []
     numbers: list[Indices] = []
-    count = 0
+    middles, ends = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for part in parts:
-        own = np.zeros(0, dtype=np.intp)
-        if part.glyph is not None and part.inputs.tangents is not None:
-            points, vectors = (
-                np.asarray(rows[:], dtype=np.float64)
-                for rows in (part.inputs.points, part.inputs.tangents)
-            )
-            glyph = np.full(len(points), -1)
-            glyph[part.cells] = part.glyph[:, np.newaxis]
-            used = glyph >= 0
-            own, ways = glyph[used], unit_rows(vectors[used])
-            mean, way = means(points[used], own), means(ways, own)
-            along = dots(points[used] - mean[own], ways)
-            low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
-            np.minimum.at(low, own, along)
-            np.maximum.at(high, own, along)
-            middle = mean + ((low + high) / 2)[:, np.newaxis] * way
-            ends.append((middle, middle + ((high - low) / 2)[:, np.newaxis] * way))
-            turned = pv.vtk_points(2 * middle[glyph] - points)
-            cells.append(part.drawn._replace(points=turned))
-            own = count + part.glyph
-            count += len(mean)
-        numbers.append(own)
+        number = np.zeros(0, dtype=np.intp)
+        if part.glyph is not None:
+            number = part.glyph + sum(map(len, middles))
+            turned, middle, end = _turned(part)
+            cells.append(turned)
+            middles.append(middle)
+            ends.append(end)
+        numbers.append(number)
     if not cells:
         return None
-    glyphs = [own for own in numbers if len(own)]
-    middle, end = (
-        in_pixels(camera, pixels.size, np.concatenate(each)) for each in zip(*ends, strict=True)
-    )
+    shown = _numbered(pixels, numbers)
+    round_about = visible(cells, camera, pixels.size)
+    turned_shown = _numbered(round_about, [number for number in numbers if len(number)])
+    middle, end = (in_pixels(camera, pixels.size, np.concatenate(each)) for each in (middles, ends))
     way = np.nan_to_num(end - middle)
-    ways = _numbered(pixels, numbers), _numbered(visible(cells, camera, pixels.size), glyphs)
     reach = np.linalg.norm(way, axis=1)
-    return Glyphs(*ways, np.nan_to_num(middle), unit_rows(way), reach)
+    return Glyphs(shown, turned_shown, np.nan_to_num(middle), unit_rows(way), reach)
+
+
+def _turned(part: Part) -> tuple[Cells, Array, Array]:
+    """Return glyphs turned round about their middles, the middles, and the ends ahead of them."""
+    assert part.glyph is not None
+    assert part.inputs.tangents is not None
+    points, vectors = (
+        np.asarray(rows[:], dtype=np.float64) for rows in (part.inputs.points, part.inputs.tangents)
+    )
+    glyph = np.full(len(points), -1)
+    glyph[part.cells] = part.glyph[:, np.newaxis]
+    used = glyph >= 0
+    own, ways = glyph[used], unit_rows(vectors[used])
+    mean, way = means(points[used], own), means(ways, own)
+    along = dots(points[used] - mean[own], ways)
+    low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
+    np.minimum.at(low, own, along)
+    np.maximum.at(high, own, along)
+    middle = mean + ((low + high) / 2)[:, np.newaxis] * way
+    end = middle + ((high - low) / 2)[:, np.newaxis] * way
+    turned = pv.vtk_points(2 * middle[glyph] - points)
+    return part.drawn._replace(points=turned), middle, end
 
 
 def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:

@@ -310,15 +310,17 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
 
 
 def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
-    """Return the numbers of the glyphs that cells belong to, all of as many cells.
+    """Return the numbers of the glyphs that cells belong to: runs of equal vectors.
 
-    The vectors of neighbours may be alike, so that as many cells as all runs of equal vectors have
-    in common are taken for one.
+    A run is of several glyphs alike where it is some times as long as the shortest, and so are all.
     """
     vectors = np.asarray(mesh.point_data[GLYPH])[cells[:, 0]]
-    starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
-    size = np.gcd.reduce(np.diff([0, *starts, len(vectors)]))
-    return np.asarray(np.arange(len(vectors)) // size)
+    first = np.insert((vectors[1:] != vectors[:-1]).any(axis=1), 0, True)
+    lengths = np.diff([*np.flatnonzero(first), len(first)])
+    size = lengths.min()
+    if (lengths % size).any():
+        return np.asarray(np.cumsum(first) - 1)
+    return np.asarray(np.arange(len(first)) // size)
 
 
 def _ahead(
