@@ -260,7 +260,8 @@ def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyph
     """Return the glyphs of a picture, None without glyphs; as for :func:`segments_of`."""
     cells: list[Cells] = []
     numbers: list[Indices] = []
-    middles, ends = [np.zeros((0, 3))], [np.zeros((0, 3))]
+    middles: list[Array] = []
+    ends: list[Array] = []
     for part in parts:
         number = np.zeros(0, dtype=np.intp)
         if part.glyph is not None:

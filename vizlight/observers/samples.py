@@ -310,17 +310,18 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
 
 
 def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
-    """Return the numbers of the glyphs that cells belong to: runs of equal vectors.
+    """Return the numbers of the glyphs that cells belong to.
 
-    A run is of several glyphs alike where it is some times as long as the shortest, and so are all.
+    VTK writes the points of one glyph after those of another, as many of each. In another mesh,
+    such as one whose sharp edges are split, glyphs of equal vectors count as one.
     """
-    vectors = np.asarray(mesh.point_data[GLYPH])[cells[:, 0]]
-    first = np.insert((vectors[1:] != vectors[:-1]).any(axis=1), 0, True)
-    lengths = np.diff([*np.flatnonzero(first), len(first)])
-    size = lengths.min()
-    if (lengths % size).any():
-        return np.asarray(np.cumsum(first) - 1)
-    return np.asarray(np.arange(len(first)) // size)
+    vectors = np.asarray(mesh.point_data[GLYPH])
+    starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
+    # Neighbours may have equal vectors.
+    number = np.arange(len(vectors)) // np.diff([0, *starts, len(vectors)]).min()
+    if (number[cells] != number[cells[:, :1]]).any():
+        number = np.unique(vectors, axis=0, return_inverse=True)[1].ravel()
+    return np.asarray(np.unique(number[cells[:, 0]], return_inverse=True)[1])
 
 
 def _ahead(
