@@ -265,7 +265,7 @@ def test_glyphs_that_point_the_other_way_are_told_wrongly():
     # Glyphs of one length tell no speed, but by their colour.
     assert abs(found.speed.spearman) < 0.2
     colored = drawn_plain(glyphs, scalars="speed", cmap="gray", clim=(-0.1, 1.5), lighting=False)
-    assert read(glyphs, *colored).speed.spearman > 0.9
+    assert read(glyphs, *colored).speed.spearman > 0.8
 
 
 def test_glyphs_of_another_field_are_chance():
