@@ -160,12 +160,12 @@ def legibility(
 
     *direction*: hues of a disc that faces the eye and has tangents in all directions; tangents
     that run toward the eye are left out. Lines, glyphs and textures tell it by their grain: across
-    it the colours of a window of 8 arc minutes change most, of glyphs those of the whole. *slope*: lightness ranks steepness. *heading*: a key of
-    all directions of lines, in one share of its light for all of the picture, since smoothed edges
-    and halos darken lines. *shape*: a ball in the same light; where there are tangents, which are
-    unknown, 72 of them for each normal. *value*: colours of the bar, as they are or in some light,
-    whichever the whole picture fits. *speed*: lightness, chroma, or the lengths of glyphs rank the
-    lengths of vectors.
+    it the colours of a window of 8 arc minutes change most, of glyphs those of the whole. *slope*:
+    lightness ranks steepness. *heading*: a key of all directions of lines, in one share of its
+    light for all of the picture, since smoothed edges and halos darken lines. *shape*: a ball in
+    the same light; where there are tangents, which are unknown, 72 of them for each normal.
+    *value*: colours of the bar, as they are or in some light, whichever the whole picture fits.
+    *speed*: lightness, chroma, or the lengths of glyphs rank the lengths of vectors.
     *scale*: the finest structure at which half of the answers are right beyond chance. *order*: at
     crossings the borders of the nearer line, darker ones inside it too, or gaps beside it, differ
     by 3 deviations of the noise (Rose 1948), on both sides and by more than those of the other;

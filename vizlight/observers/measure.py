@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -116,7 +116,7 @@ class Places:
     grain: Array
     course: Array
     thing: Indices
-    length: Array | None
+    length: Array | None = None
 
     @property
     def by_form(self) -> bool:
@@ -203,41 +203,21 @@ def measure(
     number[pixels.row, pixels.column] = np.arange(len(pixels.row))
     lines, glyphs = segments_of(parts, pixels, camera), glyphs_of(parts, pixels, camera)
     seen = eye.look(picture, number >= 0)
-    thing = _things(pixels, parts, lines, glyphs, eye)
-    alone = thing != NO_THING
-    where, group = (pixels.row[alone], pixels.column[alone]), _numbers(thing[alone])
-    things = seen.pooled(*where, group)
-    tensor = grain_of(seen, eye, np.random.default_rng(seed))
-    tensor[where] = means(tensor[where], group)[group]
-    random = np.random.default_rng(seed)
-    chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
+    thing = _things(pixels, parts, lines, glyphs, eye)
+    random = np.random.default_rng(seed)
+    grain = grain_of(seen, eye, np.random.default_rng(seed))
+    has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
+    chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
     for i, part in enumerate(parts):
         ids = chosen[pixels.part[chosen] == i]
         if len(ids):
-            ids = number[_between(pixels, number, i, ids, eye)]
-            own = pixels.take(ids)
-            share = eye.share(part.width) if part.kind == "point" else None
-            colors = readers.colors_at(things, own.row, own.column, random, noise, share)
-            beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
-            here = sample(part, own, camera)
-            right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
-            apart = (beside[0] != ids) & (beside[1] != ids)
-            unit = footprint(camera, here.points, height)
-            course = np.zeros(len(ids))
-            if here.tangents is not None and here.has_one_tangent:
-                way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
-                course = np.degrees(np.arctan2(-way[:, 1], way[:, 0]))
-            length = None
+            places = has.places(part, number[_between(pixels, number, i, ids, eye)])
             if glyphs is not None and part.glyph is not None:
-                length = lengths[glyphs.number[own.row, own.column]]
-            grain = along_grain(tensor[own.row, own.column])
-            groups.append(
-                Places(
-                    part, here, right, up, apart, colors, unit, grain, course, thing[ids], length
-                )
-            )
+                own = places.thing - (len(parts) << 40)
+                places = dataclasses.replace(places, length=lengths[own])
+            groups.append(places)
     reader = _Reader(groups, seed, eye, list(notes))
     figures = reader.figures()
     answers = ahead[np.isfinite(ahead)]
@@ -259,6 +239,52 @@ def measure(
         seed=seed,
         notes=tuple(reader.notes),
     )
+
+
+class _Seen(NamedTuple):
+    """What a reader has of a picture."""
+
+    pixels: Pixels
+    number: Indices
+    camera: pv.Camera
+    eye: Eye
+    thing: Indices
+    things: SeenPicture
+    tensor: Array
+    random: np.random.Generator
+
+    def places(self, part: Part, ids: Indices) -> Places:
+        """Return the places of some pixels, all of which show one mesh."""
+        pixels, camera = self.pixels, self.camera
+        own = pixels.take(ids)
+        share = self.eye.share(part.width) if part.kind == "point" else None
+        colors = readers.colors_at(
+            self.things, own.row, own.column, self.random, self.eye.noise, share
+        )
+        beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
+        here = sample(part, own, camera)
+        right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
+        course = np.zeros(len(ids))
+        if here.tangents is not None and here.has_one_tangent:
+            way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
+            course = np.degrees(np.arctan2(-way[:, 1], way[:, 0]))
+        return Places(
+            part=part, here=here, right=right, up=up, colors=colors, course=course,
+            apart=(beside[0] != ids) & (beside[1] != ids), thing=self.thing[ids],
+            unit=footprint(camera, here.points, pixels.size[1]),
+            grain=along_grain(self.tensor[own.row, own.column]),
+        )  # fmt: skip
+
+
+def _as_things(
+    seen: SeenPicture, grain: Array, pixels: Pixels, thing: Indices
+) -> tuple[SeenPicture, Array]:
+    """Return the picture and its grain with one colour and one grain for all of each thing."""
+    whole = thing != NO_THING
+    row, column = pixels.row[whole], pixels.column[whole]
+    group = np.unique(thing[whole], return_inverse=True)[1]
+    grain[row, column] = means(grain[row, column], group)[group]
+    return seen.pooled(row, column, group), grain
 
 
 def toward(camera: pv.Camera) -> Vector:
@@ -639,11 +665,6 @@ def _angles(found: list[Reading], common: Keywords) -> Keywords:
         return {"within_10": 1 / 9, "median": TURN / 2}
     error = _errors(found)
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
-
-
-def _numbers(names: Indices) -> Indices:
-    """Return for each name the number that it has among all of them."""
-    return np.asarray(np.unique(names, return_inverse=True)[1])
 
 
 def _errors(found: list[Reading]) -> Array:

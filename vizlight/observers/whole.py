@@ -259,7 +259,7 @@ def _glyphs_of(mapper: Foreign) -> pv.PolyData | None:
 
 
 def _marks(actor: vtkActor, mesh: pv.DataSet) -> str | None:
-    """Return the name of the vectors along which a texture on a mesh, such as VTK's LIC, runs."""
+    """Return the name of the vectors along which marks run: glyphs, VTK's LIC, other textures."""
     mapper = actor.GetMapper()
     if "LIC" in mapper.GetClassName():
         name = mapper.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
