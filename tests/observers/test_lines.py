@@ -252,6 +252,12 @@ def test_glyphs_tell_course_and_speed_and_sense_by_their_heads(geom, told):
     assert found.sense.wrongly == 0
 
 
+def test_a_wide_glyph_is_read_as_a_whole():
+    bars = arrows(sheet(3), pv.Cylinder(radius=0.3), factor=0.8)
+    found = read(bars, *drawn_plain(bars, lighting=False)).direction
+    assert found.readable > 0.95
+
+
 def test_glyphs_that_point_the_other_way_are_told_wrongly():
     mesh, back = sheet(9), sheet(9)
     back["swirl"] *= -1

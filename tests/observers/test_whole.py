@@ -275,7 +275,7 @@ def mapped(plotter, *, scaled=False):
     mapper.SetScaleFactor(0.22)
     if scaled:
         mapper.SetScaleModeToScaleByMagnitude()
-        mapper.SetScaleArray("swirl")
+        mapper.SetScaleArray("speed")
     mapper.ScalarVisibilityOff()
     actor = vtkActor()
     actor.SetMapper(mapper)
@@ -301,16 +301,21 @@ def test_glyphs_are_read_alike_whoever_draws_them():
     for found in (mapper, lit):
         assert found.direction.median == pytest.approx(plain.direction.median, abs=0.5)
         assert found.sense.told == pytest.approx(plain.sense.told, abs=0.1)
-    assert read_marks(lambda p: mapped(p, scaled=True)).speed.spearman > 0.9
+    scaled = read_marks(lambda p: mapped(p, scaled=True))
+    sized = arrows(sheet(9), scale="speed")
+    assert scaled.speed.spearman > 0.9
+    assert scaled.pixels == read_marks(lambda p: p.add_mesh(sized, color="black")).pixels
 
 
-def test_a_moved_actor_of_glyphs_is_read_where_it_is():
+@pytest.mark.parametrize("lit", [False, True])
+def test_a_moved_actor_of_glyphs_is_read_where_it_is(lit):
     """Glyphs that are turned by 70 degrees before they become data, and back by their actor."""
     glyphs = arrows(sheet(9))
     turned = glyphs.rotate_z(70, inplace=False, transform_all_input_vectors=True)
 
     def add(plotter):
-        plotter.add_mesh(turned, color="black").rotate_z(-70)
+        how = {"scene": vizlight.Scene()} if lit else {}
+        (plotter.vizlight if lit else plotter).add_mesh(turned, color="black", **how).rotate_z(-70)
 
     found = read_marks(add)
     assert found.direction.median < 3
