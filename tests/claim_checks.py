@@ -18,6 +18,7 @@ from vizlight.geometry.nspace import parametric
 from vizlight.geometry.relief import height_field
 from vizlight.mesh import georeference
 from vizlight.model import formulas, highlights
+from vizlight.observers.eye import Eye
 from vizlight.vtk.corners import surface_normals
 
 EPS = float(np.finfo(float).eps)
@@ -104,6 +105,40 @@ def axes_of_an_eye(random):
             for other in rows
         ]
     return found
+
+
+def threshold_of_a_line(width):
+    """Return the contrast at which a line of a degree is just seen, its width in arc minutes.
+
+    The model of Watson and Ahumada (J. Vision 5, 2005) with its contrast sensitivity, aperture and
+    Minkowski sum, without the oblique effect.
+    """
+    size, degree = 512, 200
+    x = (np.arange(size) - size / 2) / degree
+    frequency = np.hypot(*np.meshgrid(*[np.fft.fftfreq(size, 1 / degree)] * 2))
+    low = 0.8493 / np.cosh(frequency / 1.3625)
+    passed = 373.08 * (1 / np.cosh((frequency / 4.1726) ** 0.7786) - low)
+    cover = np.clip((width / 120 - abs(x)) * degree + 0.5, 0, 1)
+    line = np.outer(abs(x) <= 0.5, cover)
+    seen = np.fft.ifft2(np.fft.fft2(line) * passed).real
+    seen *= np.exp(-np.add.outer(x**2, x**2) / (2 * 0.6273**2))
+    return ((abs(seen) ** 2.4081).sum() / degree**2) ** (-1 / 2.4081)
+
+
+@case
+def thin_lines_of_the_eye(random):
+    """Contrast of lines of 1 and 4 pixels at 300 dpi in the eye, and their thresholds."""
+    eye, left, thresholds = Eye.at(1004, 85.0, 400.0, 2.3), [], []
+    for pixels in (1, 4):
+        lines = np.zeros((8, 401, 3))
+        lines[:, 200 - pixels // 2 : 200 - pixels // 2 + pixels] = 1.0
+        left.append(eye.filtered(lines)[4, :, 0].max())
+        thresholds.append(threshold_of_a_line(pixels * 60 / eye.pixels_per_degree))
+    return [
+        (0.01, float(abs(left[0] - 0.25))),
+        (0.05, float(abs(left[1] / left[0] - 3.2))),
+        (0.05, float(abs(thresholds[0] / thresholds[1] - 3.4))),
+    ]
 
 
 @case

@@ -31,3 +31,33 @@ def plotter_of(mesh, **how):
     actor = plotter.vizlight.add_mesh(mesh, **how)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     return plotter, actor
+
+
+def from_above(mesh):
+    """Return the camera that sees a sheet along z, in parallel."""
+    return camera_on(mesh, (0, 0, 1), up=(0, 1, 0), aspect=SIZE[0] / SIZE[1], parallel=True)
+
+
+def rings(mesh, wavelength=8.0, contrast=0.8):
+    """Return a picture of rings, along which the swirl of a sheet runs, and its camera."""
+    camera = from_above(mesh)
+    right, down = np.meshgrid(*(np.arange(n) + 0.5 - n / 2 for n in SIZE))
+    gray = 0.5 + contrast / 2 * np.cos(2 * np.pi / wavelength * np.hypot(right, down))
+    return np.repeat(gray[..., np.newaxis], 3, axis=2), camera
+
+
+def arrows(mesh, geom=None, **how):
+    """Return glyphs of the swirl about all points: arrows of PyVista, or others."""
+    geom = pv.Arrow(start=(-0.5, 0, 0)) if geom is None else geom
+    return mesh.glyph(orient="swirl", geom=geom, **{"scale": False, "factor": 0.22} | how)
+
+
+def drawn_plain(mesh, **how):
+    """Return a picture of a mesh, from 0 to 1, by PyVista, on white, and its camera."""
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.background_color = "white"
+    plotter.add_mesh(mesh, **{"color": "black", "show_scalar_bar": False} | how)
+    plotter.camera = from_above(sheet(20))
+    picture, camera = plotter.screenshot(return_img=True) / 255, plotter.camera.copy()
+    plotter.close()
+    return picture, camera

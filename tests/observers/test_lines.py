@@ -3,11 +3,23 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from sheets import arrows, drawn_plain, rings, sheet
 
 import vizlight
 from vizlight.draw.cameras import camera_on
 from vizlight.observers.eye import Eye, SeenPicture
-from vizlight.observers.lines import JUMP, Segments, segments_of, strokes_of, two_sides
+from vizlight.observers.lines import (
+    JUMP,
+    Glyphs,
+    Segments,
+    ahead_of,
+    along_grain,
+    grain_of,
+    lengths_of,
+    segments_of,
+    strokes_of,
+    two_sides,
+)
 from vizlight.observers.pixels import visible
 from vizlight.observers.samples import part_on
 from vizlight.scene import Light, Scene, View
@@ -204,3 +216,126 @@ def test_the_round_end_of_a_stroke_belongs_to_its_end():
     colors[number < 0] = (0, 0, 0)
     found = strokes_of(lines, SeenPicture(colors, np.ones((40, 120, 3)), np.zeros(3)), Eye(7.5))
     np.testing.assert_allclose(found.light, [30], atol=1e-9)
+
+
+def read(mesh, picture, camera, **how):
+    return vizlight.legibility(
+        mesh, picture=picture, camera=camera, **{"key": [], "size_mm": 30, "samples": 400} | how
+    )
+
+
+def test_finer_rings_are_read_worse_until_chance():
+    mesh = sheet(20)
+    found = [
+        read(mesh, *rings(mesh, wide), tangents="swirl").direction for wide in (8, 4, 3.4, 2.1)
+    ]
+    medians, bits = [one.median for one in found], [one.bits for one in found]
+    assert medians == sorted(medians)
+    assert bits == sorted(bits, reverse=True)
+    assert medians[0] < 2
+    assert found[-1].unreadable
+    assert medians[-1] == 45
+    assert "too fine" in found[-1].reason
+
+
+@pytest.mark.parametrize(
+    ("geom", "told"),
+    [(None, 1), (pv.Cone(), 1), (pv.Cylinder(radius=0.1), 0), (pv.Line((-0.5, 0, 0)), 0)],
+    ids=["arrow", "cone", "cylinder", "line"],
+)
+def test_glyphs_tell_course_and_speed_and_sense_by_their_heads(geom, told):
+    glyphs = arrows(sheet(9), geom, scale="speed", factor=0.2)
+    found = read(glyphs, *drawn_plain(glyphs, line_width=2), line_width=2)
+    assert found.direction.median < 5
+    assert found.speed.spearman > 0.9
+    assert (found.sense.told > 0.3) == bool(told)
+    assert found.sense.wrongly == 0
+
+
+def test_a_wide_glyph_is_read_as_a_whole():
+    bars = arrows(sheet(3), pv.Cylinder(radius=0.3), factor=0.8)
+    found = read(bars, *drawn_plain(bars, lighting=False)).direction
+    assert found.readable > 0.95
+
+
+def test_glyphs_that_point_the_other_way_are_told_wrongly():
+    mesh, back = sheet(9), sheet(9)
+    back["swirl"] *= -1
+    glyphs = arrows(mesh)
+    ahead, found = (read(glyphs, *drawn_plain(arrows(one))) for one in (mesh, back))
+    assert ahead.sense.told == pytest.approx(found.sense.wrongly, abs=0.05)
+    assert ahead.sense.told > 0.8
+    assert max(ahead.sense.wrongly, found.sense.told) < 0.05
+    assert found.sense.unreadable
+    assert found.direction.median < 3
+    # Glyphs of one length tell no speed, but by their colour.
+    assert abs(found.speed.spearman) < 0.2
+    colored = drawn_plain(glyphs, scalars="speed", cmap="gray", clim=(-0.1, 1.5), lighting=False)
+    assert read(glyphs, *colored).speed.spearman > 0.8
+
+
+def test_glyphs_of_another_field_are_chance():
+    mesh, other = sheet(9), sheet(9)
+    x, y, z = np.asarray(other.points).T
+    other["swirl"] = np.stack([np.cos(4 * y), np.sin(3 * x + 1), 0 * z], axis=1)
+    found = read(arrows(mesh), *drawn_plain(arrows(other)))
+    assert found.direction.unreadable
+    assert found.sense.unreadable
+
+
+@pytest.mark.parametrize("turn", [0, 30, 75, 110, 170])
+def test_stripes_have_their_course_and_shading_has_none(turn):
+    right, down = np.meshgrid(np.arange(64.0), np.arange(48.0))
+    across = right * np.sin(np.radians(turn)) + down * np.cos(np.radians(turn))
+    for colors, noise in ((50 + 20 * np.cos(across), 0.0), (2 * across, 2.3)):
+        picture = np.repeat(colors[..., np.newaxis], 3, axis=2)
+        seen = SeenPicture(picture, np.ones_like(picture), np.zeros(3))
+        tensor = grain_of(seen, Eye(60.0, noise), np.random.default_rng(0))
+        grain = along_grain(tensor)[24, 32]
+        # Light that changes by 2 from pixel to pixel is as nothing beside the noise.
+        assert abs(grain) > 0.98 if noise == 0 else abs(grain) < 0.4
+        if noise == 0:
+            assert np.degrees(np.angle(grain)) / 2 % 180 == pytest.approx(turn, abs=0.1)
+
+
+def wedge(shift=0):
+    """Return a triangle of 12 by 9 pixels whose tip is to the right, as one glyph."""
+    number = np.full((31, 32 + 2 * shift), -1)
+    for step in range(12):
+        half = 4 - step // 3
+        number[15 - half : 16 + half, 10 + shift + step] = 0
+    middle = np.array([[16.0 + shift, 15.5]])
+    return Glyphs(number, number[::-1, ::-1], middle, np.array([[1.0, 0.0]]), np.array([6.0]))
+
+
+def test_a_wedge_is_told_from_one_that_is_turned():
+    glyphs, eye = wedge(), Eye(60.0)
+    bare = glyphs.number < 0
+    ink = np.where(bare, 10.0, 60.0)
+    for shown, answer in ((ink, 1), (ink[::-1, ::-1], -1), (0 * ink, 0)):
+        assert ahead_of(glyphs, shown, bare, eye) == answer
+    # Of 72 pixels 24 are not those of both: 3 deviations of the mean of 18 would be the noise.
+    assert np.count_nonzero(~bare & (glyphs.turned < 0)) == 24
+    for more, answer in ((2.31, 1), (2.29, 0)):
+        assert ahead_of(glyphs, np.where(bare, 0, more), bare, eye) == answer
+    # At twice as many pixels in a degree there are 6 square arc minutes.
+    for more, answer in ((3.99, 1), (3.97, 0)):
+        assert ahead_of(glyphs, np.where(bare, 0, more), bare, Eye(120.0)) == answer
+    # Where other glyphs stand nothing is told, and nothing is asked of what is not seen.
+    assert ahead_of(glyphs, ink, np.zeros_like(bare), eye) == 0
+    hidden = glyphs._replace(number=np.full_like(glyphs.number, -1))
+    assert np.isnan(ahead_of(hidden, ink, bare, eye)).all()
+
+
+def test_the_length_of_a_glyph_is_that_of_what_is_seen():
+    glyphs = wedge()
+    ink = np.where(glyphs.number >= 0, 60.0, 0.0)
+    assert lengths_of(glyphs, ink, 6.9) == 12
+    # It ends at half of the contrast of its middle, and goes on beyond what the mesh has of it.
+    ink[15, 20:24] = (31, 31, 31, 29)
+    assert lengths_of(glyphs, ink, 6.9) == 13
+    assert lengths_of(glyphs, ink, 32.0) == 10
+    assert lengths_of(glyphs, 0 * ink, 6.9) == 0
+    # No further than 3/4 of its length to either side, and as far as the picture goes.
+    assert lengths_of(glyphs, np.full_like(ink, 9.0), 6.9) == 19
+    assert lengths_of(wedge(-9), np.full((31, 14), 9.0), 6.9) == 14

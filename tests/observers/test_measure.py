@@ -11,7 +11,16 @@ from matplotlib.colors import LinearSegmentedColormap
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 from shapes import straws
-from sheets import DIRECTION, FLAT, HOW, SHAPE, SIZE, plotter_of, sheet
+from sheets import (
+    DIRECTION,
+    FLAT,
+    HOW,
+    SHAPE,
+    SIZE,
+    plotter_of,
+    rings,
+    sheet,
+)
 
 import vizlight
 from vizlight import presets
@@ -32,8 +41,9 @@ def shot(mesh, **how):
 
 
 VALUE = {"scene": FLAT, "scalars": "height", "cmap": "coolwarm"}
-#: Question, how a picture is drawn, and how it is read.
+#: Question, or texture for direction by form, how a picture is drawn, and how it is read.
 QUESTIONS = {
+    "texture": (None, {"key": [], "tangents": "swirl"}),
     "direction": (DIRECTION, {"key": presets.direction(), "tangents": "swirl", "exponent": 2}),
     "shape": (SHAPE, {"key": presets.shape()}),
     "value": (VALUE, {"key": ("coolwarm", (-0.2, 0.2)), "scalars": "height"}),
@@ -42,7 +52,8 @@ QUESTIONS = {
 
 def figure(question, mesh, picture, camera, **how):
     how = QUESTIONS[question][1] | {"camera": camera} | HOW | how
-    return getattr(vizlight.legibility(mesh, picture=picture, **how), question)
+    name = "direction" if question == "texture" else question
+    return getattr(vizlight.legibility(mesh, picture=picture, **how), name)
 
 
 def falls_to_chance(bits, last=0.3, slack=0.1):
@@ -52,10 +63,16 @@ def falls_to_chance(bits, last=0.3, slack=0.1):
 
 @pytest.fixture(
     scope="module",
-    params=["value", *(pytest.param(q, marks=pytest.mark.slow) for q in ("direction", "shape"))],
+    params=[
+        "value",
+        "texture",
+        *(pytest.param(q, marks=pytest.mark.slow) for q in ("direction", "shape")),
+    ],
 )
 def drawn(request):
     mesh = sheet()
+    if request.param == "texture":
+        return request.param, mesh, *rings(mesh)
     if request.param == "value":
         # The bar of the key is that of the picture.
         return request.param, mesh, *shot(mesh, clim=(-0.2, 0.2), **VALUE)
@@ -89,7 +106,9 @@ def test_a_jpeg_is_read_worse_the_more_it_loses(drawn):
         )
         bits.append(figure(question, mesh, np.asarray(Image.open(file)), camera).bits)
     whole = figure(question, mesh, picture, camera).bits
-    assert falls_to_chance([whole, *bits], last=0.9 * whole)
+    # Form outlasts colour.
+    lost = 0.98 if question == "texture" else 0.9
+    assert falls_to_chance([whole, *bits], last=lost * whole)
     assert bits[0] > 0.9 * whole
 
 
@@ -110,7 +129,7 @@ def test_a_picture_without_hue_tells_no_direction(drawn):
     question, mesh, picture, camera = drawn
     gray = np.repeat(picture.mean(axis=2, keepdims=True), 3, axis=2)
     whole, found = (figure(question, mesh, p, camera) for p in (picture, gray))
-    assert found.bits < 0.6 * whole.bits
+    assert (found.bits < 0.6 * whole.bits) == (question != "texture")
     if question == "direction":
         assert found.unreadable
         assert found.median == 45
@@ -190,7 +209,8 @@ def places(turns_right, turns_up, apart):
         np.stack([np.cos(a), np.sin(a)], axis=1) * np.array([1, sign])
         for a, sign in zip(angles, (1, 1, -1), strict=True)
     )
-    return measure.Places(None, here, right, up, np.array(apart), None, None)
+    beside = dict.fromkeys(("part", "colors", "unit", "grain", "course", "thing", "length"))
+    return measure.Places(here=here, right=right, up=up, apart=np.array(apart), **beside)
 
 
 def test_structure_is_the_length_of_a_quarter_turn():
@@ -238,11 +258,12 @@ def test_no_answer_that_is_not_better_than_chance_is_printed():
 
 def test_ends_of_strokes_differ_by_three_deviations_of_the_noise():
     ink = np.array([7.0] * 7 + [6.8, -7.0, 0.0])
-    found = measure._sense(ink, 0 * ink, 2.3)
+    answers = measure._of_strokes(ink, 0 * ink, 2.3)
+    found = measure._sense(answers)
     assert (found.told, found.wrongly) == (0.7, 0.1)
-    assert measure._sense(0 * ink, -ink, 2.3) == found
-    assert measure._sense(ink[:7], ink[:7], 2.3) is None
-    assert measure._sense(ink[:8], ink[:8], 2.3) is not None
+    np.testing.assert_array_equal(measure._of_strokes(0 * ink, -ink, 2.3), answers)
+    assert measure._sense(answers[:7]) is None
+    assert measure._sense(answers[:8]) is not None
 
 
 def pixels_of(part):
@@ -316,16 +337,19 @@ def test_what_is_guessed_is_the_share_of_the_tolerance():
         ({"deviation": 7.0}, "finer than an eye"),
         ({"deviation": 6.8, "wide": 50}, "do not follow"),
         ({"wide": 10}, "less than an eye"),
+        ({"wide": 10, "by_form": True}, "marks are too fine"),
         ({"wide": 11}, "do not follow"),
     ],
 )
 def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
     """Structure below 6 arc minutes; noise of 3 times the eye's; colours that hardly differ."""
-    how = {"lengths": [], "pixels": 100, "values": None, "deviation": 2.3, "wide": 90} | change
+    how = {"lengths": [], "pixels": 100, "values": None, "deviation": 2.3, "wide": 90}
+    how |= {"by_form": False} | change
     colors = np.zeros((101, 3))
     colors[:, 1] = np.linspace(0, how["wide"], 101)
     place = SimpleNamespace(
-        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=how["values"]),
+        here=SimpleNamespace(points=np.zeros((1, 3))), by_form=how["by_form"],
+        part=SimpleNamespace(values=how["values"]),
         colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
     )  # fmt: skip
     reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
@@ -336,7 +360,7 @@ def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
     random = np.random.default_rng(0)
     place = SimpleNamespace(
         here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=None),
-        colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
+        by_form=False, colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
         unit=np.full(64, 0.5),
     )  # fmt: skip
     for bits, error, unread in ((0.5, 5, 0), (0.2, 5, 1), (0.5, 42, 1), (0.5, 40, 0)):

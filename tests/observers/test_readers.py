@@ -203,7 +203,8 @@ def test_ranks_order_and_noise_does_not():
     few = [
         readers.mutual_information(x[i : i + 256], other[i : i + 256]) for i in range(0, 4096, 256)
     ]
-    assert np.mean(few) < 0.05
+    # Below the floor of what is readable.
+    assert max(few) < 0.3
 
 
 def test_the_colors_of_a_bar_have_no_error_in_the_middle_of_its_classes():
@@ -353,12 +354,22 @@ def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
     np.testing.assert_allclose(bare.light(None, normals), [[0.9] * 3, [0.1] * 3])
 
 
-def test_even_angles_tell_nothing_and_equal_ones_all_classes():
+def test_a_grain_is_read_as_far_as_it_is_one():
     random = np.random.default_rng(0)
-    assert readers.sharpness(random.uniform(0, 90, 5000)) == pytest.approx(0, abs=0.01)
-    assert readers.sharpness(np.full(5000, 2.0)) == pytest.approx(np.log2(18), abs=0.01)
-    # Half of the classes are one bit less than all.
-    assert readers.sharpness(random.uniform(0, 45, 5000)) == pytest.approx(1, abs=0.01)
+    angle = random.uniform(-180, 180, 2000)
+    share = {"sure": 1.0, "half": 0.3, "none": 0.0}
+    found = {
+        name: readers.read_grain(c * np.exp(2j * np.radians(angle)), angle, 0.3)
+        for name, c in share.items()
+    }
+    # Candidates are a degree apart; the height of a Gaussian of 3.7 degrees is 4.28 bits above 180.
+    assert found["sure"].error.max() < 0.51
+    assert readers.told([found["sure"]]) == pytest.approx(4.25, abs=0.02)
+    assert 3 < readers.told([found["half"]]) < 3.5
+    assert readers.told([found["none"]]) < 0.01
+    across = readers.read_grain(-np.exp(2j * np.radians(angle)), angle, 0.3)
+    assert across.error.min() > 89
+    assert readers.told([across]) == 0
 
 
 def test_dark_colours_are_known_less_than_the_bright_ones_around_them():

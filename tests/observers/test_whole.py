@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
-from sheets import DIRECTION, FLAT, HOW, SHAPE, plotter_of, sheet
+from sheets import DIRECTION, FLAT, HOW, SHAPE, arrows, from_above, plotter_of, sheet
+from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
+from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
 import vizlight
 from vizlight.draw.cameras import camera_on
@@ -249,3 +251,87 @@ def test_what_has_no_key_is_not_read_and_said_so():
     assert found.pixels == 0
     assert found.notes == ("nothing that is shown has a key by which it could be read",)
     assert "nothing that is shown" in str(found)
+
+
+def read_marks(add):
+    """Return what is read of what a function adds to a plotter, seen from above."""
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.background_color = "white"
+    add(plotter)
+    plotter.camera = from_above(sheet(9))
+    found = plotter.vizlight.legibility(**HOW)
+    plotter.close()
+    return found
+
+
+def mapped(plotter, *, scaled=False):
+    """Add arrows that VTK's mapper draws at the points of a sheet."""
+    mesh = sheet(9)
+    mapper = vtkGlyph3DMapper()
+    mapper.SetInputData(mesh)
+    mapper.SetSourceData(pv.Arrow(start=(-0.5, 0, 0)))
+    mapper.SetOrientationArray("swirl")
+    mapper.SetScaleModeToNoDataScaling()
+    mapper.SetScaleFactor(0.22)
+    if scaled:
+        mapper.SetScaleModeToScaleByMagnitude()
+        mapper.SetScaleArray("speed")
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(0, 0, 0)
+    plotter.renderer.AddActor(actor)
+
+
+def test_glyphs_are_read_alike_whoever_draws_them():
+    glyphs = arrows(sheet(9))
+
+    plain, mapper, lit = (
+        read_marks(add)
+        for add in (
+            lambda p: p.add_mesh(glyphs, color="black", lighting=False),
+            mapped,
+            lambda p: p.vizlight.add_mesh(glyphs, scene=vizlight.Scene(), color="black"),
+        )
+    )
+    assert plain.direction.median < 3
+    assert plain.sense.told > 0.7
+    assert plain.shape is None
+    assert mapper.pixels == plain.pixels
+    for found in (mapper, lit):
+        assert found.direction.median == pytest.approx(plain.direction.median, abs=0.5)
+        assert found.sense.told == pytest.approx(plain.sense.told, abs=0.1)
+    scaled = read_marks(lambda p: mapped(p, scaled=True))
+    sized = arrows(sheet(9), scale="speed")
+    assert scaled.speed.spearman > 0.9
+    assert scaled.pixels == read_marks(lambda p: p.add_mesh(sized, color="black")).pixels
+
+
+@pytest.mark.parametrize("lit", [False, True])
+def test_a_moved_actor_of_glyphs_is_read_where_it_is(lit):
+    """Glyphs that are turned by 70 degrees before they become data, and back by their actor."""
+    glyphs = arrows(sheet(9))
+    turned = glyphs.rotate_z(70, inplace=False, transform_all_input_vectors=True)
+
+    def add(plotter):
+        how = {"scene": vizlight.Scene()} if lit else {}
+        (plotter.vizlight if lit else plotter).add_mesh(turned, color="black", **how).rotate_z(-70)
+
+    found = read_marks(add)
+    assert found.direction.median < 3
+    assert found.sense.told > 0.7
+
+
+def test_line_integral_convolution_of_vtk_tells_the_course():
+    mesh = sheet(40)
+
+    def add(plotter):
+        mapper = vtkSurfaceLICMapper(input_data_object=mesh, scalar_visibility=False)
+        mapper.SetInputArrayToProcess(0, 0, 0, 0, "swirl")
+        plotter.add_actor(pv.Actor(mapper=mapper))
+
+    found = read_marks(add)
+    assert found.direction.median < 13
+    assert found.direction.readable > 0.4
+    assert found.sense is None
+    assert found.scale.question == "direction"

@@ -130,8 +130,8 @@ def told(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: float)
         borders.append(np.min([_largest(side) for side in sides], axis=0))
     nearer, other = borders
     gain = np.sign(nearer - other)
-    # A difference of two colours has the noise of both.
-    least = SEEN * np.sqrt(2) * np.hypot(noise, ROUNDING)
+    # The noise is that of a difference of two colours.
+    least = SEEN * np.hypot(noise, ROUNDING)
     clear = (np.maximum(nearer, other) >= least) & (np.abs(nearer - other) > least / 2)
     return np.asarray(gain * clear)
 

@@ -185,15 +185,16 @@ class SeenPicture:
         group : ndarray of int, shape (M,)
             Numbers of their groups, 0 or more.
         """
-        count = np.maximum(np.bincount(group), 1)[:, np.newaxis]
-
-        def mean(rows: Array) -> Array:
-            sums = [np.bincount(group, rows[:, i], len(count)) for i in range(3)]
-            return np.asarray((np.stack(sums, axis=1) / count)[group])
-
         colors, cover = self.colors.copy(), self.cover.copy()
         # Light is mixed in linear channels.
         channels = xyz_of_lab(colors[row, column]) @ OPPONENT.T
-        colors[row, column] = lab_of_opponent(mean(channels))
-        cover[row, column] = mean(cover[row, column])
+        colors[row, column] = lab_of_opponent(means(channels, group)[group])
+        cover[row, column] = means(cover[row, column], group)[group]
         return dataclasses.replace(self, colors=colors, cover=cover)
+
+
+def means(rows: Array, group: Indices, count: int = 0) -> Array:
+    """Return the means of the rows of groups, by the numbers of the groups, ``count`` at least."""
+    number = np.maximum(np.bincount(group, minlength=count), 1)[:, np.newaxis]
+    sums = [np.bincount(group, column, len(number)) for column in rows.T]
+    return np.asarray(np.stack(sums, axis=1) / number)

@@ -63,7 +63,7 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True)
 class Direction(Figure):
-    """Which way tangents run in the picture, by their hues on the key or as strokes run.
+    """Which way tangents run in the picture, by their hues on the key or as marks run.
 
     Attributes
     ----------
@@ -147,12 +147,12 @@ class Value(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Speed(Figure):
-    """Length of vectors, told by lightness or chroma.
+    """Length of vectors, told by lightness or chroma, or by the length of glyphs.
 
     Attributes
     ----------
     spearman : float
-        Rank correlation of the length with lightness or chroma, whichever tells more; 0 by chance.
+        Rank correlation of the length with that signal which tells most; 0 by chance.
         ``bits`` are those of 32 classes of the colour about 16 of the length, 4 at most.
     """
 
@@ -192,10 +192,10 @@ class Order(TwoSided):
 
 @dataclass(frozen=True, kw_only=True)
 class Sense(TwoSided):
-    """Which of two opposite ways a stroke runs, told by its width or lightness along it.
+    """Which of two opposite ways a stroke or a glyph runs, told by its form or lightness along it.
 
     Places are strokes, all of whose ends ahead a reader takes for the wider, the narrower, the
-    lighter or the darker one, whichever is right more often.
+    lighter or the darker one, whichever is right more often, and glyphs, whose form is known.
     """
 
 
@@ -244,15 +244,15 @@ class Legibility:
     Attributes
     ----------
     direction : Direction or None
-        Which way tangents run by hues, or lines as strokes; None without lines, and without single
-        tangents on a surface or at points.
+        Which way tangents run by hues, or by lines, glyphs and textures; None without lines, and
+        without single tangents on a surface or at points.
     slope : Slope or None
         How steeply lines run toward the eye; None without lines.
     heading : Heading or None
         Direction of lines in space, lit or in the colours of its axes; None without lines.
     sense : Sense or None
-        Which of two opposite ways strokes run; None without lines whose vectors or time of
-        integration tell a sense, and for fewer than 8 of them.
+        Which of two opposite ways strokes and glyphs run; None without glyphs and without lines
+        whose vectors or time of integration tell a sense, and for fewer than 8 of both.
     order : Order or None
         Which of two crossing lines is nearer; None without crossings.
     shape : Shape or None

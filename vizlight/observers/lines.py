@@ -1,4 +1,4 @@
-"""Lines as a picture shows them: their segments in pixels, and which way along them is ahead."""
+"""Marks of a picture: segments of lines, glyphs, the grain of both, and which way is ahead."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import pyvista as pv
 from scipy.ndimage import gaussian_filter, uniform_filter
 
-from vizlight.draw.live import matrix_of
+from vizlight.model.kernels import unit_rows
+from vizlight.observers.eye import means
+from vizlight.observers.pixels import in_pixels, visible
+from vizlight.observers.samples import dots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyvista as pv
-
     from vizlight._types import Array, Bools, Indices
     from vizlight.observers.eye import Eye, SeenPicture
-    from vizlight.observers.pixels import Pixels
+    from vizlight.observers.pixels import Cells, Pixels
     from vizlight.observers.samples import Part
 
 #: Number of deviations of noise by which a difference is seen (Rose, J. Opt. Soc. Am. 38, 1948: 3
@@ -83,7 +85,6 @@ def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Seg
     """
     width, height = pixels.size
     number = np.full((height, width), -1, dtype=np.intp)
-    project = matrix_of(camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1))
     ends, widths, breaks, ahead = [], [], [], []
     count = 0
     for i, part in enumerate(parts):
@@ -92,11 +93,7 @@ def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Seg
         own = pixels.part == i
         number[pixels.row[own], pixels.column[own]] = count + pixels.cell[own]
         points = np.asarray(part.inputs.points[:], dtype=np.float64)
-        placed = np.column_stack([points, np.ones(len(points))]) @ project.T
-        # What is behind the eye has no place in the picture, and no pixel.
-        scale = np.where(placed[:, 3] > 0, placed[:, 3], np.nan)
-        x, y = placed[:, 0] / scale, placed[:, 1] / scale
-        places = np.column_stack([(1 + x) / 2 * width, (1 - y) / 2 * height])
+        places = in_pixels(camera, pixels.size, points)
         cells = part.cells
         ends.append(places[cells])
         widths.append(part.drawn.widths(camera, height))
@@ -154,71 +151,225 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
     at = (along - low[line]) / np.maximum(high - low, 1e-9)[line]
     sign = np.sign(np.bincount(line, lines.ahead[segment], len(names)))
     at = np.where(sign[line] < 0, 1 - at, at)
-    window = max(1, round(WINDOW / 60 * eye.pixels_per_degree))
-    # What is around is seen in a wider window, as far as no line covers it.
-    bare = (lines.number < 0)[..., np.newaxis].astype(np.float64)
-    around = (AROUND * window, AROUND * window, 1)
-    share = uniform_filter(bare, around, mode="nearest")
-    ground = uniform_filter(bare * seen.colors, around, mode="nearest") / np.maximum(share, 1e-3)
-    stands_out = seen.colors - ground
-    ink = uniform_filter(np.linalg.norm(stands_out, axis=2), window, mode="nearest")
+    above = above_ground(seen, lines.number >= 0, eye)
+    ink = uniform_filter(np.linalg.norm(above, axis=2), _window(eye), mode="nearest")
+    values = np.column_stack([ink[row, column], above[row, column, 0]])
     first, last = at < 1 / 3, at > 2 / 3
     enough = np.ones(len(names), dtype=np.bool_)
     for third in (first, last):
         enough &= np.bincount(line[third], minlength=len(names)) >= END
-    found = [
-        (_mean(values, line, last, len(names)) - _mean(values, line, first, len(names)))[enough]
-        for values in (ink[row, column], stands_out[row, column, 0])
-    ]
-    return Strokes(*found)
+    behind, ahead = (means(values[third], line[third], len(names)) for third in (first, last))
+    return Strokes(*(ahead - behind)[enough].T)
 
 
-def courses_of(
-    lines: Segments, seen: SeenPicture, eye: Eye, count: int, random: np.random.Generator
-) -> tuple[Array, Array]:
-    """Return what a reader who follows strokes has of the course of lines.
-
-    The course is across the direction in which the colours of a window of 8 arc minutes change
-    most: the structure tensor (Bigun and Granlund 1987).
+def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
+    """Return how colours differ from those around, in a wider window and where nothing covers it.
 
     Parameters
     ----------
-    lines : Segments
-        Lines of the picture.
+    seen : SeenPicture
+        What the eye sees of the picture.
+    covered : ndarray of bool, shape (H, W)
+        Pixels of lines and glyphs.
+    eye : Eye
+        Eye.
+
+    Returns
+    -------
+    ndarray, shape (H, W, 3)
+        Differences in CIELAB.
+    """
+    bare = ~covered[..., np.newaxis] * 1.0
+    around = (AROUND * _window(eye), AROUND * _window(eye), 1)
+    share = uniform_filter(bare, around, mode="nearest")
+    ground = uniform_filter(bare * seen.colors, around, mode="nearest") / np.maximum(share, 1e-3)
+    return np.asarray(seen.colors - ground)
+
+
+def _window(eye: Eye) -> int:
+    """Return the width in pixels of the window of a reader."""
+    return max(1, round(WINDOW / 60 * eye.pixels_per_degree))
+
+
+def grain_of(seen: SeenPicture, eye: Eye, random: np.random.Generator) -> Array:
+    """Return the structure that a reader sees around each pixel: the grain of marks and textures.
+
+    It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
+    across the direction in which the colours change most. What changes over more than the window,
+    such as shading, is no grain.
+
+    Parameters
+    ----------
     seen : SeenPicture
         What the eye sees of the picture.
     eye : Eye
         Eye, whose noise is added to each pixel.
-    count : int
-        Largest number of places.
     random : numpy.random.Generator
-        Source of the places and of the noise.
+        Source of the noise.
 
     Returns
     -------
-    seen, true : ndarray, shape (M,)
-        Angles in radians, from right toward down, which have no sense.
+    ndarray, shape (H, W, 3)
+        Mean products of the changes to the right and down: xx, xy, yy.
     """
-    row, column = np.nonzero(lines.number >= 0)
-    chosen = random.permutation(len(row))[:count]
-    row, column = row[chosen], column[chosen]
-    way = lines.way[lines.number[row, column]]
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
-    down, right = np.gradient(gaussian_filter(noisy, (1.0, 1.0, 0.0)), axis=(0, 1))
     # A Gaussian of the variance of the window.
     spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
-    xx, xy, yy = (
-        gaussian_filter((a * b).sum(axis=2), spread)[row, column]
-        for a, b in ((right, right), (right, down), (down, down))
+    # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
+    down, right = (
+        gaussian_filter(noisy, (1.0, 1.0, 0.0), order)
+        - gaussian_filter(noisy, (spread, spread, 0.0), order)
+        for order in ((1, 0, 0), (0, 1, 0))
     )
-    across = np.arctan2(2 * xy, xx - yy) / 2
-    return across + np.pi / 2, np.arctan2(way[:, 1], way[:, 0])
+    products = ((right, right), (right, down), (down, down))
+    return np.stack([gaussian_filter((a * b).sum(axis=2), spread) for a, b in products], axis=2)
 
 
-def _mean(values: Array, line: Indices, rows: Bools, count: int) -> Array:
-    """Return the mean of some values for each line."""
-    total = np.bincount(line[rows], values[rows], count)
-    return np.asarray(total / np.maximum(np.bincount(line[rows], minlength=count), 1))
+def along_grain(tensor: Array) -> Array:
+    """Return the grain of structure tensors, shape (..., 3), as ``c exp(2 i a)``.
+
+    c is the share of all change that is across the grain, from 0 to 1, and a the angle from right
+    toward up.
+    """
+    xx, xy, yy = np.moveaxis(tensor, -1, 0)
+    return np.asarray((yy - xx + 2j * xy) / np.maximum(xx + yy, 1e-12))
+
+
+class Glyphs(NamedTuple):
+    """Glyphs of a picture, in pixels from the upper left corner, to the right and down.
+
+    Attributes
+    ----------
+    number, turned : ndarray of int, shape (H, W)
+        Glyph that each pixel shows, and would show if each were turned round about its middle; -1
+        without one.
+    middle, way : ndarray, shape (G, 2)
+        Middle of each glyph, and unit course of its vector.
+    reach : ndarray, shape (G,)
+        Half of the length of the glyph along its course.
+    """
+
+    number: Indices
+    turned: Indices
+    middle: Array
+    way: Array
+    reach: Array
+
+
+def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyphs | None:
+    """Return the glyphs of a picture, None without glyphs; as for :func:`segments_of`."""
+    cells: list[Cells] = []
+    numbers: list[Indices] = []
+    middles: list[Array] = []
+    ends: list[Array] = []
+    for part in parts:
+        number = np.zeros(0, dtype=np.intp)
+        if part.glyph is not None:
+            number = part.glyph + sum(map(len, middles))
+            turned, middle, end = _turned(part)
+            cells.append(turned)
+            middles.append(middle)
+            ends.append(end)
+        numbers.append(number)
+    if not cells:
+        return None
+    shown = _numbered(pixels, numbers)
+    round_about = visible(cells, camera, pixels.size)
+    turned_shown = _numbered(round_about, [number for number in numbers if len(number)])
+    middle, end = (in_pixels(camera, pixels.size, np.concatenate(each)) for each in (middles, ends))
+    way = np.nan_to_num(end - middle)
+    reach = np.linalg.norm(way, axis=1)
+    return Glyphs(shown, turned_shown, np.nan_to_num(middle), unit_rows(way), reach)
+
+
+def _turned(part: Part) -> tuple[Cells, Array, Array]:
+    """Return glyphs turned round about their middles, the middles, and the ends ahead of them."""
+    assert part.glyph is not None
+    assert part.inputs.tangents is not None
+    points, vectors = (
+        np.asarray(rows[:], dtype=np.float64) for rows in (part.inputs.points, part.inputs.tangents)
+    )
+    glyph = np.full(len(points), -1)
+    glyph[part.cells] = part.glyph[:, np.newaxis]
+    used = glyph >= 0
+    own, ways = glyph[used], unit_rows(vectors[used])
+    mean, way = means(points[used], own), means(ways, own)
+    along = dots(points[used] - mean[own], ways)
+    low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
+    np.minimum.at(low, own, along)
+    np.maximum.at(high, own, along)
+    middle = mean + ((low + high) / 2)[:, np.newaxis] * way
+    end = middle + ((high - low) / 2)[:, np.newaxis] * way
+    turned = pv.vtk_points(2 * middle[glyph] - points)
+    return part.drawn._replace(points=turned), middle, end
+
+
+def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:
+    """Return what each pixel of a picture shows by numbers of the cells of parts, else -1."""
+    width, height = pixels.size
+    found = np.full((height, width), -1, dtype=np.intp)
+    for part, number in enumerate(numbers):
+        if len(number):
+            own = pixels.part == part
+            found[pixels.row[own], pixels.column[own]] = number[pixels.cell[own]]
+    return found
+
+
+def ahead_of(glyphs: Glyphs, ink: Array, bare: Bools, eye: Eye) -> Array:
+    """Return whether glyphs are seen as they are, or turned round, by what differs between both.
+
+    This is the contrast of the pixels that a glyph has and would not have if it were turned, less
+    that of the bare pixels that it would have then. It is seen if it is the noise of the eye at
+    least, and 3 deviations of the means over as many square arc minutes (Rose 1948).
+
+    Parameters
+    ----------
+    glyphs : Glyphs
+        Glyphs of the picture.
+    ink : ndarray, shape (H, W)
+        Contrast with the surroundings.
+    bare : ndarray of bool, shape (H, W)
+        Pixels without glyphs and lines.
+    eye : Eye
+        Eye.
+
+    Returns
+    -------
+    ndarray, shape (G,)
+        1 as they are, -1 turned, 0 for neither, and NaN for glyphs without a pixel.
+    """
+    count = len(glyphs.way)
+    apart = glyphs.number != glyphs.turned
+    sides = []
+    for number, there in ((glyphs.number, apart), (glyphs.turned, apart & bare)):
+        there = there & (number >= 0)
+        mean = means(ink[there][:, np.newaxis], number[there], count)[:, 0]
+        sides.append((mean, np.bincount(number[there], minlength=count)))
+    (own, pixels), (other, others) = sides
+    minutes = np.minimum(pixels, others) / (eye.pixels_per_degree / 60) ** 2
+    least = eye.noise * np.maximum(1.0, SEEN * np.sqrt(2 / np.maximum(minutes, 1e-3)))
+    answer = np.sign(own - other) * (np.abs(own - other) >= least) * (minutes > 0)
+    shown = np.bincount(glyphs.number[glyphs.number >= 0], minlength=count) > 0
+    return np.where(shown, answer, np.nan)
+
+
+def lengths_of(glyphs: Glyphs, ink: Array, least: float) -> Array:
+    """Return the lengths in pixels at which glyphs are seen along their course from their middle.
+
+    A glyph ends where its contrast is less than half of that in its middle, or than ``least``.
+    """
+    far = math.ceil(1.5 * float(glyphs.reach.max(initial=0.0)))
+    steps = np.arange(-far, far + 1)[:, np.newaxis]
+    height, width = ink.shape
+    found = np.zeros(len(glyphs.way))
+    for i in np.flatnonzero(glyphs.reach > 0):
+        column, row = np.floor(glyphs.middle[i] + steps * glyphs.way[i]).astype(np.intp).T
+        inside = (column >= 0) & (row >= 0) & (column < width) & (row < height)
+        own = np.where(inside, ink[row.clip(0, height - 1), column.clip(0, width - 1)], 0.0)
+        ends = np.flatnonzero(own < max(least, own[far] / 2))
+        before, after = ends[ends <= far], ends[ends >= far]
+        found[i] = after.min(initial=2 * far + 1) - before.max(initial=-1) - 1
+    return np.maximum(found, 0.0)
 
 
 def two_sides(told: int, wrongly: int, total: int) -> float:

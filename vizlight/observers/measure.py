@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from vizlight import _check
 from vizlight.observers import crossings, readers
-from vizlight.observers.eye import Eye
+from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
     FLOOR,
     Direction,
@@ -25,8 +25,19 @@ from vizlight.observers.figures import (
     Speed,
     Value,
 )
-from vizlight.observers.lines import SEEN, courses_of, segments_of, strokes_of, two_sides
-from vizlight.observers.pixels import Pixels, footprint, visible
+from vizlight.observers.lines import (
+    SEEN,
+    above_ground,
+    ahead_of,
+    along_grain,
+    glyphs_of,
+    grain_of,
+    lengths_of,
+    segments_of,
+    strokes_of,
+    two_sides,
+)
+from vizlight.observers.pixels import Pixels, courses, footprint, visible
 from vizlight.observers.samples import sample
 from vizlight.shading import display
 
@@ -39,7 +50,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices, Keywords, Vector
     from vizlight.observers.eye import SeenPicture
     from vizlight.observers.figures import Figure
-    from vizlight.observers.lines import Segments
+    from vizlight.observers.lines import Glyphs, Segments
     from vizlight.observers.readers import Colors, Reading
     from vizlight.observers.samples import Part, Sample
 
@@ -59,6 +70,8 @@ NEAR = 0.9
 BLURRED, CLOSE = 2.5, 10.0
 #: Length in arc minutes of a piece of a line that is seen as one colour.
 PIECE = 8.0
+#: Number of what is not seen as a whole; those of pieces of lines are less.
+NO_THING = -1
 #: Least number of strokes that are asked for their sense.
 STROKES = 8
 #: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
@@ -83,6 +96,14 @@ class Places:
         Colours that a reader has.
     unit : ndarray, shape (M,)
         Size of a pixel in the unit of the mesh.
+    grain : ndarray of complex, shape (M,)
+        Grain of the picture, :func:`vizlight.observers.lines.along_grain`.
+    course : ndarray, shape (M,)
+        Directions of single tangents in the picture in degrees, from right toward up.
+    thing : ndarray of int, shape (M,)
+        Numbers of what is seen as a whole, ``NO_THING`` on surfaces.
+    length : ndarray, shape (M,), or None
+        Lengths in pixels at which glyphs are seen.
     """
 
     part: Part
@@ -92,12 +113,23 @@ class Places:
     apart: Bools
     colors: Colors
     unit: Array
+    grain: Array
+    course: Array
+    thing: Indices
+    length: Array | None = None
+
+    @property
+    def by_form(self) -> bool:
+        """Whether marks tell directions by their form, since colours do not by their hue."""
+        return self.part.kind == "line" or not self.part.lit
 
     def take(self, rows: Bools | Indices) -> Places:
         """Return some of the places."""
         return dataclasses.replace(
             self, here=self.here.take(rows), right=self.right.take(rows), up=self.up.take(rows),
             apart=self.apart[rows], colors=self.colors.take(rows), unit=self.unit[rows],
+            grain=self.grain[rows], course=self.course[rows], thing=self.thing[rows],
+            length=None if self.length is None else self.length[rows],
         )  # fmt: skip
 
     def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
@@ -169,34 +201,32 @@ def measure(
         raise ValueError(_check.message("mesh", "a point that the eye sees", "none", remedy))
     number = np.full((height, width), -1, dtype=np.intp)
     number[pixels.row, pixels.column] = np.arange(len(pixels.row))
-    lines = segments_of(parts, pixels, camera)
+    lines, glyphs = segments_of(parts, pixels, camera), glyphs_of(parts, pixels, camera)
     seen = eye.look(picture, number >= 0)
-    things = _as_things(seen, pixels, parts, lines, eye)
+    ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
+    thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
+    grain = grain_of(seen, eye, np.random.default_rng(seed))
+    has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
     for i, part in enumerate(parts):
         ids = chosen[pixels.part[chosen] == i]
         if len(ids):
-            ids = number[_between(pixels, number, i, ids, eye)]
-            own = pixels.take(ids)
-            share = eye.share(part.width) if part.kind == "point" else None
-            colors = readers.colors_at(things, own.row, own.column, random, noise, share)
-            beside = _beside(pixels, number, ids, (0, 1)), _beside(pixels, number, ids, (1, 0))
-            here = sample(part, own, camera)
-            right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
-            apart = (beside[0] != ids) & (beside[1] != ids)
-            unit = footprint(camera, here.points, height)
-            groups.append(Places(part, here, right, up, apart, colors, unit))
+            places = has.places(part, number[_between(pixels, number, i, ids, eye)])
+            if glyphs is not None and part.glyph is not None:
+                own = places.thing - (len(parts) << 40)
+                places = dataclasses.replace(places, length=lengths[own])
+            groups.append(places)
     reader = _Reader(groups, seed, eye, list(notes))
     figures = reader.figures()
+    answers = ahead[np.isfinite(ahead)]
     if lines is not None:
         found = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
         figures["order"] = _order(crossings.told(found, lines, seen, noise))
-        figures["sense"] = _sense(*strokes_of(lines, seen, eye), noise)
-        courses = courses_of(lines, seen, eye, samples, np.random.default_rng(seed))
-        ways = [each for each in (figures["direction"], _course(*courses)) if each is not None]
-        figures["direction"] = max(ways, key=lambda each: each.bits, default=None)
+        strokes = _of_strokes(*strokes_of(lines, seen, eye), noise)
+        answers = np.concatenate([answers, strokes])
+    figures["sense"] = _sense(answers)
     return Legibility(
         **figures,
         scale=reader.scale,
@@ -211,29 +241,91 @@ def measure(
     )
 
 
+class _Seen(NamedTuple):
+    """What a reader has of a picture."""
+
+    pixels: Pixels
+    number: Indices
+    camera: pv.Camera
+    eye: Eye
+    thing: Indices
+    things: SeenPicture
+    tensor: Array
+    random: np.random.Generator
+
+    def places(self, part: Part, ids: Indices) -> Places:
+        """Return the places of some pixels, all of which show one mesh."""
+        pixels, camera = self.pixels, self.camera
+        own = pixels.take(ids)
+        share = self.eye.share(part.width) if part.kind == "point" else None
+        colors = readers.colors_at(
+            self.things, own.row, own.column, self.random, self.eye.noise, share
+        )
+        beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
+        here = sample(part, own, camera)
+        right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
+        course = np.zeros(len(ids))
+        if here.tangents is not None and here.has_one_tangent:
+            way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
+            course = np.degrees(np.arctan2(-way[:, 1], way[:, 0]))
+        return Places(
+            part=part, here=here, right=right, up=up, colors=colors, course=course,
+            apart=(beside[0] != ids) & (beside[1] != ids), thing=self.thing[ids],
+            unit=footprint(camera, here.points, pixels.size[1]),
+            grain=along_grain(self.tensor[own.row, own.column]),
+        )  # fmt: skip
+
+
+def _as_things(
+    seen: SeenPicture, grain: Array, pixels: Pixels, thing: Indices
+) -> tuple[SeenPicture, Array]:
+    """Return the picture and its grain with one colour and one grain for all of each thing."""
+    whole = thing != NO_THING
+    row, column = pixels.row[whole], pixels.column[whole]
+    group = np.unique(thing[whole], return_inverse=True)[1]
+    grain[row, column] = means(grain[row, column], group)[group]
+    return seen.pooled(row, column, group), grain
+
+
 def toward(camera: pv.Camera) -> Vector:
     """Return the direction from the middle of a picture toward the eye."""
     x, y, z = camera.GetDirectionOfProjection()
     return -x, -y, -z
 
 
-def _as_things(
-    seen: SeenPicture, pixels: Pixels, parts: Sequence[Part], lines: Segments | None, eye: Eye
-) -> SeenPicture:
-    """Return the picture in which a point has one colour, and so has each piece of a line."""
-    point, line = (
-        np.array([part.kind == kind for part in parts])[pixels.part] for kind in ("point", "line")
-    )
+def _things(
+    pixels: Pixels, parts: Sequence[Part], lines: Segments | None, glyphs: Glyphs | None, eye: Eye
+) -> Indices:
+    """Return numbers of what is seen as a whole: a point, a glyph, a piece of a line.
+
+    Pixels of surfaces have none, ``NO_THING``.
+    """
     row, column = pixels.row, pixels.column
-    if point.any():
-        _, group = np.unique((pixels.part[point] << 40) + pixels.cell[point], return_inverse=True)
-        seen = seen.pooled(row[point], column[point], group)
-    if lines is not None and line.any():
+    thing = np.full(len(row), NO_THING, dtype=np.int64)
+    point = np.array([part.kind == "point" for part in parts])[pixels.part]
+    thing[point] = (pixels.part[point] << 40) + pixels.cell[point]
+    if lines is not None:
+        line = lines.number[row, column] >= 0
         segment, along = lines.places(row[line], column[line])
         piece = np.nan_to_num(along * 60 / eye.pixels_per_degree // PIECE).astype(np.intp)
-        _, group = np.unique((lines.line[segment] << 40) + piece, return_inverse=True)
-        seen = seen.pooled(row[line], column[line], group)
-    return seen
+        thing[line] = NO_THING - 1 - (lines.line[segment] << 40) - piece
+    if glyphs is not None:
+        glyph = glyphs.number[row, column]
+        thing[glyph >= 0] = (len(parts) << 40) + glyph[glyph >= 0]
+    return thing
+
+
+def _of_glyphs(
+    glyphs: Glyphs | None, lines: Segments | None, seen: SeenPicture, eye: Eye
+) -> tuple[Array, Array]:
+    """Return the senses that glyphs tell, :func:`ahead_of`, and their lengths in pixels."""
+    if glyphs is None:
+        return np.zeros(0), np.zeros(0)
+    covered = glyphs.number >= 0
+    if lines is not None:
+        covered |= lines.number >= 0
+    ink = np.linalg.norm(above_ground(seen, covered, eye), axis=2)
+    return ahead_of(glyphs, ink, ~covered, eye), lengths_of(glyphs, ink, SEEN * eye.noise)
 
 
 def _between(
@@ -281,42 +373,21 @@ def _order(answers: Array) -> Order | None:
     return Order(**_two_sided(answers, "draw halos, or lines of colours that differ"))
 
 
-def _course(read: Array, true: Array) -> Direction | None:
-    """Return the figure of the courses that strokes have."""
-    found = np.isfinite(read) & np.isfinite(true)
-    read, true = read[found], true[found]
-    if not len(read):
-        return None
-    # Also the angles to the courses at other places: what guessing gives.
-    error, guess = (
-        np.degrees(np.abs((read - other + np.pi / 2) % np.pi - np.pi / 2))
-        for other in (true, true[readers.elsewhere(len(true))])
-    )
-    bits = max(0.0, readers.sharpness(error) - readers.sharpness(guess))
-    unread = bits < FLOOR or float(np.median(error)) > NEAR * TURN / 2
-    reason = "strokes are finer than an eye resolves, or cross; draw them wider, or fewer of them"
-    right = error <= TOLERANCE["direction"]
-    guessed = max(GUESSED["direction"], float((guess <= TOLERANCE["direction"]).mean()))
-    common: Keywords = {
-        "bits": bits,
-        "readable": 0.0 if unread else _beyond_chance(right, guessed),
-        "samples": len(read),
-        "reason": reason if unread else "",
-    }
-    return Direction(**_angular(error, common), **common)
-
-
-def _sense(ink: Array, light: Array, noise: float) -> Sense | None:
-    """Return the figure of differences between both ends of strokes."""
-    if len(ink) < STROKES:
-        return None
+def _of_strokes(ink: Array, light: Array, noise: float) -> Array:
+    """Return answers of sense by the differences of both ends of strokes: by ink or by light."""
     answers = []
     for difference in (ink, light):
         answer = np.sign(difference) * (np.abs(difference) >= SEEN * noise)
         # By the key or by some places a reader knows which end is which.
         answers.append(-answer if answer.sum() < 0 else answer)
-    best = max(answers, key=lambda answer: answer.sum())
-    return Sense(**_two_sided(best, "draw strokes that are tapered or have heads"))
+    return max(answers, key=lambda answer: float(answer.sum()))
+
+
+def _sense(answers: Array) -> Sense | None:
+    """Return the figure of answers of strokes and glyphs: 1 is right, -1 wrong, 0 none."""
+    if len(answers) < STROKES:
+        return None
+    return Sense(**_two_sided(answers, "draw strokes that are tapered or have heads"))
 
 
 def _two_sided(answers: Array, remedy: str) -> Keywords:
@@ -400,6 +471,8 @@ class _Reader:
         colors = np.concatenate([one.colors.lab for one in groups])
         if float(np.median(deviation)) > 3 * self.eye.noise:
             return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
+        if question == "direction" and groups[0].by_form:
+            return "marks are too fine or too faint, cross, or do not follow the data"
         # The standard deviation by the 10 % and 90 % quantiles, but for places at borders.
         spread = np.ptp(np.quantile(colors, (0.1, 0.9), axis=0), axis=0) / 2.563
         beyond = spread**2 - np.median(deviation, axis=0) ** 2
@@ -408,14 +481,38 @@ class _Reader:
         return "the colours do not follow the data as the key says; choose a light or a map for it"
 
     def direction(self) -> Direction | None:
-        """Return which way tangents run in the picture."""
-        groups = self._with("direction", lambda p: p.part.kind != "line" and p.here.has_one_tangent)
-        groups = _kept(groups, lambda p: readers.in_picture(p.here) > readers.SHORTEST)
-        if not groups:
+        """Return which way tangents run in the picture, by hue or by form: what tells more."""
+        by_hue = self._with("direction", lambda p: not p.by_form and p.here.has_one_tangent)
+        some = [p for p in self.groups if p.by_form and p.here.has_one_tangent]
+        by_form = _kept(some, lambda p: p.here.valid)
+        start = float(self.random.uniform(0.0, 180.0)) if by_hue or by_form else 0.0
+        ways = []
+        for groups in (by_hue, by_form):
+            groups = _kept(groups, lambda p: readers.in_picture(p.here) > readers.SHORTEST)
+            if not groups:
+                continue
+            ways.append(
+                (
+                    groups,
+                    [
+                        readers.read_grain(p.grain, p.course, start)
+                        if p.by_form
+                        else readers.read_direction(p.here, self.middle, p.colors, start)
+                        for p in groups
+                    ],
+                )
+            )
+        if not ways:
             return None
-        start = float(self.random.uniform(0.0, 180.0))
-        found = [readers.read_direction(p.here, self.middle, p.colors, start) for p in groups]
-        lengths = np.concatenate([p.structure(_doubled, 2) for p in groups])
+        groups, found = max(ways, key=lambda way: readers.told(way[1]))
+        # Beside a place on a line or a glyph there is often another one.
+        spread = [p.part.kind != "line" and p.part.glyph is None for p in groups]
+        lengths = np.concatenate(
+            [
+                p.structure(_doubled, 2) if there else np.full(len(p.here), np.nan)
+                for p, there in zip(groups, spread, strict=True)
+            ]
+        )
         common = self._common("direction", groups, found, lengths)
         return Direction(**_angles(found, common), **common)
 
@@ -523,12 +620,14 @@ class _Reader:
     def speed(self) -> Speed | None:
         """Return how colours rank the lengths of vectors, on the mesh where they tell most."""
         groups = [p for p in self.groups if p.here.magnitude is not None]
+        groups = [_once(p) for p in groups]
         groups = _kept(groups, lambda p: np.isfinite(np.asarray(p.here.magnitude)))
         figures = []
         for p in groups:
             length, color = np.asarray(p.here.magnitude), p.colors.lab
             if np.ptp(length) > 1e-3 * length.max():
-                for signal in (color[:, 0], np.hypot(color[:, 1], color[:, 2])):
+                signals = [color[:, 0], np.hypot(color[:, 1], color[:, 2])]
+                for signal in signals if p.length is None else [*signals, p.length]:
                     figures.append(Speed(**self._ranked(length, signal, [p])))
         return max(figures, key=lambda each: each.bits, default=None)
 
@@ -547,6 +646,14 @@ class _Reader:
         }
 
 
+def _once(places: Places) -> Places:
+    """Return one place of each point and glyph, which has one colour, and all of the others."""
+    whole = places.part.kind == "point" or places.part.glyph is not None
+    if not whole:
+        return places
+    return places.take(np.unique(places.thing, return_index=True)[1])
+
+
 def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]:
     """Return the places that a rule keeps, of the meshes that have any."""
     return [one for one in (p.take(rule(p)) for p in groups) if len(one.here)]
@@ -554,13 +661,9 @@ def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]
 
 def _angles(found: list[Reading], common: Keywords) -> Keywords:
     """Return the share of errors of 10 degrees at most, and their median."""
-    return _angular(_errors(found), common)
-
-
-def _angular(error: Array, common: Keywords) -> Keywords:
-    """Return what :func:`_angles` does of errors in degrees."""
     if common["reason"]:
         return {"within_10": 1 / 9, "median": TURN / 2}
+    error = _errors(found)
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 
 

@@ -16,6 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.cameras import pixel_sizes
+from vizlight.draw.live import matrix_of
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
@@ -176,6 +177,27 @@ def visible(
     row, column = np.divmod(shown, width)
     # VTK's rows begin at the bottom.
     return Pixels(height - 1 - row, column, which, cell - starts[which], size)
+
+
+def in_pixels(camera: pv.Camera, size: tuple[int, int], points: Array) -> Array:
+    """Return where points are in a picture, in pixels from its upper left, to the right and down.
+
+    What is behind the eye has no place in the picture: NaN.
+    """
+    width, height = size
+    project = matrix_of(camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1))
+    x, y, _, scale = project @ np.column_stack([points, np.ones(len(points))]).T
+    scale = np.where(scale > 0, scale, np.nan)
+    return np.column_stack([(1 + x / scale) / 2 * width, (1 - y / scale) / 2 * height])
+
+
+def courses(
+    camera: pv.Camera, size: tuple[int, int], points: Array, vectors: Array
+) -> Array:  # fmt: skip
+    """Return the unit directions in a picture, to the right and down, of vectors at points."""
+    step = footprint(camera, points, size[1])[:, np.newaxis] * unit_rows(vectors)
+    here, there = (in_pixels(camera, size, at) for at in (points, points + step))
+    return unit_rows(np.nan_to_num(there - here))
 
 
 def toward_eye(camera: pv.Camera, points: Array) -> Array:

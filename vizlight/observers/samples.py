@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     Kind: TypeAlias = Literal["surface", "line", "point"]
 
-#: Array of VTK's streamlines that grows in the sense of the flow.
-TIME = "IntegrationTime"
+#: Arrays of VTK: of streamlines, what grows in the sense of the flow; of glyphs, their vectors.
+TIME, GLYPH = "IntegrationTime", "GlyphVector"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,6 +219,8 @@ class Part:
     ahead : ndarray, shape (C,), or None
         1 for segments that run in the sense of the data, -1 against it, 0 without; None where the
         data have no sense.
+    glyph : ndarray of int, shape (C,), or None
+        Numbers of the glyphs that cells belong to; None where they are no glyphs.
     by_axes : bool
         Whether the hues of lines are those of the axes along which they run.
     """
@@ -236,6 +238,7 @@ class Part:
     width: float = 1.0
     diameter: float | None = None
     ahead: Array | None = None
+    glyph: Indices | None = None
     by_axes: bool = False
 
     @property
@@ -271,6 +274,9 @@ def part_on(
     TypeError, ValueError
         If an array is missing or does not fit, as for :func:`vizlight.illuminate`.
     """
+    options, is_glyphs = of_glyphs(mesh, options), GLYPH in mesh.point_data
+    if is_glyphs:
+        more["lit"] = False
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
     cells, owner = subdivision.drawn(mesh)
@@ -289,11 +295,33 @@ def part_on(
     inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
-    ahead = _ahead(mesh, cells, inputs, options) if kind == "line" else None
+    ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells, inputs, options)
     return Part(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
-        **more,
+        glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
     )  # fmt: skip
+
+
+def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
+    """Return options that name the vectors of glyphs, of which these are marks."""
+    if options.tangents is None and GLYPH in mesh.point_data:
+        return dataclasses.replace(options, tangents=GLYPH)
+    return options
+
+
+def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
+    """Return the numbers of the glyphs that cells belong to.
+
+    VTK writes the points of one glyph after those of another, as many of each. In another mesh,
+    such as one whose sharp edges are split, glyphs of equal vectors count as one.
+    """
+    vectors = np.asarray(mesh.point_data[GLYPH])
+    starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
+    # Neighbours may have equal vectors.
+    number = np.arange(len(vectors)) // np.diff([0, *starts, len(vectors)]).min()
+    if (number[cells] != number[cells[:, :1]]).any():
+        number = np.unique(vectors, axis=0, return_inverse=True)[1].ravel()
+    return np.asarray(np.unique(number[cells[:, 0]], return_inverse=True)[1])
 
 
 def _ahead(

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkFiltersCore import vtkGlyph3D
+from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkGlyph3DMapper
 
 from vizlight import _check
 from vizlight.draw.glsl import Stroke
@@ -20,7 +22,7 @@ from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure, toward
-from vizlight.observers.samples import part_on
+from vizlight.observers.samples import GLYPH, of_glyphs, part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.cells import has_faces
@@ -183,9 +185,10 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Pa
     scene = live.scene_of(renderer, actor)
     options = live.source.named or LightOptions.of(vars(live.source.options))
     colors = _values(mesh, live.given, table)
-    # Colours that were given mean nothing that a key tells; crossings of lines are still read.
+    # Colours that were given mean nothing that a key tells; crossings of lines are still read, and
+    # so are marks.
     lit = live.scalars is None or "values" in colors
-    if not lit and not has_lines_only(mesh):
+    if not lit and not has_lines_only(mesh) and GLYPH not in mesh.point_data:
         return None
     placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
     return part_on(
@@ -207,6 +210,7 @@ def moved(
     matrix : ndarray, shape (4, 4)
         Matrix of the actor.
     """
+    options = of_glyphs(mesh, options)
     if np.array_equal(matrix, np.eye(4)):
         return mesh, options
     linear = matrix[:3, :3]
@@ -222,11 +226,47 @@ def moved(
 
 def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
     """Return the mesh of a mapper of PyVista whose colours may mean values, or axes of lines."""
-    mesh = pv.wrap(mapper.GetInput())
+    glyphs = isinstance(mapper, vtkGlyph3DMapper)
+    mesh = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
     if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
         return None
     direct = mapper.GetColorMode() == 2 and bool(mapper.GetScalarVisibility())
-    return mesh if not direct or has_lines_only(mesh) else None
+    marks = has_lines_only(mesh) or GLYPH in mesh.point_data
+    return mesh if not direct or marks else None
+
+
+def _glyphs_of(mapper: Foreign) -> pv.PolyData | None:
+    """Return the mesh of the glyphs that a mapper draws along vectors; None for others."""
+    data = pv.PolyData(pv.wrap(mapper.GetInput()).points)
+    data.point_data.update(pv.wrap(mapper.GetInput()).point_data)
+    named = [mapper.GetInputArrayInformation(i).Get(vtkDataObject.FIELD_NAME()) for i in (0, 3)]
+    size, vectors = (data.point_data.get(name) for name in named)
+    along = mapper.GetOrient() and mapper.GetOrientationMode() == mapper.DIRECTION
+    if vectors is None or not along or mapper.GetScaleMode() == mapper.SCALE_BY_COMPONENTS:
+        return None
+    data.point_data.active_vectors_name = named[1]
+    maker = vtkGlyph3D()
+    maker.SetInputData(data)
+    maker.SetSourceData(mapper.GetSource())
+    maker.SetScaleFactor(mapper.GetScaleFactor())
+    maker.SetScaleModeToDataScalingOff()
+    if size is not None and mapper.GetScaling() and mapper.GetScaleMode() != mapper.NO_DATA_SCALING:
+        data.point_data["vizlight size"] = np.linalg.norm(size.reshape(len(size), -1), axis=1)
+        data.point_data.active_scalars_name = "vizlight size"
+        maker.SetScaleModeToScaleByScalar()
+    maker.Update()
+    return pv.PolyData(maker.GetOutput())
+
+
+def _marks(actor: vtkActor, mesh: pv.DataSet) -> str | None:
+    """Return the name of the vectors along which marks run: glyphs, VTK's LIC, other textures."""
+    mapper = actor.GetMapper()
+    if "LIC" in mapper.GetClassName():
+        name = mapper.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
+        return name or mesh.point_data.active_vectors_name
+    if actor.GetTexture() is not None:
+        return mesh.point_data.active_vectors_name
+    return GLYPH if GLYPH in mesh.point_data else None
 
 
 def _colored(
@@ -242,11 +282,12 @@ def _colored(
     if mesh is None:
         return None
     colors = _values(mesh, name if mapper.GetScalarVisibility() else None, mapper.GetLookupTable())
-    # Crossings of lines are read whatever their colours mean.
-    if not colors and not has_lines_only(mesh):
+    marks = _marks(actor, mesh)
+    # Crossings of lines are read whatever their colours mean, and so are marks.
+    if not colors and marks is None and not has_lines_only(mesh):
         return None
     scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
-    placed, options = moved(mesh, LightOptions(), matrix_of(actor.GetMatrix()))
+    placed, options = moved(mesh, LightOptions(tangents=marks), matrix_of(actor.GetMatrix()))
     return part_on(placed, scene, options, width=width, lit=False, diameter=diameter, **colors)
 
 
