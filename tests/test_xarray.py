@@ -29,7 +29,7 @@ def test_the_accessor_reads_and_looks(waves, of):
     look = data.vizlight.look("auto", at={"number": 9}, size=(90, 60))
     assert (look.shown, look.array) == ("sheet", "height")
     np.testing.assert_array_equal(look.mesh["height"], mesh["height"])
-    assert [*inspect.signature(data.vizlight.look).parameters][0] == "question"
+    assert next(iter(inspect.signature(data.vizlight.look).parameters)) == "question"
 
 
 def test_what_reads_is_refused_beside_a_mesh(waves):
