@@ -31,6 +31,7 @@ from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.maps import MISSING
 from vizlight.mesh import records
+from vizlight.mesh.strokes import HEAD
 from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
@@ -48,20 +49,22 @@ TURN, TURN_HUE = 0.6, 0.8
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 #: Multiple of these from which no picture need be read back before it is chosen.
 CLEAR = 2.0
-#: Length of a stroke in distances between strokes, and its largest width: wider ones darken what is
-#: beside them for the eye.
-LONG, WIDE = 3.5, 1.7
+#: Length of a stroke in distances between strokes.
+LONG = 3.5
+#: Width of the head of a stroke as a share of its length, its least and largest one in least widths
+#: of lines: wider ones darken what is beside them for the eye.
+HEAD_WIDTH, NARROWEST, WIDEST = 0.55, 3.0, 3.8
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
 #: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
 SPACING_IN_VOLUME, LONG_IN_VOLUME = 1 / 25, 1 / 10
-#: Largest width of those strokes, and their halo.
-WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
+#: Largest width of those without a sense, and the halo of all.
+WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
 #: Length below which streamlines of a volume are left out, in distances between them: many are cut
 #: short where the field is noise.
 SHORTEST = 4 * SPACING_IN_VOLUME
 #: Words of the key for the sense of strokes.
-SENSE = "; strokes run from thin to thick"
+SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
@@ -179,11 +182,18 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
     scene = even_light(camera)
-    wide = round(WIDE * case.width, 1)
+    wide = _head_width(case, strokes, camera)
     return Layer(
         strokes,
         {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},
     )
+
+
+def _head_width(case: Case, strokes: Step, camera: Step) -> float:
+    """Return the width of the heads of strokes in pixels."""
+    length = HEAD * strokes.keywords["stroke_length"] / pixel_of(case, camera)
+    ends = NARROWEST * case.width, WIDEST * case.width
+    return round(float(np.clip(HEAD_WIDTH * length, *ends)), 1)
 
 
 def pixel_of(case: Case, camera: Step) -> float:
@@ -229,7 +239,10 @@ def flow(case: Case) -> Drawing:
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
     lit = _streamlines(case, mesh, scene, keywords)
     keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
-    drawn: Keywords = {"width": "width", "line_width": round(WIDE_IN_VOLUME * case.width, 1)}
+    wide = round(WIDE_IN_VOLUME * case.width, 1)
+    if not keywords.get("line_field"):
+        wide = _head_width(case, lit, camera)
+    drawn: Keywords = {"width": "width", "line_width": wide}
     drawn["halo"] = HALO_IN_VOLUME
     words = f"streamlines of {array.name}"
     if by_speed:
