@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import to_hex
+from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
@@ -17,22 +19,33 @@ from vizlight.looks import map_parts
 from vizlight.looks.contents import kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
+from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
+from vizlight.maps import MISSING
 from vizlight.mesh import globes, meaning
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Contents, Named
     from vizlight.looks.wishes import Wishes
 
-#: Colour map where nothing is lit.
-LIGHTNESS = "viridis"
+#: Colour map where nothing is lit, and that of values on lit surfaces.
+LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
+
+#: Edges of a surface that are its borders.
+BORDERS = {
+    "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
+    "non_manifold_edges": False,
+}  # fmt: skip
+#: Distance from a side of its box, as a share of the size of a surface, at which a point is on it,
+#: and share of the points of borders that are on sides where a box cuts a surface.
+ON_BOX, CUT = 1e-3, 0.95
 
 #: Questions whose pictures of maps have north up, whatever their shape is.
 NORTH_UP = ("relief", "sky")
@@ -226,7 +239,42 @@ class Case:
     @property
     def map_on_ground(self) -> str:
         """Colour map of thin lines, of which what is large stands out from the ground."""
-        return LIGHTNESS if self.wishes.style == "dark" else f"{LIGHTNESS}_r"
+        return f"vizlight.on_{self.wishes.style}"
+
+    def ranged(self, values: Array, name: str, cmap: str, *, lengths: bool) -> tuple[Keywords, str]:
+        """Return the colours of values in the range that suits them, and words if it is not all.
+
+        Parameters
+        ----------
+        values : ndarray
+            Values, of which those that are finite count.
+        name : str
+            What they are.
+        cmap : str
+            Colour map where none is asked for.
+        lengths : bool
+            Whether they are lengths of vectors.
+        """
+        colors: Keywords = {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors
+        values = values[np.isfinite(values)]
+        if "clim" in colors or not values.size:
+            return colors, ""
+        shown = range_shown(values, lengths=lengths)
+        colors["clim"] = (shown.low, shown.high)
+        words = shown.words(name)
+        if words:
+            ends = [to_hex(get_cmap_safe(colors["cmap"])(end)) for end in (0.0, 1.0)]
+            if shown.apart:
+                ends[0] = MISSING
+            names = ("below_range_color", "above_range_color")
+            options = {n: c for n, c, cut in zip(names, ends, shown.clipped, strict=True) if cut}
+            if shown.logarithmic:
+                options["log_scale"] = True
+            colors["cmap"] = Step(
+                "", "pyvista.LookupTable", colors["cmap"], n_values=256,
+                scalar_range=colors["clim"], nan_color=MISSING, **options,
+            )  # fmt: skip
+        return colors, words
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""
@@ -262,6 +310,31 @@ class Case:
         """Least width of lines, in pixels."""
         given = self.wishes.picture.get("line_width")
         return float(given) if given else round(max(1.5, THIN * max(self.wishes.size)), 1)
+
+
+def borders(case: Case, mesh: Step) -> list[Layer]:
+    """Return the layers of the borders of an open surface, and of the box that cuts it."""
+    surface = mesh.run()
+    if case.contents.flat_axis is not None or not isinstance(surface, pv.PolyData):
+        return []
+    edges = Step("borders", ".extract_feature_edges", mesh, **BORDERS)
+    if not edges.run().n_points:
+        return []
+    drawn = {"color": "#333333", "line_width": case.width, "lighting": False}
+    layers = [Layer(edges, drawn, live=False)]
+    if is_cut_by_box(surface, edges.run()):
+        layers.append(
+            Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
+        )
+    return layers
+
+
+def is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
+    """Return whether all borders of a surface are on its box, and on three sides of it at least."""
+    ends = np.reshape(surface.bounds, (3, 2))
+    places = np.asarray(edges.points, dtype=np.float64)[..., np.newaxis]
+    on = np.abs(places - ends) < ON_BOX * surface.length
+    return bool(np.mean(on.any(axis=(1, 2))) > CUT and on.any(axis=0).sum() > 2)
 
 
 def titled(mesh: pv.DataSet, name: str) -> str:

@@ -22,14 +22,13 @@ from vizlight.looks.recipes.drawing import (
     Doubt,
     Drawing,
     Layer,
-    range_of,
+    borders,
     titled,
     titled_length,
     unlit,
 )
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.maps import MISSING
 from vizlight.mesh import records
 from vizlight.mesh.strokes import HEAD
 from vizlight.observers.pixels import footprint
@@ -104,7 +103,8 @@ def _without_strokes(case: Case, mesh: Step, camera: Step, room: float) -> Drawi
 
     def lengths_alone() -> Drawing:
         note = f"{name} turns too fast here for its course to be seen: colours are its length"
-        return replace(_speed(case, mesh, camera, None), notes=[note])
+        drawing = _speed(case, mesh, camera, None)
+        return replace(drawing, notes=[note, *drawing.notes])
 
     if room * TURN_HUE < LEAST_PLACE:
         return lengths_alone()
@@ -151,19 +151,21 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     scene = case.wishes.scene("none", camera)
     if bent:
         scene = case.exposed(mesh, camera, "value", **light)
-    colors: Keywords = {"cmap": SPEED, "nan_color": MISSING} | case.wishes.colors
+    finite = _lengths(mesh.run(), array.name)
+    colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=True)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    layers = [Layer(mesh, shown | case.wishes.drawn(light))]
+    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *borders(case, mesh)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    finite = _lengths(mesh.run(), array.name)
     sense = "" if strokes is None else SENSE
     title = f"{titled_length(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
     bar |= {} if bent else {"scene": scene}
-    bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
+    bar["clim"] = colors["clim"]
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
-    return Drawing(layers, camera, scene, case.lit(mesh, scene, **light), words, [bar], kind=mesh)
+    lit = case.lit(mesh, scene, **light)
+    notes = [note] if note else []
+    return Drawing(layers, camera, scene, lit, words, [bar], notes=notes, kind=mesh)
 
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
@@ -245,13 +247,16 @@ def flow(case: Case) -> Drawing:
     drawn: Keywords = {"width": "width", "line_width": wide}
     drawn["halo"] = HALO_IN_VOLUME
     words = f"streamlines of {array.name}"
+    notes = []
     if by_speed:
         speed = own_name(mesh.run(), "speed")
-        colors = {"cmap": case.map_on_ground} | case.wishes.colors
+        speeds = np.asarray(lit.run()[speed], dtype=np.float64)
+        colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
+        notes += [note] if note else []
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
         title = f"{titled_length(mesh.run(), array.name)}{SENSE}"
         bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
-        bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
+        bar |= {"scene": scene, "clim": colors["clim"]}
         keys = [bar]
         words += " in the colours of their speed"
     lines = Layer(lit, {"scene": scene, **drawn})
@@ -259,10 +264,11 @@ def flow(case: Case) -> Drawing:
         # The surface that conditions the light of the lines is not drawn with them.
         name = str(keywords.get("name", "luminance"))
         lines = unlit(lit, scene, name, line_width=case.width)
-    notes = []
     if left_out := int(lit.run().field_data.get("left_out", [0])[0]):
         least = f"{lit.keywords['min_length']:g}"
-        notes = [f"lines shorter than {least}, four times their distance, are left out: {left_out}"]
+        notes += [
+            f"lines shorter than {least}, four times their distance, are left out: {left_out}"
+        ]
     layers = [lines, _hull(mesh)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 

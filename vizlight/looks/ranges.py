@@ -1,0 +1,93 @@
+"""The range of values that a bar of colours shows: all of it, clipped, or logarithmic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vizlight._types import Array
+
+#: Quartile ranges from the quartiles beyond which values are far outside (Tukey 1977), the largest
+#: share of them that is clipped, and the share of the bar that they must take.
+FENCE, MOST_OUTSIDE, LEAST_FREED = 1.5, 0.1, 0.3
+#: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
+#: ratio of its ends at most.
+SKEWED, DECADES = 5.0, 100.0
+#: Share of the values that are one value far outside, from which it stands for a region apart.
+APART = 0.01
+
+
+class Range(NamedTuple):
+    """Range of a bar of colours.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends.
+    logarithmic : bool
+        Whether equal ratios have equal lengths.
+    clipped : (bool, bool)
+        Whether values lie below the lower, and above the upper end.
+    apart : bool
+        Whether those below are nearly all one value, such as a 0 where nothing was measured.
+    """
+
+    low: float
+    high: float
+    logarithmic: bool = False
+    clipped: tuple[bool, bool] = (False, False)
+    apart: bool = False
+
+    def words(self, name: str) -> str:
+        """Return the words that say how the range differs from that of the values, if it does."""
+        if self.logarithmic:
+            return f"colours of {name} are logarithmic from {self.low:g} to {self.high:g}"
+        if not any(self.clipped):
+            return ""
+        told = f"colours of {name} run from {self.low:g} to {self.high:g}, where most values are"
+        return told + "; one value below, in a region apart, is grey" * self.apart
+
+
+def range_shown(values: Array, *, lengths: bool = False) -> Range:
+    """Return the range of a bar that shows values.
+
+    Parameters
+    ----------
+    values : ndarray
+        Finite values, one at least.
+    lengths : bool
+        Whether they are lengths of vectors, whose bar may be logarithmic.
+
+    Returns
+    -------
+    Range
+        From the least to the largest value, unless few values far outside take much of the bar, or
+        lengths are skewed.
+    """
+    low, high = float(values.min()), float(values.max())
+    first, median, third, top = np.percentile(values, (25, 50, 75, 98))
+    if lengths and top > SKEWED * median > 0:
+        bottom = max(_rounded(high / DECADES, high / DECADES, np.floor), low)
+        return Range(bottom, high, logarithmic=True, clipped=(low < bottom, False))
+    reach = FENCE * (third - first)
+    fences = max(low, first - reach), min(high, third + reach)
+    step = 10.0 ** np.floor(np.log10((fences[1] - fences[0]) / 10)) if reach > 0 else 0.0
+    below, above = values < fences[0], values > fences[1]
+    freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
+    if not step or freed < LEAST_FREED or np.mean(below | above) > MOST_OUTSIDE:
+        return Range(low, high)
+    ends = (
+        _rounded(fences[0], step, np.floor) if below.any() else low,
+        _rounded(fences[1], step, np.ceil) if above.any() else high,
+    )
+    least = np.count_nonzero(np.isclose(values, low, atol=0.01 * (fences[1] - fences[0])))
+    apart = least > max(APART * len(values), 0.5 * np.count_nonzero(below))
+    apart = bool(apart and below.any())
+    return Range(*ends, clipped=(bool(below.any()), bool(above.any())), apart=apart)
+
+
+def _rounded(value: float, step: float, way: np.ufunc) -> float:
+    step = 10.0 ** np.floor(np.log10(step) + 1e-9)
+    return float(f"{way(value / step) * step:.6g}")
