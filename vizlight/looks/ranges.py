@@ -9,9 +9,9 @@ import numpy as np
 if TYPE_CHECKING:
     from vizlight._types import Array
 
-#: Quartile ranges from the quartiles beyond which values are far outside (Tukey 1977), the largest
-#: share of them that is clipped, and the share of the bar that they must take.
-FENCE, MOST_OUTSIDE, LEAST_FREED = 1.5, 0.1, 0.3
+#: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
+#: distribution, the largest share of them that is clipped, and the share of the bar that they take.
+FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.3
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 5.0, 100.0
@@ -71,9 +71,10 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     if lengths and top > SKEWED * median > 0:
         bottom = max(_rounded(high / DECADES, high / DECADES, np.floor), low)
         return Range(bottom, high, logarithmic=True, clipped=(low < bottom, False))
-    reach = FENCE * (third - first)
-    fences = max(low, first - reach), min(high, third + reach)
-    step = 10.0 ** np.floor(np.log10((fences[1] - fences[0]) / 10)) if reach > 0 else 0.0
+    fences = (
+        max(low, median + FENCE * (first - median)), min(high, median + FENCE * (third - median)),
+    )  # fmt: skip
+    step = (fences[1] - fences[0]) / 10 if first < median < third else 0.0
     below, above = values < fences[0], values > fences[1]
     freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
     if not step or freed < LEAST_FREED or np.mean(below | above) > MOST_OUTSIDE:
@@ -82,10 +83,10 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
         _rounded(fences[0], step, np.floor) if below.any() else low,
         _rounded(fences[1], step, np.ceil) if above.any() else high,
     )
-    least = np.count_nonzero(np.isclose(values, low, atol=0.01 * (fences[1] - fences[0])))
+    least = int(np.count_nonzero(np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))))
     apart = least > max(APART * len(values), 0.5 * np.count_nonzero(below))
-    apart = bool(apart and below.any())
-    return Range(*ends, clipped=(bool(below.any()), bool(above.any())), apart=apart)
+    cut = bool(below.any()), bool(above.any())
+    return Range(*ends, clipped=cut, apart=cut[0] and apart)
 
 
 def _rounded(value: float, step: float, way: np.ufunc) -> float:

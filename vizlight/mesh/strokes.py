@@ -203,11 +203,11 @@ def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
         if values.dtype.kind != "f":
             return values[np.where(share < 0.5, before, after)]
         part = share.reshape(-1, *(1,) * (values.ndim - 1))
-        # Beside a value that is not finite there is none.
+        # A point keeps its value beside one that is not finite.
         mixed = np.where(
             part > 0, (1 - part) * values[before] + part * values[after], values[before]
         )
-        return mixed.astype(values.dtype)
+        return np.asarray(mixed, dtype=values.dtype)
 
     ends = np.searchsorted(rows, offsets[1:] - 1, side="right")
     return _polylines(lines, between, np.diff(ends, prepend=0))

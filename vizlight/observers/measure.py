@@ -620,7 +620,7 @@ def _shares(table: pv.LookupTable, values: Array) -> Array:
     if table.log_scale:
         # VTK has no logarithm of what is not positive, and takes the lower end.
         ends, values = np.log(ends), np.log(np.maximum(values, ends[0]))
-    return np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
+    return np.asarray(np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
 
 
 def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
@@ -629,7 +629,7 @@ def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
     is_apart = table.GetUseBelowRangeColor() and not np.allclose(
         table.GetBelowRangeColor()[:3], first, atol=0.02
     )
-    return (values < table.scalar_range[0]) & bool(is_apart)
+    return np.asarray((values < table.scalar_range[0]) & bool(is_apart))
 
 
 def _table(places: Places) -> pv.LookupTable:

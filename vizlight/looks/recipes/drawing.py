@@ -38,11 +38,16 @@ LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
 
-#: Edges of a surface that are its borders.
+#: Colour of the borders of surfaces, and keywords of what stands beside the data.
+DARK, BESIDE = "#333333", {"pickable": False}
+#: Keywords that take the edges of a surface that are its borders.
 BORDERS = {
     "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
     "non_manifold_edges": False,
 }  # fmt: skip
+#: Largest number of them as a share of that of the cells, and distance of places that are one, as a
+#: share of the size of the surface.
+MOST_BORDERS, SEAM = 0.3, 1e-6
 #: Distance from a side of its box, as a share of the size of a surface, at which a point is on it,
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
@@ -188,6 +193,37 @@ class Case:
             return self.data
         return Step("surface", "files.surface_of", self.data)
 
+    @cached_property
+    def borders(self) -> Step | None:
+        """Step that takes the borders of an open surface that bends, None where it has none."""
+        surface = self.surface.run()
+        if self.contents.dimension != 2 or self.contents.flat_axis is not None or self.on_globe:
+            return None
+        if not isinstance(surface, pv.PolyData):
+            return None
+        edges = Step("borders", ".extract_feature_edges", self.surface, **BORDERS)
+        return edges if _are_borders(edges.run(), surface) else None
+
+    @cached_property
+    def box(self) -> Step | None:
+        """Step that makes the box that cuts the surface, None where none does."""
+        edges = self.borders
+        if edges is None or not _is_cut_by_box(self.surface.run(), edges.run()):
+            return None
+        return Step("", ".outline", self.surface)
+
+    @property
+    def edges(self) -> list[Layer]:
+        """Layers of the borders of the surface, and of its box."""
+        layers = []
+        if self.borders is not None:
+            drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False}
+            layers.append(Layer(self.borders, drawn | BESIDE, live=False))
+        if self.box is not None:
+            box: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
+            layers.append(Layer(self.box, box, live=False))
+        return layers
+
     def eye(self, mesh: Step) -> Eye:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
@@ -219,6 +255,8 @@ class Case:
         elif self.on_globe:
             # The ball is seen whole, wherever there are data.
             mesh = map_parts.ball()
+        elif self.box is not None:
+            mesh = self.box
         return self.wishes.camera(mesh, eye)
 
     def scene(self, camera: Step) -> Step:
@@ -267,7 +305,9 @@ class Case:
             if shown.apart:
                 ends[0] = MISSING
             names = ("below_range_color", "above_range_color")
-            options = {n: c for n, c, cut in zip(names, ends, shown.clipped, strict=True) if cut}
+            options: Keywords = {
+                n: c for n, c, cut in zip(names, ends, shown.clipped, strict=True) if cut
+            }
             if shown.logarithmic:
                 options["log_scale"] = True
             colors["cmap"] = Step(
@@ -312,29 +352,21 @@ class Case:
         return float(given) if given else round(max(1.5, THIN * max(self.wishes.size)), 1)
 
 
-def borders(case: Case, mesh: Step) -> list[Layer]:
-    """Return the layers of the borders of an open surface, and of the box that cuts it."""
-    surface = mesh.run()
-    if case.contents.flat_axis is not None or not isinstance(surface, pv.PolyData):
-        return []
-    edges = Step("borders", ".extract_feature_edges", mesh, **BORDERS)
-    if not edges.run().n_points:
-        return []
-    drawn = {"color": "#333333", "line_width": case.width, "lighting": False}
-    layers = [Layer(edges, drawn, live=False)]
-    if is_cut_by_box(surface, edges.run()):
-        layers.append(
-            Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
-        )
-    return layers
+def _are_borders(edges: pv.PolyData, surface: pv.PolyData) -> bool:
+    """Return whether edges are borders: few, and no seams at which points are stored twice."""
+    if not edges.n_cells or edges.n_cells > MOST_BORDERS * surface.n_cells:
+        return False
+    middles = np.asarray(edges.points, dtype=np.float64)[edges.lines.reshape(-1, 3)[:, 1:]].mean(1)
+    places = np.rint(middles / (SEAM * surface.length)).astype(np.int64)
+    return len(np.unique(places, axis=0)) == edges.n_cells
 
 
-def is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
-    """Return whether all borders of a surface are on its box, and on three sides of it at least."""
+def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
+    """Return whether all borders of a surface are on its box, and on all of its sides."""
     ends = np.reshape(surface.bounds, (3, 2))
     places = np.asarray(edges.points, dtype=np.float64)[..., np.newaxis]
     on = np.abs(places - ends) < ON_BOX * surface.length
-    return bool(np.mean(on.any(axis=(1, 2))) > CUT and on.any(axis=0).sum() > 2)
+    return bool(np.mean(on.any(axis=(1, 2))) > CUT and np.all(on.any(axis=0)))
 
 
 def titled(mesh: pv.DataSet, name: str) -> str:

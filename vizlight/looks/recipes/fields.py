@@ -22,7 +22,6 @@ from vizlight.looks.recipes.drawing import (
     Doubt,
     Drawing,
     Layer,
-    borders,
     titled,
     titled_length,
     unlit,
@@ -35,7 +34,7 @@ from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -136,7 +135,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
         words = f"{other.name} in colours, lit along {array.name}"
         keys = [case.bar(other, case.wishes.colors)]
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
-    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
+    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
@@ -154,7 +153,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     finite = _lengths(mesh.run(), array.name)
     colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=True)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *borders(case, mesh)]
+    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     sense = "" if strokes is None else SENSE
@@ -193,7 +192,8 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
 
 def _head_width(case: Case, strokes: Step, camera: Step) -> float:
     """Return the width of the heads of strokes in pixels."""
-    length = HEAD * strokes.keywords["stroke_length"] / pixel_of(case, camera)
+    step: Foreign = strokes.keywords["stroke_length"]
+    length = HEAD * step / pixel_of(case, camera)
     ends = NARROWEST * case.width, WIDEST * case.width
     return round(float(np.clip(HEAD_WIDTH * length, *ends)), 1)
 

@@ -16,7 +16,6 @@ from vizlight.looks.recipes.drawing import (
     ON_SURFACES,
     Drawing,
     Layer,
-    borders,
     colors_of,
     colors_of_kinds,
     unlit,
@@ -80,7 +79,7 @@ def values(case: Case) -> Drawing:
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
     return Drawing(
-        [Layer(mesh, shown), *borders(case, mesh)], camera, scene, lit,
+        [Layer(mesh, shown), *case.edges], camera, scene, lit,
         f"{array.name} in colours", keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
@@ -99,7 +98,8 @@ def surface(case: Case) -> Drawing:
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key], kind=mesh)
+    layers = [Layer(mesh, drawn), *case.edges]
+    return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
 
 def plane(case: Case) -> Drawing:
