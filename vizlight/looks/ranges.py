@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 #: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
 #: distribution, the largest share of them that is clipped, and the share of the bar that they take.
-FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.3
+FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 5.0, 100.0
@@ -76,17 +76,19 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     )  # fmt: skip
     step = (fences[1] - fences[0]) / 10 if first < median < third else 0.0
     below, above = values < fences[0], values > fences[1]
+    cut = bool(below.any()), bool(above.any())
+    least = np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))
+    apart = least.sum() > max(APART * len(values), 0.5 * below.sum())
+    is_apart = cut[0] and bool(apart)
     freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
-    if not step or freed < LEAST_FREED or np.mean(below | above) > MOST_OUTSIDE:
+    is_few = np.mean(below | above) <= MOST_OUTSIDE
+    if not step or not is_few or (freed < LEAST_FREED and not is_apart):
         return Range(low, high)
     ends = (
-        _rounded(fences[0], step, np.floor) if below.any() else low,
-        _rounded(fences[1], step, np.ceil) if above.any() else high,
+        _rounded(fences[0], step, np.floor) if cut[0] else low,
+        _rounded(fences[1], step, np.ceil) if cut[1] else high,
     )
-    least = int(np.count_nonzero(np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))))
-    apart = least > max(APART * len(values), 0.5 * np.count_nonzero(below))
-    cut = bool(below.any()), bool(above.any())
-    return Range(*ends, clipped=cut, apart=cut[0] and apart)
+    return Range(*ends, clipped=cut, apart=is_apart)
 
 
 def _rounded(value: float, step: float, way: np.ufunc) -> float:

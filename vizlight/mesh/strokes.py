@@ -154,8 +154,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
         strokes.point_data[WIDTH] = (ENDS + (1 - ENDS) * thick).astype(np.float32)
         return strokes
     heads = np.minimum(HEAD * length, MOST_HEAD * whole)
-    places = [_crossings(strokes, run - whole + start * heads) for start in (1 + BASE, 1.0)]
-    strokes = _divided(strokes, np.concatenate(places))
+    bases = [_crossings(strokes, run - whole + start * heads) for start in (1 + BASE, 1.0)]
+    strokes = _divided(strokes, np.concatenate(bases))
     run, whole = _runs(strokes, tangents)
     heads = np.minimum(HEAD * length, MOST_HEAD * whole)
     place, head = (part / np.where(whole > 0, whole, 1.0) for part in (run, heads))
@@ -201,7 +201,7 @@ def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
 
     def between(values: AnyArray) -> AnyArray:
         if values.dtype.kind != "f":
-            return values[np.where(share < 0.5, before, after)]
+            return np.asarray(values[np.where(share < 0.5, before, after)])
         part = share.reshape(-1, *(1,) * (values.ndim - 1))
         # A point keeps its value beside one that is not finite.
         mixed = np.where(
