@@ -162,7 +162,7 @@ const CAPSULE_SHAPE = `
   float border = 0.5 * fwidth(away);
   // Where the width changes fast, as in the head of an arrow, ends are straight.
   bool steep = abs(halves.x - halves.y) > 0.2 * at.z && (at.y < 0.0 || at.y > at.z);
-  if (away > ownHalo || steep) discard;
+  if (away >= ownHalo || steep) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
 const CAPSULE_GROUND = `
@@ -400,13 +400,15 @@ class Mesh {
   // Strokes that have moved for a share of their period; Python says the same of a movie.
   move(share) {
     const { phase, passing, grown } = this.moving;
-    const { tail, bare, head, base } = this.given.moving;
+    const { tail, neck, bare, head, base } = this.given.moving;
     const widths = Uint8Array.from(grown, (most, i) => {
       const at = (phase[i] / NO_VALUE - passing[i] * share) % 1;
       const here = at < 0 ? at + 1 : at;
+      const place = (here - bare) / (1 - bare);
       // In the head from its base, 0, to its tip, 1.
-      const place = (here - 1 + head) / head;
-      const width = place < 0 ? 1 - (1 - tail) * Math.min(-place / base, 1) : 1 - place;
+      const ahead = (place - 1) / head + 1;
+      const shaft = tail + ((neck - tail) * place) / (1 - head);
+      const width = ahead > 0 ? 1 - ahead : shaft + (1 - shaft) * Math.max(0, 1 + ahead / base);
       return here < bare ? 0 : most * width;
     });
     this.batches.forEach((batch) => { if (batch.kind === 'strokes') batch.put('ownShare', gathered(widths, batch.points, 1), 1); });
