@@ -64,6 +64,16 @@ colormaps.register(even, force=True)
 #: It is the map of the lengths of vectors in a look.
 speed = ListedColormap(colormaps["YlGnBu"](0.7 * np.arange(256) / 255), name="vizlight.speed")
 colormaps.register(speed, force=True)
+#: Maps of a look that run in lightness too, as most printed ones, yet not so far that light on them
+#: is taken for another value: violet over green to yellow on surfaces, and the parts of viridis
+#: that stand out from a white and from a dark ground, with what is large standing out most.
+_VIOLET_TO_YELLOW = ["#5a4fb0", "#3f7fc9", "#35a7b8", "#4fc087", "#a5d24a", "#f2dc3c"]
+_surface = LinearSegmentedColormap.from_list("vizlight.surface", _VIOLET_TO_YELLOW)
+_VIRIDIS = colormaps["viridis"]
+_paper = ListedColormap(_VIRIDIS(np.linspace(0.8, 0.0, 256)), name="vizlight.on_paper")
+_dark = ListedColormap(_VIRIDIS(np.linspace(0.3, 1.0, 256)), name="vizlight.on_dark")
+for _map in (_surface, _paper, _dark):
+    colormaps.register(_map, force=True)
 
 
 #: Colours of the sea bed from deep to shallow, and of the ground from low to high.

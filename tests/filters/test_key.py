@@ -157,3 +157,11 @@ def test_words_may_have_any_letters(tmp_path):
     plotter.vizlight.add_key(question="value", cmap=table, title="Température (m²/s²)")
     plotter.screenshot(tmp_path / "a.png")
     plotter.close()
+
+
+@pytest.mark.parametrize("options", [{}, {"below_range_color": "gray"}, {"log_scale": True}])
+def test_a_bar_says_whether_it_is_logarithmic_and_what_lies_beyond_its_ends(options):
+    table = pv.LookupTable("viridis", n_values=16, scalar_range=(0.1, 10.0), **options)
+    made = presets.key("value", question="value", cmap=table)
+    assert bool(made.field_data["logarithmic"][0]) == ("log_scale" in options)
+    assert list(made.field_data["beyond"]) == ["below_range_color" in options, False]

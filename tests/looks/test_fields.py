@@ -36,20 +36,26 @@ def test_a_field_at_rest_does_not_turn():
     assert fields.turn_of(grid, "wind") == 0
 
 
-def test_a_slow_field_is_strokes_that_grow_along_it_over_its_speed():
+def test_a_slow_field_is_arrows_along_it_over_its_speed():
     look = vizlight.look(sheet(0.05))
     assert look.drawing.words == "length of wind in colours, with strokes along it"
     assert not look.notes
     ground, strokes = look.drawing.layers
     assert ground.keywords["scalars"] == "wind"
     assert strokes.keywords["width"] == "width"
-    assert "from thin to thick" in look.drawing.keys[0]["title"]
+    assert "point downstream" in look.drawing.keys[0]["title"]
     assert look.drawing.keys[0]["clim"] == pytest.approx((1, 1 + 29 / 60))
     mesh = strokes.mesh.run()
     line = mesh.get_cell(mesh.n_cells // 2)
     widths, age = mesh["width"][line.point_ids], mesh["age"][line.point_ids]
     along = np.einsum("ij,ij->i", np.diff(line.points, axis=0), mesh["wind"][line.point_ids[1:]])
-    assert np.all(np.diff(widths) * along > 0)
+    # The head, from its base to its tip, is ahead.
+    assert np.all(np.sign(along) == np.sign(along[0]))
+    ahead = widths[:: int(np.sign(along[0]))]
+    base = int(np.argmax(ahead))
+    assert np.all(np.diff(ahead[: base + 1]) > 0)
+    assert np.all(np.diff(ahead[base:]) < 0)
+    assert base > len(ahead) / 2
     assert np.all(np.diff(age) * along > 0)
 
 

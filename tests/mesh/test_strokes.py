@@ -42,15 +42,46 @@ def test_strokes_are_equally_long_and_thin_where_they_come_from(signed):
     assert cut.compute_cell_sizes()["Length"] == pytest.approx([1] * 5 + [1.25] * 2, abs=0.1)
     for line in (cut.get_cell(i) for i in range(7)):
         widths = cut["width"][line.point_ids]
-        ends = widths[[0, -1]] if line.points[0, 1] != 1 else widths[[-1, 0]]
-        assert ends == pytest.approx([0.3, 1.0 if signed else 0.3], abs=1e-6)
-        assert widths.max() == pytest.approx(1.0, abs=0.05)
+        run = np.abs(line.points[:, 0] - line.points[0, 0])
+        if line.points[0, 1] == 1:
+            widths, run = widths[::-1], run[-1] - run[::-1]
+        if not signed:
+            assert widths[[0, -1]] == pytest.approx([0.3, 0.3], abs=1e-6)
+            assert widths.max() == pytest.approx(1.0, abs=0.05)
+            continue
+        # A shaft that grows, and a head, which is a triangle of one length.
+        head = run >= run[-1] - 0.2 - 1e-6
+        np.testing.assert_allclose(widths[head], (run[-1] - run[head]) / 0.2, atol=1e-5)
+        assert np.all(np.diff(widths[~head]) > 0)
+        assert widths[~head][[0, -1]] == pytest.approx([0.17, 0.45], abs=0.005)
 
 
-def heads(mesh, share):
-    """Return where strokes begin ahead: places at which their width falls to 0 along x."""
-    width = strokes.moved_widths(mesh, share)
-    return np.sort(mesh.points[1:, 0][np.diff(width) < -0.3])
+def test_short_strokes_have_short_heads_and_new_points_have_the_values_of_their_places():
+    mesh = lines()
+    mesh["x"], mesh["number"] = mesh.points[:, 0].astype(np.float64), np.arange(mesh.n_points)
+    cut = strokes.cut(mesh, 10.0, "t", signed=True)
+    # Two more on each line, unless one is there already.
+    assert mesh.n_points + 5 <= cut.n_points <= mesh.n_points + 6
+    np.testing.assert_allclose(cut["x"], cut.points[:, 0], atol=1e-6)
+    assert cut["number"].dtype == mesh["number"].dtype
+    # 0.4 of a line of 1, run through from its other end; 2 of a line of 10 would be more.
+    base = cut.points[(cut["width"] == cut["width"].max()) & (cut.points[:, 1] == 1), 0]
+    assert base == pytest.approx(0.4, abs=0.03)
+
+
+def test_points_of_moving_heads_are_near_and_lines_keep_theirs():
+    mesh = lines()
+    fine = strokes.fine(mesh, 0.1)
+    parts = strokes.segments_of(fine)
+    assert parts.lengths.max() <= 0.1 * strokes.HEAD / strokes.STEPS + 1e-6
+    np.testing.assert_allclose(parts.totals(), LENGTHS, rtol=1e-6)
+    np.testing.assert_array_equal(strokes.fine(mesh, 10.0).points, mesh.points)
+
+
+def heads(width):
+    """Return the points at which strokes are widest: the bases of their heads."""
+    top = (width[1:-1] > width[:-2]) & (width[1:-1] >= width[2:]) & (width[1:-1] > 0.6)
+    return 1 + np.flatnonzero(top)
 
 
 @pytest.mark.parametrize("frame", range(12))
@@ -61,7 +92,9 @@ def test_strokes_of_a_uniform_flow_are_found_where_it_carries_them(frame):
     strokes.set_moving(mesh, 1.0, np.tile([2.0, 0, 0], (1201, 1)), 3.0)
     assert mesh.field_data["period"][0] == pytest.approx(3 * 1.0 / 2.0)
     moved = 2.0 * mesh.field_data["period"][0] / 12
-    here, there = heads(mesh, frame / 12), heads(mesh, (frame + 1) / 12)
+    here, there = (
+        mesh.points[heads(strokes.moved_widths(mesh, step / 12)), 0] for step in (frame, frame + 1)
+    )
     inner = here[(here > 1) & (here < 5 - moved)]
     assert len(inner) >= 3
     for place in inner:
@@ -84,7 +117,7 @@ def test_strokes_of_a_solid_rotation_turn_by_its_angle():
         places = []
         for share in (0.3, 0.4):
             width = strokes.moved_widths(mesh, share)[ring]
-            places.append(angle[ring][1:][np.diff(width) < -0.3])
+            places.append(angle[ring][heads(width)])
         inner = places[0][(places[0] > 1) & (places[0] < 1.9 * np.pi - 1.2)]
         assert len(inner)
         for place in inner:

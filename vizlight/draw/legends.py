@@ -17,7 +17,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from vizlight.filters.key import NAMES, RANGE, TITLE, WORDS
+from vizlight.filters.key import BEYOND, NAMES, RANGE, SCALE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
 
@@ -44,6 +44,8 @@ LETTER, LINE, LONGEST = 0.57, 1.5, 10
 LEAST, LETTERS_HIGH = 9, 24
 #: Mark of a place where a name may break.
 BREAK = "\x1f"
+#: Share of the length of a bar from its end within which no number stands beside that of the end.
+CLOSE = 0.06
 #: Most digits of a number.
 DIGITS = 7
 
@@ -305,7 +307,32 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> tuple[list[tuple[float, str]]
     low, high = (float(value) for value in mesh.field_data[RANGE])
     ticks = even_numbers(low, high)
     spread = (high - low) or 1.0
-    return [((tick - low) / spread, word) for tick, word in ticks], title
+    marks = [((tick - low) / spread, word) for tick, word in ticks]
+    if SCALE in mesh.field_data and mesh.field_data[SCALE][0]:
+        marks = _of_logarithm(low, high)
+    if BEYOND in mesh.field_data:
+        below, above = mesh.field_data[BEYOND]
+        marks = _with_beyond(marks, f"< {low:g}" * bool(below), f"> {high:g}" * bool(above))
+    return marks, title
+
+
+def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
+    """Return the words along a logarithmic bar: one, two or three in each decade."""
+    first, last = math.floor(math.log10(low)), math.floor(math.log10(high))
+    digits = (1, 2, 5) if high < 30 * low else (1, 3) if high < 1000 * low else (1,)
+    ticks = [d * 10.0**power for power in range(first, last + 1) for d in digits]
+    spread = math.log(high / low)
+    shares = [(math.log(tick / low) / spread, f"{tick:.6g}") for tick in ticks]
+    return [(share, word) for share, word in shares if -1e-9 <= share <= 1 + 1e-9]
+
+
+def _with_beyond(marks: list[tuple[float, str]], below: str, above: str) -> list[tuple[float, str]]:
+    """Return the words along a bar with those at ends beyond which there are values."""
+    ends = [(share, word) for share, word in ((0.0, below), (1.0, above)) if word]
+    near = [
+        (share, word) for share, word in marks if all(abs(share - end) > CLOSE for end, _ in ends)
+    ]
+    return sorted(near + ends)
 
 
 def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:

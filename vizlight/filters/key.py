@@ -33,6 +33,9 @@ __all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
 WORDS = "words"
 #: Names of the field arrays with the range of a bar of values, and the names of kinds.
 RANGE, NAMES = "range", "names"
+#: Names of the field arrays that say that a bar is logarithmic, and whether values lie below and
+#: above its ends.
+SCALE, BEYOND = "logarithmic", "beyond"
 #: Name of the field array with what the whole key is about.
 TITLE = "title"
 #: Words beside the key of each question: below it, or at the two ends of a bar.
@@ -123,6 +126,9 @@ def key(
         names = _names_of(cmap)
         if names:
             _put_words(made, NAMES, names)
+        if isinstance(cmap, pv.LookupTable):
+            beyond = (cmap.GetUseBelowRangeColor(), cmap.GetUseAboveRangeColor())
+            made.field_data[SCALE], made.field_data[BEYOND] = [cmap.log_scale], beyond
         if clim is not None:
             ends = _check.limits("clim", clim)
             made.field_data[RANGE] = ends

@@ -187,9 +187,10 @@ def streamlines(
         box. A line ends after 1,200 cell lengths in any case.
     stroke_length : float, optional
         Length, in the unit of the mesh, of strokes into which the lines are cut, at points of
-        theirs. They have the point array ``width``, which grows along the vectors from 0.3 at the
-        tail to 1 at the head, and so tells their sense; in a line field both ends are thin. It is
-        what ``plotter.vizlight.add_mesh(lines, width="width")`` takes. Default: lines are whole.
+        theirs. They have the point array ``width``: 0.3, and at their ends along the vectors a
+        head, from 1 at its base to 0 at its tip, so that a stroke is an arrow; in a line field both
+        ends are thin. It is what ``plotter.vizlight.add_mesh(lines, width="width")`` takes, whose
+        ``line_width`` is the width of the heads. Default: lines are whole.
     travel : float, optional
         Number of stroke lengths by which strokes move along the lines in a movie, where the vectors
         are as long as their 90th percentile; elsewhere by as much as the vectors say. The lines are
@@ -322,6 +323,7 @@ def _as_strokes(
     if options.stroke_length is None:
         return lines
     if options.travel is not None:
+        lines = strokes.fine(lines, options.stroke_length)
         strokes.set_moving(
             lines,
             options.stroke_length,

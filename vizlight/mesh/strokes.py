@@ -10,10 +10,18 @@ import pyvista as pv
 from vizlight.vtk import polylines
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight._types import AnyArray, Array, Bools, Indices
 
-#: Width of the thin end of a stroke, as a share of its largest width.
-TAIL = 0.3
+#: Width of a stroke at its tail and before its head, and of both ends of one without a sense, as
+#: shares of its largest width.
+TAIL, NECK, ENDS = 0.17, 0.45, 0.3
+#: Length of a head as a share of that of a stroke, at most as a share of a short one, and the way
+#: in lengths of a head on which the width rises at its base.
+HEAD, MOST_HEAD, BASE = 0.2, 0.4, 0.05
+#: Steps from point to point in a head that moves.
+STEPS = 4
 #: Share of the distance from one moving stroke to the next that is bare, and share of it in which
 #: a stroke grows at the start of its line, or shrinks at the end.
 BARE, FADE = 0.25, 0.5
@@ -113,6 +121,8 @@ def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
 def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.PolyData:
     """Return lines cut at their points into strokes of one length, with their widths.
 
+    Strokes with a sense get points of their own at the base of their heads.
+
     Parameters
     ----------
     mesh : pyvista.PolyData
@@ -122,13 +132,14 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     tangents : str
         Name of the point array of the directions of the strokes.
     signed : bool
-        Whether the directions have a sense: strokes grow from a thin tail to their head. Otherwise
-        both ends are thin.
+        Whether the directions have a sense: strokes end in a head, a triangle. Otherwise both ends
+        are thin.
 
     Returns
     -------
     pyvista.PolyData
-        Strokes with the arrays of the mesh, and the point array ``width``: from 0.3 to 1.
+        Strokes with the arrays of the mesh, and the point array ``width``: 0.3, and from 1 at the
+        base of a head to 0 at its tip; without heads from 0.3 at the ends to 1.
     """
     segments = segments_of(mesh)
     totals = segments.totals()
@@ -137,15 +148,88 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     places = np.stack([segments.lines, np.floor(share)])
     pieces = np.cumsum(np.any(np.diff(places, prepend=0.0), axis=0))
     strokes = _rebuilt(mesh, segments, np.ones(len(pieces), dtype=np.bool_), pieces)
-    run = ages(strokes, strokes.point_data[tangents])
-    parts = segments_of(strokes)
-    whole = np.ones(strokes.n_points)
-    for ends in (parts.starts, parts.ends):
-        whole[ends] = parts.totals()[parts.lines]
-    place = run / np.where(whole > 0, whole, 1.0)
-    full = place if signed else 1 - np.abs(2 * place - 1)
-    strokes.point_data[WIDTH] = (TAIL + (1 - TAIL) * full).astype(np.float32)
+    run, whole = _runs(strokes, tangents)
+    if not signed:
+        thick = 1 - np.abs(2 * run / np.where(whole > 0, whole, 1.0) - 1)
+        strokes.point_data[WIDTH] = (ENDS + (1 - ENDS) * thick).astype(np.float32)
+        return strokes
+    heads = np.minimum(HEAD * length, MOST_HEAD * whole)
+    bases = [_crossings(strokes, run - whole + start * heads) for start in (1 + BASE, 1.0)]
+    strokes = _divided(strokes, np.concatenate(bases))
+    run, whole = _runs(strokes, tangents)
+    heads = np.minimum(HEAD * length, MOST_HEAD * whole)
+    place, head = (part / np.where(whole > 0, whole, 1.0) for part in (run, heads))
+    strokes.point_data[WIDTH] = _profile(place, head)
     return strokes
+
+
+def _runs(strokes: pv.PolyData, tangents: str) -> tuple[Array, Array]:
+    """Return the length of its line before each point along tangents, and of the whole line."""
+    segments = segments_of(strokes)
+    whole = np.zeros(strokes.n_points)
+    for ends in (segments.starts, segments.ends):
+        whole[ends] = segments.totals()[segments.lines]
+    return ages(strokes, strokes.point_data[tangents]), whole
+
+
+def _profile(place: Array, head: Array | float) -> Array:
+    """Return the widths of strokes at places from 0 to 1, with heads of a share of their length."""
+    from_base = (place - 1) / np.maximum(head, 1e-9) + 1
+    shaft = TAIL + (NECK - TAIL) * place / np.maximum(1 - head, 1e-9)
+    rising = shaft + (1 - shaft) * np.clip(1 + from_base / BASE, 0, 1)
+    return np.asarray(
+        np.where(from_base > 0, np.maximum(1 - from_base, 0), rising), dtype=np.float32
+    )
+
+
+def _crossings(lines: pv.PolyData, level: Array) -> Array:
+    """Return where a number at the points of lines is zero, in numbers of points."""
+    segments = segments_of(lines)
+    here, there = level[segments.starts], level[segments.ends]
+    crossed = here * there < 0
+    return np.asarray(
+        segments.starts[crossed] + (here / np.where(crossed, here - there, 1))[crossed]
+    )
+
+
+def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
+    """Return lines, whose points are in their order, with points at fractions of their numbers."""
+    _, _, offsets = polylines.cells_of(lines)
+    rows = np.sort(np.concatenate([np.arange(lines.n_points), places]))
+    before = np.floor(rows).astype(np.intp)
+    share, after = rows - before, np.minimum(before + 1, lines.n_points - 1)
+
+    def between(values: AnyArray) -> AnyArray:
+        if values.dtype.kind != "f":
+            return np.asarray(values[np.where(share < 0.5, before, after)])
+        part = share.reshape(-1, *(1,) * (values.ndim - 1))
+        # A point keeps its value beside one that is not finite.
+        mixed = np.where(
+            part > 0, (1 - part) * values[before] + part * values[after], values[before]
+        )
+        return np.asarray(mixed, dtype=values.dtype)
+
+    ends = np.searchsorted(rows, offsets[1:] - 1, side="right")
+    return _polylines(lines, between, np.diff(ends, prepend=0))
+
+
+def fine(mesh: pv.PolyData, length: float) -> pv.PolyData:
+    """Return lines with points that are near enough to show heads of strokes that move.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines.
+    length : float
+        Distance from one stroke to the next.
+    """
+    segments = segments_of(mesh)
+    lines = _rebuilt(mesh, segments, np.ones(len(segments.lines), dtype=np.bool_), segments.lines)
+    segments = segments_of(lines)
+    parts = np.maximum(np.ceil(segments.lengths * STEPS / (HEAD * length)), 1).astype(np.intp)
+    first = np.repeat(np.cumsum(parts) - parts, parts)
+    share = (np.arange(len(first)) - first) / np.repeat(parts, parts)
+    return _divided(lines, (np.repeat(segments.starts, parts) + share)[share > 0])
 
 
 def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: float) -> None:
@@ -208,13 +292,14 @@ def moved_widths(mesh: pv.PolyData, share: float) -> Array:
     Returns
     -------
     ndarray of float32, shape (n_points,)
-        0 where there is no stroke, from 0.3 at its tail to 1 at its head, less where it grows.
+        0 where there is no stroke, 0.3 behind its head, which is 1 at its base, less where it
+        grows.
     """
     phase, passing, grown = (
         np.asarray(mesh.point_data[name], dtype=np.float64) for name in (PHASE, PASSING, GROWN)
     )
     place = (phase - passing * share) % 1.0
-    width = TAIL + (1 - TAIL) * (place - BARE) / (1 - BARE)
+    width = _profile((place - BARE) / (1 - BARE), HEAD)
     return np.asarray(np.where(place < BARE, 0.0, grown * width), dtype=np.float32)
 
 
@@ -228,13 +313,20 @@ def _rebuilt(mesh: pv.PolyData, segments: Segments, kept: Bools, pieces: Indices
     counts = np.diff(first, append=len(pieces))
     # A run of m segments has m starts, and the end of the last one.
     rows = np.insert(starts, first + counts, ends[first + counts - 1])
-    offsets = np.concatenate([[0], np.cumsum(counts + 1)])
+    return _polylines(mesh, lambda values: values[rows], counts + 1)
+
+
+def _polylines(
+    mesh: pv.PolyData, at_points: Callable[[AnyArray], AnyArray], counts: Indices
+) -> pv.PolyData:
+    """Return polylines of numbers of points, with what a function makes of points and arrays."""
     rebuilt = pv.PolyData()
-    rebuilt.points = np.asarray(mesh.points)[rows]
-    rebuilt.lines = np.insert(np.arange(len(rows)), offsets[:-1], counts + 1)
+    rebuilt.points = at_points(np.asarray(mesh.points))
+    offsets = np.cumsum(counts) - counts
+    rebuilt.lines = np.insert(np.arange(rebuilt.n_points), offsets, counts)
     # PyVista refuses arrays without rows.
-    for name in mesh.point_data if len(rows) else ():
-        rebuilt.point_data[name] = np.asarray(mesh.point_data[name])[rows]
+    for name in mesh.point_data if rebuilt.n_points else ():
+        rebuilt.point_data[name] = at_points(np.asarray(mesh.point_data[name]))
     for name in mesh.field_data:
         rebuilt.field_data[name] = mesh.field_data[name]
     return rebuilt

@@ -590,13 +590,14 @@ class _Reader:
             values = np.asarray(p.here.values)
             # Places without light have the colour of what is not data.
             known = np.isfinite(values) & p.here.valid
+            known &= ~_have_own_color(p.part.table, values)
             if left := int(np.count_nonzero(~known)):
                 text = f"value: {left} of {len(known)} places have no value, left out"
                 self.notes.append(text)
             if known.any():
                 groups.append(p.take(known))
                 # Values beyond the ends have the colours of the ends.
-                places.append(np.clip((values[known] - low) / (high - low), 0.0, 1.0))
+                places.append(_shares(p.part.table, values[known]))
         if not groups:
             return None
         ways = []
@@ -708,13 +709,30 @@ def _normal(here: Sample) -> Array:
 
 def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:
     """Return the function from values to vectors that turn by 180 degrees along a bar."""
-    low, high = table.scalar_range
 
     def turn(here: Sample) -> Array:
-        at = np.clip((np.asarray(here.values) - low) / (high - low), 0.0, 1.0)
+        at = _shares(table, np.asarray(here.values))
         return np.stack([np.cos(np.pi * at), np.sin(np.pi * at)], axis=1)
 
     return turn
+
+
+def _shares(table: pv.LookupTable, values: Array) -> Array:
+    """Return the places of values on a bar, from 0 to 1."""
+    ends = np.array(table.scalar_range)
+    if table.log_scale:
+        # VTK has no logarithm of what is not positive, and takes the lower end.
+        ends, values = np.log(ends), np.log(np.maximum(values, ends[0]))
+    return np.asarray(np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
+
+
+def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
+    """Return which values lie below a bar and have a colour that is not that of its end."""
+    first = np.asarray(table.values)[0, :3] / 255
+    is_apart = table.GetUseBelowRangeColor() and not np.allclose(
+        table.GetBelowRangeColor()[:3], first, atol=0.02
+    )
+    return np.asarray((values < table.scalar_range[0]) & bool(is_apart))
 
 
 def _table(places: Places) -> pv.LookupTable:

@@ -160,7 +160,9 @@ const CAPSULE_SHAPE = `
   vec3 at = ownAt * gl_FragCoord.w; vec2 halves = ownHalves * gl_FragCoord.w; vec2 deep = ownDeep * gl_FragCoord.w;
   float away = length(vec2(at.x, max(max(-at.y, at.y - at.z), 0.0))) - mix(halves.x, halves.y, clamp(at.y / max(at.z, 1e-6), 0.0, 1.0));
   float border = 0.5 * fwidth(away);
-  if (away > ownHalo) discard;
+  // Where the width changes fast, as in the head of an arrow, ends are straight.
+  bool steep = abs(halves.x - halves.y) > 0.2 * at.z && (at.y < 0.0 || at.y > at.z);
+  if (away >= ownHalo || steep) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
 const CAPSULE_GROUND = `
@@ -398,11 +400,16 @@ class Mesh {
   // Strokes that have moved for a share of their period; Python says the same of a movie.
   move(share) {
     const { phase, passing, grown } = this.moving;
-    const { tail, bare } = this.given.moving;
+    const { tail, neck, bare, head, base } = this.given.moving;
     const widths = Uint8Array.from(grown, (most, i) => {
       const at = (phase[i] / NO_VALUE - passing[i] * share) % 1;
       const here = at < 0 ? at + 1 : at;
-      return here < bare ? 0 : most * (tail + ((1 - tail) * (here - bare)) / (1 - bare));
+      const place = (here - bare) / (1 - bare);
+      // In the head from its base, 0, to its tip, 1.
+      const ahead = (place - 1) / head + 1;
+      const shaft = tail + ((neck - tail) * place) / (1 - head);
+      const width = ahead > 0 ? 1 - ahead : shaft + (1 - shaft) * Math.max(0, 1 + ahead / base);
+      return here < bare ? 0 : most * width;
     });
     this.batches.forEach((batch) => { if (batch.kind === 'strokes') batch.put('ownShare', gathered(widths, batch.points, 1), 1); });
   }

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import to_hex
+from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
@@ -17,22 +19,38 @@ from vizlight.looks import map_parts
 from vizlight.looks.contents import kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
+from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
+from vizlight.maps import MISSING
 from vizlight.mesh import globes, meaning
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Contents, Named
     from vizlight.looks.wishes import Wishes
 
-#: Colour map where nothing is lit.
-LIGHTNESS = "viridis"
+#: Colour map where nothing is lit, and that of values on lit surfaces.
+LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
+
+#: Colour of the borders of surfaces, and keywords of what stands beside the data.
+DARK, BESIDE = "#333333", {"pickable": False}
+#: Keywords that take the edges of a surface that are its borders.
+BORDERS = {
+    "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
+    "non_manifold_edges": False,
+}  # fmt: skip
+#: Largest number of them as a share of that of the cells, and distance of places that are one, as a
+#: share of the size of the surface.
+MOST_BORDERS, SEAM = 0.3, 1e-6
+#: Distance from a side of its box, as a share of the size of a surface, at which a point is on it,
+#: and share of the points of borders that are on sides where a box cuts a surface.
+ON_BOX, CUT = 1e-3, 0.95
 
 #: Questions whose pictures of maps have north up, whatever their shape is.
 NORTH_UP = ("relief", "sky")
@@ -175,6 +193,37 @@ class Case:
             return self.data
         return Step("surface", "files.surface_of", self.data)
 
+    @cached_property
+    def borders(self) -> Step | None:
+        """Step that takes the borders of an open surface that bends, None where it has none."""
+        surface = self.surface.run()
+        if self.contents.dimension != 2 or self.contents.flat_axis is not None or self.on_globe:
+            return None
+        if not isinstance(surface, pv.PolyData):
+            return None
+        edges = Step("borders", ".extract_feature_edges", self.surface, **BORDERS)
+        return edges if _are_borders(edges.run(), surface) else None
+
+    @cached_property
+    def box(self) -> Step | None:
+        """Step that makes the box that cuts the surface, None where none does."""
+        edges = self.borders
+        if edges is None or not _is_cut_by_box(self.surface.run(), edges.run()):
+            return None
+        return Step("", ".outline", self.surface)
+
+    @property
+    def edges(self) -> list[Layer]:
+        """Layers of the borders of the surface, and of its box."""
+        layers = []
+        if self.borders is not None:
+            drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False}
+            layers.append(Layer(self.borders, drawn | BESIDE, live=False))
+        if self.box is not None:
+            box: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
+            layers.append(Layer(self.box, box, live=False))
+        return layers
+
     def eye(self, mesh: Step) -> Eye:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
@@ -206,6 +255,8 @@ class Case:
         elif self.on_globe:
             # The ball is seen whole, wherever there are data.
             mesh = map_parts.ball()
+        elif self.box is not None:
+            mesh = self.box
         return self.wishes.camera(mesh, eye)
 
     def scene(self, camera: Step) -> Step:
@@ -226,7 +277,44 @@ class Case:
     @property
     def map_on_ground(self) -> str:
         """Colour map of thin lines, of which what is large stands out from the ground."""
-        return LIGHTNESS if self.wishes.style == "dark" else f"{LIGHTNESS}_r"
+        return f"vizlight.on_{self.wishes.style}"
+
+    def ranged(self, values: Array, name: str, cmap: str, *, lengths: bool) -> tuple[Keywords, str]:
+        """Return the colours of values in the range that suits them, and words if it is not all.
+
+        Parameters
+        ----------
+        values : ndarray
+            Values, of which those that are finite count.
+        name : str
+            What they are.
+        cmap : str
+            Colour map where none is asked for.
+        lengths : bool
+            Whether they are lengths of vectors.
+        """
+        colors: Keywords = {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors
+        values = values[np.isfinite(values)]
+        if "clim" in colors or not values.size:
+            return colors, ""
+        shown = range_shown(values, lengths=lengths)
+        colors["clim"] = (shown.low, shown.high)
+        words = shown.words(name)
+        if words:
+            ends = [to_hex(get_cmap_safe(colors["cmap"])(end)) for end in (0.0, 1.0)]
+            if shown.apart:
+                ends[0] = MISSING
+            names = ("below_range_color", "above_range_color")
+            options: Keywords = {
+                n: c for n, c, cut in zip(names, ends, shown.clipped, strict=True) if cut
+            }
+            if shown.logarithmic:
+                options["log_scale"] = True
+            colors["cmap"] = Step(
+                "", "pyvista.LookupTable", colors["cmap"], n_values=256,
+                scalar_range=colors["clim"], nan_color=MISSING, **options,
+            )  # fmt: skip
+        return colors, words
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""
@@ -262,6 +350,23 @@ class Case:
         """Least width of lines, in pixels."""
         given = self.wishes.picture.get("line_width")
         return float(given) if given else round(max(1.5, THIN * max(self.wishes.size)), 1)
+
+
+def _are_borders(edges: pv.PolyData, surface: pv.PolyData) -> bool:
+    """Return whether edges are borders: few, and no seams at which points are stored twice."""
+    if not edges.n_cells or edges.n_cells > MOST_BORDERS * surface.n_cells:
+        return False
+    middles = np.asarray(edges.points, dtype=np.float64)[edges.lines.reshape(-1, 3)[:, 1:]].mean(1)
+    places = np.rint(middles / (SEAM * surface.length)).astype(np.int64)
+    return len(np.unique(places, axis=0)) == edges.n_cells
+
+
+def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
+    """Return whether all borders of a surface are on its box, and on all of its sides."""
+    ends = np.reshape(surface.bounds, (3, 2))
+    places = np.asarray(edges.points, dtype=np.float64)[..., np.newaxis]
+    on = np.abs(places - ends) < ON_BOX * surface.length
+    return bool(np.mean(on.any(axis=(1, 2))) > CUT and np.all(on.any(axis=0)))
 
 
 def titled(mesh: pv.DataSet, name: str) -> str:

@@ -22,20 +22,19 @@ from vizlight.looks.recipes.drawing import (
     Doubt,
     Drawing,
     Layer,
-    range_of,
     titled,
     titled_length,
     unlit,
 )
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.maps import MISSING
 from vizlight.mesh import records
+from vizlight.mesh.strokes import HEAD
 from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -48,20 +47,22 @@ TURN, TURN_HUE = 0.6, 0.8
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 #: Multiple of these from which no picture need be read back before it is chosen.
 CLEAR = 2.0
-#: Length of a stroke in distances between strokes, and its largest width: wider ones darken what is
-#: beside them for the eye.
-LONG, WIDE = 3.5, 1.7
+#: Length of a stroke in distances between strokes.
+LONG = 3.5
+#: Width of the head of a stroke as a share of its length, its least and largest one in least widths
+#: of lines: wider ones darken what is beside them for the eye.
+HEAD_WIDTH, NARROWEST, WIDEST = 0.55, 3.0, 3.8
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
 #: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
 SPACING_IN_VOLUME, LONG_IN_VOLUME = 1 / 25, 1 / 10
-#: Largest width of those strokes, and their halo.
-WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.5
+#: Largest width of those without a sense, and the halo of all.
+WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
 #: Length below which streamlines of a volume are left out, in distances between them: many are cut
 #: short where the field is noise.
 SHORTEST = 4 * SPACING_IN_VOLUME
 #: Words of the key for the sense of strokes.
-SENSE = "; strokes run from thin to thick"
+SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
@@ -101,7 +102,8 @@ def _without_strokes(case: Case, mesh: Step, camera: Step, room: float) -> Drawi
 
     def lengths_alone() -> Drawing:
         note = f"{name} turns too fast here for its course to be seen: colours are its length"
-        return replace(_speed(case, mesh, camera, None), notes=[note])
+        drawing = _speed(case, mesh, camera, None)
+        return replace(drawing, notes=[note, *drawing.notes])
 
     if room * TURN_HUE < LEAST_PLACE:
         return lengths_alone()
@@ -133,7 +135,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
         words = f"{other.name} in colours, lit along {array.name}"
         keys = [case.bar(other, case.wishes.colors)]
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
-    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)})]
+    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
@@ -148,19 +150,21 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     scene = case.wishes.scene("none", camera)
     if bent:
         scene = case.exposed(mesh, camera, "value", **light)
-    colors: Keywords = {"cmap": SPEED, "nan_color": MISSING} | case.wishes.colors
+    finite = _lengths(mesh.run(), array.name)
+    colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=True)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    layers = [Layer(mesh, shown | case.wishes.drawn(light))]
+    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    finite = _lengths(mesh.run(), array.name)
     sense = "" if strokes is None else SENSE
     title = f"{titled_length(mesh.run(), array.name)}{sense}"
     bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
     bar |= {} if bent else {"scene": scene}
-    bar["clim"] = colors.get("clim") or (float(finite.min()), float(finite.max()))
+    bar["clim"] = colors["clim"]
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
-    return Drawing(layers, camera, scene, case.lit(mesh, scene, **light), words, [bar], kind=mesh)
+    lit = case.lit(mesh, scene, **light)
+    notes = [note] if note else []
+    return Drawing(layers, camera, scene, lit, words, [bar], notes=notes, kind=mesh)
 
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
@@ -179,11 +183,19 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
     scene = even_light(camera)
-    wide = round(WIDE * case.width, 1)
+    wide = _head_width(case, strokes, camera)
     return Layer(
         strokes,
         {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},
     )
+
+
+def _head_width(case: Case, strokes: Step, camera: Step) -> float:
+    """Return the width of the heads of strokes in pixels."""
+    step: Foreign = strokes.keywords["stroke_length"]
+    length = HEAD * step / pixel_of(case, camera)
+    ends = NARROWEST * case.width, WIDEST * case.width
+    return round(float(np.clip(HEAD_WIDTH * length, *ends)), 1)
 
 
 def pixel_of(case: Case, camera: Step) -> float:
@@ -229,16 +241,22 @@ def flow(case: Case) -> Drawing:
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
     lit = _streamlines(case, mesh, scene, keywords)
     keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
-    drawn: Keywords = {"width": "width", "line_width": round(WIDE_IN_VOLUME * case.width, 1)}
+    wide = round(WIDE_IN_VOLUME * case.width, 1)
+    if not keywords.get("line_field"):
+        wide = _head_width(case, lit, camera)
+    drawn: Keywords = {"width": "width", "line_width": wide}
     drawn["halo"] = HALO_IN_VOLUME
     words = f"streamlines of {array.name}"
+    notes = []
     if by_speed:
         speed = own_name(mesh.run(), "speed")
-        colors = {"cmap": case.map_on_ground} | case.wishes.colors
+        speeds = np.asarray(lit.run()[speed], dtype=np.float64)
+        colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
+        notes += [note] if note else []
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
         title = f"{titled_length(mesh.run(), array.name)}{SENSE}"
         bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
-        bar |= {"scene": scene, "clim": colors.get("clim") or range_of(lit.run(), speed)}
+        bar |= {"scene": scene, "clim": colors["clim"]}
         keys = [bar]
         words += " in the colours of their speed"
     lines = Layer(lit, {"scene": scene, **drawn})
@@ -246,10 +264,11 @@ def flow(case: Case) -> Drawing:
         # The surface that conditions the light of the lines is not drawn with them.
         name = str(keywords.get("name", "luminance"))
         lines = unlit(lit, scene, name, line_width=case.width)
-    notes = []
     if left_out := int(lit.run().field_data.get("left_out", [0])[0]):
         least = f"{lit.keywords['min_length']:g}"
-        notes = [f"lines shorter than {least}, four times their distance, are left out: {left_out}"]
+        notes += [
+            f"lines shorter than {least}, four times their distance, are left out: {left_out}"
+        ]
     layers = [lines, _hull(mesh)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 

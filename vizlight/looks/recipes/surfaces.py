@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight.filters.fur import LENGTH
@@ -12,6 +13,7 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
+    ON_SURFACES,
     Drawing,
     Layer,
     colors_of,
@@ -58,7 +60,11 @@ def values(case: Case) -> Drawing:
     bent = case.question != "none"
     scene = case.exposed(mesh, camera, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
-    if not bent:
+    note = ""
+    if bent and array.role in ("values", "heights"):
+        own = np.asarray(mesh.run()[array.name], dtype=np.float64)
+        keywords, note = case.ranged(own, array.name, ON_SURFACES, lengths=False)
+    elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
     if array.role == "kinds":
@@ -69,11 +75,12 @@ def values(case: Case) -> Drawing:
     shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
-    notes = []
+    notes = [note] if note else []
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
     return Drawing(
-        [Layer(mesh, shown)], camera, scene, lit, f"{array.name} in colours", keys,
+        [Layer(mesh, shown), *case.edges], camera, scene, lit,
+        f"{array.name} in colours", keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
 
@@ -91,7 +98,8 @@ def surface(case: Case) -> Drawing:
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, [key], kind=mesh)
+    layers = [Layer(mesh, drawn), *case.edges]
+    return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
 
 def plane(case: Case) -> Drawing:

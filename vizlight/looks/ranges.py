@@ -1,0 +1,96 @@
+"""The range of values that a bar of colours shows: all of it, clipped, or logarithmic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vizlight._types import Array
+
+#: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
+#: distribution, the largest share of them that is clipped, and the share of the bar that they take.
+FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
+#: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
+#: ratio of its ends at most.
+SKEWED, DECADES = 5.0, 100.0
+#: Share of the values that are one value far outside, from which it stands for a region apart.
+APART = 0.01
+
+
+class Range(NamedTuple):
+    """Range of a bar of colours.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends.
+    logarithmic : bool
+        Whether equal ratios have equal lengths.
+    clipped : (bool, bool)
+        Whether values lie below the lower, and above the upper end.
+    apart : bool
+        Whether those below are nearly all one value, such as a 0 where nothing was measured.
+    """
+
+    low: float
+    high: float
+    logarithmic: bool = False
+    clipped: tuple[bool, bool] = (False, False)
+    apart: bool = False
+
+    def words(self, name: str) -> str:
+        """Return the words that say how the range differs from that of the values, if it does."""
+        if self.logarithmic:
+            return f"colours of {name} are logarithmic from {self.low:g} to {self.high:g}"
+        if not any(self.clipped):
+            return ""
+        told = f"colours of {name} run from {self.low:g} to {self.high:g}, where most values are"
+        return told + "; one value below, in a region apart, is grey" * self.apart
+
+
+def range_shown(values: Array, *, lengths: bool = False) -> Range:
+    """Return the range of a bar that shows values.
+
+    Parameters
+    ----------
+    values : ndarray
+        Finite values, one at least.
+    lengths : bool
+        Whether they are lengths of vectors, whose bar may be logarithmic.
+
+    Returns
+    -------
+    Range
+        From the least to the largest value, unless few values far outside take much of the bar, or
+        lengths are skewed.
+    """
+    low, high = float(values.min()), float(values.max())
+    first, median, third, top = np.percentile(values, (25, 50, 75, 98))
+    if lengths and top > SKEWED * median > 0:
+        bottom = max(_rounded(high / DECADES, high / DECADES, np.floor), low)
+        return Range(bottom, high, logarithmic=True, clipped=(low < bottom, False))
+    fences = (
+        max(low, median + FENCE * (first - median)), min(high, median + FENCE * (third - median)),
+    )  # fmt: skip
+    step = (fences[1] - fences[0]) / 10 if first < median < third else 0.0
+    below, above = values < fences[0], values > fences[1]
+    cut = bool(below.any()), bool(above.any())
+    least = np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))
+    apart = least.sum() > max(APART * len(values), 0.5 * below.sum())
+    is_apart = cut[0] and bool(apart)
+    freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
+    is_few = np.mean(below | above) <= MOST_OUTSIDE
+    if not step or not is_few or (freed < LEAST_FREED and not is_apart):
+        return Range(low, high)
+    ends = (
+        _rounded(fences[0], step, np.floor) if cut[0] else low,
+        _rounded(fences[1], step, np.ceil) if cut[1] else high,
+    )
+    return Range(*ends, clipped=cut, apart=is_apart)
+
+
+def _rounded(value: float, step: float, way: np.ufunc) -> float:
+    step = 10.0 ** np.floor(np.log10(step) + 1e-9)
+    return float(f"{way(value / step) * step:.6g}")
