@@ -18,7 +18,7 @@ from vizlight.looks.contents import kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.steps import Step
-from vizlight.mesh import globes, meaning
+from vizlight.mesh import globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -239,7 +239,12 @@ class Case:
         if "cmap" in colors:
             bar["cmap"] = colors["cmap"]
         if array.role != "kinds":
-            bar["clim"] = colors.get("clim") or range_of(mesh, array.name)
+            low, high = colors.get("clim") or range_of(mesh, array.name)
+            bar["clim"] = (low, high)
+            factor, unit = meaning.usual_unit(mesh, array.name, max(abs(low), abs(high)))
+            if factor != 1:
+                bar["clim"] = (low / factor, high / factor)
+                bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
         return bar
 
     @property
@@ -265,10 +270,16 @@ class Case:
 
 
 def titled(mesh: pv.DataSet, name: str) -> str:
-    """Return the name of an array with its unit, where the mesh says it."""
+    """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
-    title = name if "," in name else attributes.get("long_name") or name
+    title = name
+    if "," not in name:
+        title = attributes.get("long_name") or attributes.get("standard_name") or name
+    if series.TIME in mesh.field_data:
+        time = float(np.ravel(mesh.field_data[series.TIME])[0])
+        date = meaning.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
+        title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
 
 
