@@ -120,12 +120,12 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
 
 
 #: Blue over pale yellow to dark red, with a longer way through CIELAB than most maps, and no darker
-#: than a lightness of 28, so that black lines are seen on all of it. It is the map of bands between
+#: than a lightness of 35, so that black lines are seen on all of it. It is the map of bands between
 #: isolines, named ``"vizlight.bands"``.
 _BANDS = LinearSegmentedColormap.from_list(
     "vizlight.bands",
     [
-        "#34389a",
+        "#4450b0",
         "#3a66c4",
         "#5fb5dd",
         "#b9e6cf",
@@ -133,16 +133,16 @@ _BANDS = LinearSegmentedColormap.from_list(
         "#fdc15c",
         "#f2693c",
         "#c8203a",
-        "#8f0a3c",
+        "#a3143f",
     ],
 )
 colormaps.register(_BANDS, force=True)
 #: Colours of a table of bands, and how much of the colours of a map goes on within a band: the rest
 #: is the step at each level.
-_FINE, _WITHIN = 1024, 0.7
+_FINE, _WITHIN = 1024, 0.8
 #: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
 #: sides.
-_TWO_SIDED = 0.3
+_TWO_SIDED = 0.6
 
 
 def bands(
@@ -150,7 +150,7 @@ def bands(
 ) -> pv.LookupTable:
     """Return a lookup table whose colours have a step at each level, as bands between isolines.
 
-    Within a band 0.7 of the difference is left, so that values between levels can be read.
+    Within a band 0.8 of the difference is left, so that values between levels can be read.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def bands(
         Values at the steps.
     limits : (float, float)
         Values at the ends of the colours. Where they are on both sides of 0, and the smaller is at
-        least 0.3 of the larger, the middle of the map is at 0.
+        least 0.6 of the larger, the middle of the map is at 0.
     cmap : str, default: "vizlight.bands"
         Colour map; blue over pale yellow to red by default, on all of which black lines are seen.
 
@@ -179,7 +179,6 @@ def bands(
     (272.0, 305.0)
     """
     import pyvista as pv
-    from pyvista.plotting.colors import get_cmap_safe
 
     low, high = _check.limits("limits", limits)
     if not low < high:
@@ -193,7 +192,9 @@ def bands(
     middles = (0.5 * (edges[1:] + edges[:-1]))[np.searchsorted(edges[1:-1], values)]
     shares = (_WITHIN * values + (1 - _WITHIN) * middles - start) / (end - start)
     table = pv.LookupTable(n_values=_FINE)
-    table.values = np.round(255 * np.asarray(get_cmap_safe(cmap)(shares))).astype(np.uint8)
+    table.values = np.round(
+        255 * np.asarray(pv.plotting.colors.get_cmap_safe(cmap)(shares))
+    ).astype(np.uint8)
     table.nan_color = MISSING
     table.scalar_range = (low, high)
     return table

@@ -29,7 +29,7 @@ GAP, APART, FAR = 0.35, 4.0, 14.0
 STRAIGHT = 1.06
 #: Length of lines that count as long, and distance between lines, in heights of letters; share of
 #: the length of all in long ones, from which on a field is smooth in its picture.
-LONG, SPARSE, SMOOTH = 6.0, 1.0, 0.75
+LONG, SPARSE, SMOOTH = 6.0, 1.3, 0.75
 #: Places along a line at which a number may stand.
 PLACES = 60
 #: Length of the rest of a line from which on it has a number too, in heights of letters.
@@ -152,7 +152,7 @@ def _lines_apart(
     def near(number: int, places: Array) -> Bools:
         distance, at = tree.query(places, NEIGHBOURS, distance_upper_bound=CLEAR * letters)
         other = np.isfinite(distance)
-        other[other] = owners[at[other]] != number
+        other[other] = owners[np.asarray(at)[other]] != number
         return np.asarray(other.any(axis=1))
 
     return near

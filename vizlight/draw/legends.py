@@ -41,7 +41,7 @@ BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.4
 #: Least distance of numbers along a bar, in letters.
 APART = 1.5
-#: Most numbers whose steps are 1, 2, 2.5 or 5 alone.
+#: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
 FEW = 5
 #: Sum of the channels of a background above which words on it are black.
 LIGHT_BACKGROUND = 1.2
@@ -189,8 +189,10 @@ class Margin:
             self._band.SetViewport(left, head, right, top)
             self._band.SetDraw(bool(title))
             room = (strip[2] - strip[0]) * wide, (strip[3] - strip[1]) * high
-            rows = _box_of(renderer, data=True)[[1, 3]] if beside else None
-            self._lay_out(room, min(width, height), rows)
+            if beside and len(self._keys) == 1 and self._keys[0].is_bar:
+                self._beside(room, min(width, height), _box_of(renderer, data=True)[[1, 3]])
+            else:
+                self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
 
     def _entitle(self, renderer: vtkRenderer, title: str, size: tuple[int, int]) -> None:
@@ -199,7 +201,7 @@ class Margin:
         letters, gap = TITLE_SIZE * LETTERS * short, 2 * MARGIN * short
         left, upper = _box_of(renderer, data=False)[[0, 3]]
         is_flat = bool(renderer.GetActiveCamera().GetParallelProjection())
-        lowered = bool(is_flat and renderer.GetSize()[1] - upper > 3 * letters)
+        lowered = bool(is_flat and renderer.GetSize()[1] - upper > 2.2 * letters)
         if is_flat:
             # Above the corner of a map.
             gap = max(float(_box_of(renderer, data=True)[0]), left, MARGIN * short)
@@ -213,37 +215,41 @@ class Margin:
             text.SetInput("\n".join(lines))
             text.SetPosition(gap, y)
 
-    def _lay_out(self, room: tuple[float, float], short: int, rows: Array | None) -> None:
-        """Stack the keys in a strip, smaller where they would not fit.
+    def _beside(self, room: tuple[float, float], short: int, rows: Array) -> None:
+        """Put a single bar beside the data, between their rows as far as there is room."""
+        (key,) = self._keys
+        letters, gap = LETTERS * short, MARGIN * short
+        wide = key.fit(short, letters, room[0] - gap, 0.0, True)[0]
+        letters *= min((room[0] - gap) / wide, 1.0)
+        low, top = rows
+        least = LEAST_BAR * room[1]
+        if top - low < least:
+            low, top = np.mean(rows) - least / 2, np.mean(rows) + least / 2
+        box = key.fit(short, letters, room[0] - gap, top - low, True)
+        # What stands above the bar has to have room too.
+        over = max(low - letters / 2 + box[1] - room[1], 0.0)
+        high = box[1] - over
+        key.draw((box[0] / 2, low - letters / 2 + high / 2), (box[0], high), letters)
 
-        A single bar beside the data stands between the rows that are given, as tall as these.
-        """
-        axis = 0 if rows is None else 1
+    def _stack(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
+        """Stack the keys in the middle of a strip, smaller where they would not fit."""
+        axis = 1 if beside else 0
         alone = len(self._keys) == 1
-        tall = max(float(np.ptp(rows)), LEAST_BAR * room[1]) if rows is not None and alone else 0.0
         scale = 1.0
         for _ in range(4):
             letters, gap = LETTERS * short * scale, MARGIN * short * scale
-            wide = room[0] - gap
-            boxes = [key.fit(short * scale, letters, wide, tall, alone) for key in self._keys]
+            wide = room[0] - 2 * gap
+            boxes = [key.fit(short * scale, letters, wide, 0.0, alone) for key in self._keys]
             total = sum(box[axis] for box in boxes) + gap * (len(boxes) + 1)
-            widest = max(box[0] for box in boxes) if axis else 0.0
-            if total > room[axis] and tall:
-                tall -= total - room[axis]
-                continue
+            widest = max(box[0] for box in boxes) if beside else 0.0
             over = max(total / room[axis], widest / wide)
             if over <= 1:
                 break
             scale *= 0.98 / over
         place = (room[axis] - total) / 2 + gap
-        if tall and rows is not None:
-            # The bar ends where the data do, as far as there is room.
-            place = room[1] - float(rows.mean()) - boxes[0][1] + tall / 2 + letters / 2
-            place = max(min(place, room[1] - boxes[0][1]), 0.0)
         for key, box in zip(self._keys, boxes, strict=True):
-            if axis:
-                x = box[0] / 2 if tall else room[0] / 2
-                key.draw((x, room[1] - place - box[1] / 2), box, letters)
+            if beside:
+                key.draw((room[0] / 2, room[1] - place - box[1] / 2), box, letters)
             else:
                 key.draw((place + box[0] / 2, room[1] / 2), box, letters)
             place += box[axis] + gap
@@ -259,7 +265,7 @@ def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
         Whether the data alone count, which can be picked.
     """
     wide, high = renderer.GetSize()
-    corners = []
+    corners: list[tuple[float, ...]] = []
     for actor in items(renderer.GetActors()):
         if actor.GetVisibility() and (actor.GetPickable() or not data):
             bounds = np.reshape(actor.GetBounds() or (1, -1) * 3, (3, 2))
@@ -267,14 +273,15 @@ def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
                 corners += itertools.product(*bounds)
     places = []
     for corner in corners:
-        renderer.SetWorldPoint(*corner, 1.0)
+        renderer.SetWorldPoint((*corner, 1.0))
         renderer.WorldToView()
         places.append((np.array(renderer.GetViewPoint()[:2]) + 1) / 2 * (wide, high))
     whole = np.array([0.0, 0.0, wide, high])
     if not places:
         return whole
     limits = [*whole[2:], *whole[2:]]
-    return np.clip(np.concatenate([np.min(places, axis=0), np.max(places, axis=0)]), 0, limits)
+    box: Array = np.clip([*np.min(places, axis=0), *np.max(places, axis=0)], 0, limits)
+    return box
 
 
 class MarginKey:
@@ -299,6 +306,8 @@ class MarginKey:
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
         self._marks = _marks(mesh, words)
+        low, high = mesh.field_data.get(RANGE, (0.0, 1.0))
+        self._zero = -float(low) / (float(high - low) or 1.0)
         #: Words of a disc, which stand below it.
         self._below = "" if self._marks else words[0]
         if self._marks:
@@ -315,12 +324,18 @@ class MarginKey:
         picture = vtkActor2D()
         picture.SetMapper(mapper)
         self._heading = _text("", ink)
+        self._heading.GetTextProperty().SetLineSpacing(1.3)
         self._labels = [_text(word, ink) for _, word in self._marks]
         for label in self._labels:
             style = label.GetTextProperty()
             style.SetJustificationToLeft()
             style.SetVerticalJustificationToCentered()
         self.props = [picture, self._heading, *self._labels]
+
+    @property
+    def is_bar(self) -> bool:
+        """Whether it is a bar with words along it, and no disc."""
+        return bool(self._marks)
 
     def fit(
         self, short: float, letters: float, width: float, tall: float, alone: bool
@@ -375,9 +390,9 @@ class MarginKey:
         flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
         self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
         most = tall / (APART * letters) + 1
-        shown = _thinned([share for share, _ in self._marks], most)
-        for at, (label, (share, _)) in enumerate(zip(self._labels, self._marks, strict=True)):
-            label.SetVisibility(at in shown)
+        shown = _thinned([share for share, _ in self._marks], self._zero, most)
+        for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+            label.SetVisibility(visible)
             label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
         self._heading.GetTextProperty().SetJustificationToLeft()
         self._heading.SetPosition(left, y + box[1] / 2 - words)
@@ -417,9 +432,9 @@ def data_share(size: tuple[int, int], key: float, *, titled: bool = True) -> tup
 def written(name: str) -> str:
     """Return a name in words: without underscores, and with a capital where it is a word."""
     words = " ".join(name.replace("_", " ").split())
-    first = words.partition(" ")[0]
-    # Symbols such as u or dT are no words.
-    return words[:1].upper() + words[1:] if len(first) > 2 and first.islower() else words
+    # Symbols such as dT or u,v are no words.
+    is_word = re.match(r"[a-z]{3,}(?=[ ;,.]|$)", words)
+    return words[:1].upper() + words[1:] if is_word else words
 
 
 def parted(title: str) -> tuple[str, str]:
@@ -457,11 +472,23 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     return [((tick - low) / spread, word) for tick, word in ticks]
 
 
-def _thinned(places: list[float], most: float) -> range:
-    """Return the numbers of some places of many, every second or fifth, so that words fit."""
-    every = next((n for n in (1, 2, 5, 10) if len(places) / n <= most), 20)
-    step = places[1] - places[0] if len(places) > 1 else 1.0
-    return range(0, len(places), every) if step else range(len(places))
+def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
+    """Return which of some even places along a bar have words, so that these fit.
+
+    Parameters
+    ----------
+    places : list of float
+        Places, as shares of the length.
+    zero : float
+        Place of zero, whose neighbours are counted from it.
+    most : float
+        Number of words that fit.
+    """
+    if len(places) <= most:
+        return [True] * len(places)
+    every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)
+    step = places[1] - places[0]
+    return [round((place - zero) / step) % every == 0 for place in places]
 
 
 def even_levels(low: float, high: float, most: int = 5) -> list[float]:
@@ -478,21 +505,21 @@ def even_levels(low: float, high: float, most: int = 5) -> list[float]:
         return [low]
     rough = (high - low) / max(most - 1, 1)
     power = 10.0 ** math.floor(math.log10(rough))
-    steps = (1, 2, 2.5, 4, 5, 10, 20) if most > FEW else (1, 2, 2.5, 5, 10, 20)
+    steps = (1, 2, 4, 5, 10, 20) if most > FEW else (1, 2, 2.5, 5, 10, 20)
     step = next(s * power for s in steps if _count(low, high, s * power) <= most)
     first = math.ceil(low / step - 1e-9)
     last = math.floor(high / step + 1e-9)
-    # A whole multiple of the step: zero is 0 and not a rest of rounding.
-    return [i * step for i in range(first, last + 1)]
+    # A whole multiple of the step without a rest of rounding.
+    return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
 
 
 def numerals_of(values: Sequence[float]) -> list[str]:
     """Return the digits of round numbers with even steps, with as many places as these need."""
     size = max(abs(value) for value in values)
+    if size >= 1e6 or 0 < size < 1e-3:
+        return [_power(value) for value in values]
     if len(values) < 2:
         return [f"{value:.4g}" for value in values]
-    if size >= 1e6 or size < 1e-3:
-        return [_power(value) for value in values]
     step = min(abs(b - a) for a, b in itertools.pairwise(values))
     places = next(n for n in range(12) if abs(step - round(step, n)) < 1e-6 * step)
     return [f"{value:.{places}f}" for value in values]

@@ -122,6 +122,8 @@ def key(
     if len(levels):
         low, high = _check.limits("clim", clim)
         steps = [(level - low) / (high - low) for level in _check.coordinates("levels", levels)]
+    elif names := _names_of(cmap):
+        steps = [i / len(names) for i in range(1, len(names))]
     is_bar = asked in ("slope", "value")
     x, y, faces = _bar(steps) if is_bar else _disc(HOLE * (asked == "direction"))
     made = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())

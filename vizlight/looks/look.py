@@ -168,6 +168,8 @@ class Look:
             If the file cannot be written.
         BackendError
             If a picture is asked for and no OpenGL library can draw here.
+        ValueError
+            If a movie is asked for of a map on which nothing moves.
         """
         paths = [written(steps) for steps in self.steps(path)]
         return paths[0]
@@ -189,6 +191,10 @@ class Look:
         suffix, drawing = path.suffix.lower(), self.drawing
         if suffix in MOVIES:
             moving = fields.moving(drawing)
+            if moving is None and drawing.is_flat:
+                expected = "a picture or a page of a map on which nothing moves"
+                remedy = "name a file that ends in .png, .svg or .html"
+                raise ValueError(message("path", expected, repr(str(path)), remedy))
             shown = self if moving is None else replace(self, drawing=moving)
             plotter, steps = shown._picture()
             way = "movie.orbit" if moving is None else "movie.travel"

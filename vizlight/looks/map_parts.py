@@ -30,7 +30,7 @@ ROOM = (3.2, 1.5)
 COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
 #: more are too dense; and their letters as a share of those of the frame.
-MOST_POINTS, LEVELS, SMALL = 100_000, (8, 14), 0.7
+MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -94,9 +94,7 @@ def isolines(
         shown = levels
     if not shown:
         return None
-    keywords: Keywords = {"letters": size}
-    if factor != 1:
-        keywords["words"] = legends.numerals_of(shown)
+    keywords: Keywords = {"letters": size, "words": legends.numerals_of(shown)}
     if coasts is not None:
         keywords["clear_of"] = coasts
     levels = [float(f"{factor * level:.12g}") for level in shown]

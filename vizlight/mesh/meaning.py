@@ -374,6 +374,8 @@ _SINCE = re.compile(
     r"(\w+) since (\d{4})-(\d\d?)-(\d\d?)"
     r"(?:[T ](\d\d?):(\d\d)(?::\d\d(?:\.\d+)?)?)?(?: ?(?:UTC|Z))?"
 )
+#: Names of degrees Celsius, in lower case and in the singular.
+_CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
 
@@ -386,6 +388,8 @@ def written(unit: str) -> str:
     unit : str
         Unit as files have it, by UDUNITS.
     """
+    if unit.lower().replace("degrees", "degree") in _CELSIUS:
+        return "°C"
     factors = [_FACTOR.fullmatch(word) for word in unit.split()]
     known = [(found[1], int(found[2] or 1)) for found in factors if found is not None]
     below = [name + " ²³"[-power - 1].strip() for name, power in known if power < 0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -14,7 +15,7 @@ from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.files import FORMATS
 from vizlight.looks import map_parts
-from vizlight.looks.contents import kinds_of
+from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.steps import Step
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from vizlight._types import Keywords
-    from vizlight.looks.contents import Contents, Named
+    from vizlight.looks.contents import Named
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit.
@@ -136,6 +137,11 @@ class Drawing:
     colors: Keywords = dataclasses.field(default_factory=dict)
     background: str | None = None
     doubt: Doubt | None = None
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether all that is drawn is a flat map, or another flat sheet seen face on."""
+        return Contents(self.layers[0].mesh.run()).flat_axis is not None
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -273,14 +279,24 @@ def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
-    title = name
-    if "," not in name:
-        title = attributes.get("long_name") or attributes.get("standard_name") or name
+    title = attributes.get("long_name") or attributes.get("standard_name") or name
+    if "," in name:
+        title = _in_common(mesh, name.split(",")) or name
     if series.TIME in mesh.field_data:
         time = float(np.ravel(mesh.field_data[series.TIME])[0])
         date = meaning.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
         title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
+
+
+def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
+    """Return the words that the names of the components of a vector have in common."""
+    arrays = meaning.of(mesh).arrays
+    every = [arrays.get(name, {}) for name in names]
+    texts = [one.get("standard_name") or one.get("long_name") or "" for one in every]
+    first, *others = (re.split(r"[_ ]+", text) for text in texts)
+    left = [word for word in first if all(word in words for words in others)]
+    return " ".join(left).replace("component of ", "").replace(" component", "")
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:

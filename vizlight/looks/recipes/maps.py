@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyvista as pv
 
-from vizlight.draw.legends import ink_on, parted
+from vizlight.draw.legends import ink_on, numerals_of, parted
 from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step
@@ -98,7 +98,8 @@ def _every(title: str, levels: Sequence[float]) -> str:
     if len(levels) < 2:
         return ""
     _, unit = parted(title)
-    return f"; lines every {levels[1] - levels[0]:.6g} {unit}".rstrip()
+    step = numerals_of([levels[1] - levels[0]])[0]
+    return f"; lines every {step} {unit}".rstrip()
 
 
 def _has_coasts(case: Case) -> bool:
