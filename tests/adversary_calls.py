@@ -220,6 +220,7 @@ OWN = {
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2, "plotter": with_strokes},
     "maps.heights": {"low": -10.0, "high": 250.0},
+    "maps.bands": {"levels": [1.0, 2.0], "limits": (0.0, 3.0)},
     "maps.kinds": {"values": [1.0, 2.0, 7.0]},
     "looks.look.look": {"data": ball},
     "Look.save": {"path": lambda: Path("look.vtp")},

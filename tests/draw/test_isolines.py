@@ -73,7 +73,8 @@ def test_numbers_keep_clear_of_other_lines():
     letters = 0.8
     free = np.array(isolines(cone(), "r", [3.0], letters=letters)["numbers"].center)
     assert np.hypot(*free[:2]) == pytest.approx(3, abs=0.5)
-    fence = pv.Line(free - (2, 0, 0), free + (2, 0, 0))
+    aside = np.array([2.0, 0.0, 0.0])
+    fence = pv.Line(free - aside, free + aside)
     made = isolines(cone(), "r", [3.0], letters=letters, clear_of=fence)
     assert np.linalg.norm(made["numbers"].center - free) > 2 * letters
 

@@ -38,7 +38,7 @@ MARGIN, LETTERS = 0.025, 0.032
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
 #: height of its band in letters of keys.
-TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.4
+TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
 #: Least distance of numbers along a bar, in letters.
 APART = 1.5
 #: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
@@ -221,7 +221,7 @@ class Margin:
         letters, gap = LETTERS * short, MARGIN * short
         wide = key.fit(short, letters, room[0] - gap, 0.0, True)[0]
         letters *= min((room[0] - gap) / wide, 1.0)
-        low, top = rows
+        low, top = np.clip(rows, gap, room[1] - gap)
         least = LEAST_BAR * room[1]
         if top - low < least:
             low, top = np.mean(rows) - least / 2, np.mean(rows) + least / 2
