@@ -216,6 +216,7 @@ OWN = {
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
     "coasts.coasts": {"bounds": (-10.0, 40.0, 35.0, 60.0)},
     "globes.globe": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
+    "filters.key.key": {"scene": presets.shape(), "levels": [0.2, 0.4], "clim": (0.0, 1.0)},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2, "plotter": with_strokes},

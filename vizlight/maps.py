@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
+    from vizlight._types import Foreign
+
 __all__ = ["bands", "directions", "even", "heights", "kinds", "speed"]
 
 #: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
@@ -192,9 +194,9 @@ def bands(
     middles = (0.5 * (edges[1:] + edges[:-1]))[np.searchsorted(edges[1:-1], values)]
     shares = (_WITHIN * values + (1 - _WITHIN) * middles - start) / (end - start)
     table = pv.LookupTable(n_values=_FINE)
-    table.values = np.round(
-        255 * np.asarray(pv.plotting.colors.get_cmap_safe(cmap)(shares))
-    ).astype(np.uint8)
+    # PyVista types names of maps one by one.
+    colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]
+    table.values = np.round(255 * np.asarray(colors)).astype(np.uint8)
     table.nan_color = MISSING
     table.scalar_range = (low, high)
     return table

@@ -135,6 +135,8 @@ def test_the_bar_of_levels_has_steps_there_and_nowhere_else():
     np.testing.assert_allclose(steps, [-0.5, 0], atol=2e-3)
     with pytest.raises(ValueError, match="levels"):
         presets.key(presets.value(VIEW), **options | {"levels": [np.nan]})
+    with pytest.raises(ValueError, match="levels: expected numbers that ascend"):
+        presets.key(presets.value(VIEW), **options | {"levels": [2, 1]})
 
 
 @pytest.mark.parametrize("question", ["direction", "slope", "shape"])

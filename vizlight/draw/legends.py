@@ -306,8 +306,9 @@ class MarginKey:
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
         self._marks = _marks(mesh, words)
-        low, high = mesh.field_data.get(RANGE, (0.0, 1.0))
-        self._zero = -float(low) / (float(high - low) or 1.0)
+        ends = mesh.field_data.get(RANGE)
+        low, high = (0.0, 1.0) if ends is None else (float(end) for end in ends)
+        self._zero = -low / ((high - low) or 1.0)
         #: Words of a disc, which stand below it.
         self._below = "" if self._marks else words[0]
         if self._marks:

@@ -119,9 +119,13 @@ def key(
     scene = required_scene(scene)
     asked = question_of(scene) if question is None else question
     steps: list[float] = []
-    if len(levels):
+    values = _check.coordinates("levels", levels).ravel()
+    if len(values):
         low, high = _check.limits("clim", clim)
-        steps = [(level - low) / (high - low) for level in _check.coordinates("levels", levels)]
+        if not low < high or np.any(np.diff(values) <= 0):
+            expected = "numbers that ascend, of a range that is given by clim"
+            raise ValueError(_check.message("levels", expected, list(values)))
+        steps = [(value - low) / (high - low) for value in values]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
     is_bar = asked in ("slope", "value")
@@ -141,8 +145,8 @@ def key(
             ends = _check.limits("clim", clim)
             made.field_data[RANGE] = ends
             words = numerals(ends)
-        if len(levels):
-            made.field_data[LEVELS] = levels
+        if len(values):
+            made.field_data[LEVELS] = values
     _put_words(made, WORDS, words)
     if title:
         _put_words(made, TITLE, [_check.text("title", title)])
