@@ -241,8 +241,8 @@ class Margin:
             wide = room[0] - 2 * gap
             boxes = [key.fit(short * scale, letters, wide, 0.0, alone) for key in self._keys]
             total = sum(box[axis] for box in boxes) + gap * (len(boxes) + 1)
-            widest = max(box[0] for box in boxes) if beside else 0.0
-            over = max(total / room[axis], widest / wide)
+            across = max(box[1 - axis] for box in boxes)
+            over = max(total / room[axis], across / (room[1 - axis] - 2 * gap))
             if over <= 1:
                 break
             scale *= 0.98 / over

@@ -257,6 +257,9 @@ class Look:
         if wishes.picture.get("key", True):
             # The key of a lamp that stands somewhere differs from place to place.
             keys = list(drawing.keys)
+            if keys and not any(key.get("title") for key in keys):
+                # Cameras of looks leave room for a title.
+                keys[0] = keys[0] | {"title": drawing.words}
             if near:
                 # A bar has the colours of the map, in even light.
                 even = even_light(drawing.camera)
