@@ -125,7 +125,7 @@ def key(
         if not low < high or np.any(np.diff(values) <= 0):
             expected = "numbers that ascend, of a range that is given by clim"
             raise ValueError(_check.message("levels", expected, list(values)))
-        steps = [(value - low) / (high - low) for value in values]
+        steps = [(float(value) - low) / (high - low) for value in values]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
     is_bar = asked in ("slope", "value")
