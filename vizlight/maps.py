@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-__all__ = ["directions", "even", "heights", "kinds", "speed"]
+    from vizlight._types import Foreign
+
+__all__ = ["bands", "directions", "even", "heights", "kinds", "speed"]
 
 #: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
 #: sets, one after the other.
@@ -125,6 +127,87 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     if not sea.all():
         colors[~sea] = _GROUND((values[~sea] - coast) / (high - coast))
     table.values = np.round(255 * colors).astype(np.uint8)
+    table.scalar_range = (low, high)
+    return table
+
+
+#: Blue over pale yellow to dark red, with a longer way through CIELAB than most maps, and no darker
+#: than a lightness of 35, so that black lines are seen on all of it. It is the map of bands between
+#: isolines, named ``"vizlight.bands"``.
+_BANDS = LinearSegmentedColormap.from_list(
+    "vizlight.bands",
+    [
+        "#4450b0",
+        "#3a66c4",
+        "#5fb5dd",
+        "#b9e6cf",
+        "#fdf9b0",
+        "#fdc15c",
+        "#f2693c",
+        "#c8203a",
+        "#a3143f",
+    ],
+)
+colormaps.register(_BANDS, force=True)
+#: Colours of a table of bands, and how much of the colours of a map goes on within a band: the rest
+#: is the step at each level.
+_FINE, _WITHIN = 1024, 0.8
+#: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
+#: sides.
+_TWO_SIDED = 0.6
+
+
+def bands(
+    levels: Sequence[float], limits: Sequence[float], cmap: str = "vizlight.bands", /
+) -> pv.LookupTable:
+    """Return a lookup table whose colours have a step at each level, as bands between isolines.
+
+    Within a band 0.8 of the difference is left, so that values between levels can be read.
+
+    Parameters
+    ----------
+    levels : sequence of float
+        Values at the steps.
+    limits : (float, float)
+        Values at the ends of the colours. Where they are on both sides of 0, and the smaller is at
+        least 0.6 of the larger, the middle of the map is at 0.
+    cmap : str, default: "vizlight.bands"
+        Colour map; blue over pale yellow to red by default, on all of which black lines are seen.
+
+    Returns
+    -------
+    pyvista.LookupTable
+        1024 colours; what is missing is light grey.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a level is no finite number, or the limits do not ascend.
+
+    Examples
+    --------
+    >>> from vizlight import maps
+    >>> maps.bands([280, 290, 300], [272, 305]).scalar_range
+    (272.0, 305.0)
+    """
+    import pyvista as pv
+
+    low, high = _check.limits("limits", limits)
+    if not low < high:
+        raise ValueError(_check.message("limits", f"a number above {low:g} at the end", high))
+    edges = np.unique([low, *np.clip(_check.coordinates("levels", levels), low, high), high])
+    start, end = low, high
+    if min(-low, high) >= _TWO_SIDED * max(-low, high):
+        start, end = -max(-low, high), max(-low, high)
+    # The middles of the steps of the table.
+    values = low + (high - low) * (np.arange(_FINE) + 0.5) / _FINE
+    middles = (0.5 * (edges[1:] + edges[:-1]))[np.searchsorted(edges[1:-1], values)]
+    shares = (_WITHIN * values + (1 - _WITHIN) * middles - start) / (end - start)
+    table = pv.LookupTable(n_values=_FINE)
+    # PyVista types names of maps one by one.
+    colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]
+    table.values = np.round(255 * np.asarray(colors)).astype(np.uint8)
+    table.nan_color = MISSING
     table.scalar_range = (low, high)
     return table
 

@@ -122,6 +122,23 @@ def test_the_bar_of_a_lookup_table_has_its_ends_and_a_title():
     np.testing.assert_allclose(found(bar, 1, BAR)[0], (253, 231, 37), atol=1)
 
 
+def test_the_bar_of_levels_has_steps_there_and_nowhere_else():
+    table = maps.bands([1, 2], (0, 4))
+    options = {"question": "value", "cmap": table, "clim": (0, 4), "levels": [1, 2]}
+    bar = presets.key(presets.value(VIEW), **options)
+    assert list(bar.field_data["levels"]) == [1, 2]
+    top = bar.points[:, 1] == bar.points[:, 1].max()
+    x, rgb = bar.points[top, 0], bar["rgb"][top].astype(int)
+    order = np.argsort(x)
+    jumps = np.abs(np.diff(rgb[order], axis=0)).sum(axis=1)
+    steps = np.sort(x[order][np.argsort(jumps)[-2:]])
+    np.testing.assert_allclose(steps, [-0.5, 0], atol=2e-3)
+    with pytest.raises(ValueError, match="levels"):
+        presets.key(presets.value(VIEW), **options | {"levels": [np.nan]})
+    with pytest.raises(ValueError, match="levels: expected numbers that ascend"):
+        presets.key(presets.value(VIEW), **options | {"levels": [2, 1]})
+
+
 @pytest.mark.parametrize("question", ["direction", "slope", "shape"])
 def test_the_picture_of_a_key_is_its_mesh(question):
     scene = getattr(presets, question)(VIEW)

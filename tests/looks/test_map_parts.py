@@ -1,5 +1,7 @@
 """What a look draws on and around maps: coasts and frames, where they are and where not."""
 
+import re
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -8,6 +10,7 @@ import vizlight
 from vizlight.draw.cameras import MARGIN
 from vizlight.draw.legends import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
+from vizlight.mesh import meaning
 
 SIZE = (300, 200)
 #: Ends of the paths of the layers of isolines and of their numbers.
@@ -34,11 +37,11 @@ def paths(look):
 @pytest.mark.parametrize(
     ("mesh", "options", "parts"),
     [
-        (chart(60, 40), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(60, 40), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(10, 8), {}, [*ISOLINES, "frame"]),
         (chart(60, 40, unit=""), {}, []),
-        (chart(360, 180, -180, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
-        (chart(360, 180, 0, -90, unit=""), {}, [*ISOLINES, "coasts", "frame"]),
+        (chart(360, 180, -180, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
+        (chart(360, 180, 0, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
         (chart(60, 40, name="elevation"), {}, ["frame"]),
         (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
@@ -74,6 +77,43 @@ def test_all_of_the_frame_is_in_the_picture_and_the_map_fills_the_rest(sides):
     # Letters are as high as those of keys.
     pixels = look.drawing.layers[-1].mesh.keywords["letters"] / (2 * high) * SIZE[1] * share[1]
     assert pixels == pytest.approx(LETTERS * min(SIZE), rel=0.06)
+
+
+def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
+    look = vizlight.look(chart(60, 40), size=SIZE)
+    (key,) = look.drawing.keys
+    table = look.drawing.layers[0].keywords["cmap"].run()
+    lines = look.drawing.layers[2].mesh.run()
+    assert set(np.unique(lines["level"])) <= set(key["levels"])
+    step = key["levels"][1] - key["levels"][0]
+    assert key["title"] == f"warmth; lines every {step:g}"
+    low, high = table.scalar_range
+    colors = np.asarray(table.values).astype(int)
+    jumps = np.abs(np.diff(colors, axis=0)).sum(axis=1)
+    at = low + (np.argsort(jumps)[-4:] + 1) / len(colors) * (high - low)
+    nearest = np.abs(at[:, np.newaxis] - key["levels"]).min(axis=1)
+    assert nearest.max() < 2 * (high - low) / len(colors)
+
+
+def test_pressure_of_air_is_read_in_hectopascals():
+    mesh = chart(60, 40, name="air_pressure")
+    mesh["air_pressure"] = 1e5 + 1e3 * mesh["air_pressure"]
+    said = meaning.Meaning()
+    said.add_array("air_pressure", {"standard_name": "air_pressure", "units": "Pa"})
+    meaning.attach(mesh, said)
+    look = vizlight.look(mesh, size=SIZE)
+    (key,) = look.drawing.keys
+    low, high = mesh.get_data_range("air_pressure")
+    np.testing.assert_allclose(key["clim"], (low / 100, high / 100))
+    assert re.fullmatch(r"air_pressure \(hPa\); lines every \d hPa", key["title"])
+    levels = look.drawing.layers[2].mesh.arguments[0].arguments[2]
+    np.testing.assert_allclose(levels, 100 * np.array(key["levels"]))
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.mp4"])
+def test_a_map_on_which_nothing_moves_has_no_movie(name):
+    with pytest.raises(ValueError, match="path: expected a picture or a page of a map"):
+        vizlight.look(chart(60, 40), size=SIZE).steps(name)
 
 
 @pytest.mark.opengl

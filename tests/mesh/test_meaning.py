@@ -149,9 +149,29 @@ def test_a_time_is_a_date_where_its_unit_names_a_day(time, unit, expected):
         ("s-1", "s-1"),
         ("kg m-2 s-1", "kg m-2 s-1"),
         ("degrees_north", "degrees_north"),
+        ("degree_C", "°C"),
+        ("degrees Celsius", "°C"),
         ("%", "%"),
         ("", ""),
     ],
 )
 def test_a_unit_is_printed_as_a_quotient(unit, expected):
     assert meaning.written(unit) == expected
+
+
+@pytest.mark.parametrize(
+    ("standard", "unit", "size", "expected"),
+    [
+        ("air_pressure_at_sea_level", "Pa", 1.03e5, (100.0, "hPa")),
+        ("surface_air_pressure", "Pa", 9e3, (1.0, "Pa")),
+        ("air_pressure", "hPa", 1e4, (1.0, "hPa")),
+        ("sea_water_pressure", "Pa", 1e7, (1.0, "Pa")),
+        ("air_temperature", "K", 1e5, (1.0, "K")),
+    ],
+)
+def test_pressures_of_air_have_a_usual_unit(standard, unit, size, expected):
+    mesh, said = pv.Sphere(), meaning.Meaning()
+    said.add_array("p", {"standard_name": standard, "units": unit})
+    meaning.attach(mesh, said)
+    assert meaning.usual_unit(mesh, "p", size) == expected
+    assert meaning.usual_unit(mesh, "q", size) == (1.0, "")

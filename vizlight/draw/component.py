@@ -241,7 +241,7 @@ class Component:
         /,
         *,
         question: Question | None = None,
-        size: float = 0.2,
+        size: float = 0.15,
         color: ColorLike | None = None,
         **options: Given,
     ) -> pv.PolyData:
@@ -259,12 +259,13 @@ class Component:
         question : {"direction", "slope", "heading", "shape", "value"}, optional
             What the key tells. Default: the question of the preset, see
             :func:`vizlight.presets.key`.
-        size : float, default: 0.2
+        size : float, default: 0.15
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
         color : colour, optional
             Colour of the words. Default: black on a light background, white on a dark one.
         **options
-            Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim.
+            Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim, levels,
+            title.
 
         Returns
         -------
@@ -294,7 +295,7 @@ class Component:
         return made
 
     def show_key(
-        self, mesh: pv.PolyData, /, *, size: float = 0.2, color: ColorLike | None = None
+        self, mesh: pv.PolyData, /, *, size: float = 0.15, color: ColorLike | None = None
     ) -> None:
         """Draw a key that was made by :func:`vizlight.presets.key` in the margin.
 
@@ -302,7 +303,7 @@ class Component:
         ----------
         mesh : pyvista.PolyData
             Key.
-        size : float, default: 0.2
+        size : float, default: 0.15
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
         color : colour, optional
             Colour of the words of the first key, as for :meth:`add_key`.

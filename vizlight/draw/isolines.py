@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from scipy.spatial import cKDTree
 
 from vizlight import _check, _words
 from vizlight.mesh import polylines, records
@@ -14,32 +16,45 @@ from vizlight.vtk import letters as words_of
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
 __all__ = ["isolines"]
 
-#: Room around a number within its line, and least distance between numbers, in heights of letters.
-GAP, APART = 0.35, 4.0
+#: Room around a number within its line, and least distance between numbers, and what is added
+#: to that between numbers of one line, in heights of letters.
+GAP, APART, FAR = 0.35, 4.0, 14.0
 #: Largest length of the arc below a number, in lengths of its chord: where a line is as straight.
 STRAIGHT = 1.06
 #: Length of lines that count as long, and distance between lines, in heights of letters; share of
 #: the length of all in long ones, from which on a field is smooth in its picture.
-LONG, SPARSE, SMOOTH = 6.0, 1.0, 0.75
+LONG, SPARSE, SMOOTH = 6.0, 1.3, 0.75
 #: Places along a line at which a number may stand.
 PLACES = 60
+#: Length of the rest of a line from which on it has a number too, in heights of letters.
+AGAIN = 30.0
+#: Points across a number at which other lines are looked for, distance of these and step between
+#: the points of all lines, in heights of letters, and points that are looked at.
+ALONG, CLEAR, STEP, NEIGHBOURS = 5, 0.75, 0.4, 12
 #: Height of digits in the size of a font, and name of the array with the level of a line.
 DIGIT, LEVEL = 0.73, "level"
 
 
 def isolines(
-    mesh: pv.DataSet, name: str, levels: Sequence[float], /, letters: float
+    mesh: pv.DataSet,
+    name: str,
+    levels: Sequence[float],
+    /,
+    letters: float,
+    *,
+    words: Sequence[str] | None = None,
+    clear_of: pv.PolyData | None = None,
 ) -> pv.MultiBlock:
     """Return lines of equal values on a flat map, with their numbers along them.
 
-    Each line that has room has one number, where it is straightest, in a gap of the line; its top
-    is toward larger y.
+    Each line that has room has one number, in a gap of the line; its top is toward larger y. It is
+    where no other line is near, and where its own is straightest.
 
     Parameters
     ----------
@@ -51,6 +66,10 @@ def isolines(
         Values of the lines.
     letters : float
         Height of letters in the unit of x and y.
+    words : sequence of str, optional
+        Numbers of the levels, such as those in another unit. Default: the levels.
+    clear_of : pyvista.PolyData, optional
+        Lines of which numbers keep clear, as far as there is room, such as coasts.
 
     Returns
     -------
@@ -75,29 +94,75 @@ def isolines(
     """
     letters = _check.positive("letters", letters)
     values = _check.coordinates("levels", levels).ravel()
+    texts = [f"{level:.6g}" for level in values] if words is None else list(words)
+    if len(texts) != len(values):
+        expected = f"a word for each of the {len(values)} levels"
+        raise ValueError(_check.message("words", expected, len(texts)))
+    text_of = dict(zip(values.tolist(), texts, strict=True))
     pieces, levels_of = _pieces(mesh, name, values)
+    is_near = _lines_apart(pieces, clear_of, letters)
     drawn: list[tuple[Array, float]] = []
-    words: list[tuple[Array, Indices, float]] = []
-    taken: list[Array] = []
-    for piece, level in sorted(
-        zip(pieces, levels_of, strict=True), key=lambda pair: -_length(pair[0])
-    ):
-        text = f"{level:.6g}"
+    numbers: list[tuple[Array, Indices, float]] = []
+    taken: list[tuple[Array, int]] = []
+    longest = sorted(range(len(pieces)), key=lambda at: -_length(pieces[at]))
+    left = [(number, pieces[number]) for number in longest]
+    # Parts of long lines join the end of the queue.
+    for number, piece in left:
+        level = levels_of[number]
+        text = text_of[level]
         word, triangles = words_of.triangles(text)
         width = words_of.width(text)
-        place = _place(piece, (width + 2 * GAP) * letters, taken, APART * letters)
+        near = partial(is_near, number)
+        apart = [(APART + FAR * (owner == number)) * letters for _, owner in taken]
+        others = [(place, size) for (place, _), size in zip(taken, apart, strict=True)]
+        place = _place(piece, (width + 2 * GAP) * letters, others, near)
         if place is None:
             drawn.append((piece, level))
             continue
         start, end, middle, way = place
-        taken.append(middle)
-        drawn += [(part, level) for part in _cut(piece, start, end)]
+        taken.append((middle, number))
+        for part in _cut(piece, start, end):
+            if _length(part) > AGAIN * letters:
+                left.append((number, part))
+            else:
+                drawn.append((part, level))
         across = np.array([-way[1], way[0]])
         flat = letters * (word - (width / 2, DIGIT / 2))
         at = middle + flat[:, :1] * way + flat[:, 1:] * across
-        words.append((at, triangles, level))
+        numbers.append((at, triangles, level))
     height = float(mesh.bounds[5])
-    return pv.MultiBlock({"lines": _lines(drawn, height), "numbers": _numbers(words, height)})
+    return pv.MultiBlock({"lines": _lines(drawn, height), "numbers": _numbers(numbers, height)})
+
+
+def _lines_apart(
+    pieces: list[Array], clear_of: pv.PolyData | None, letters: float
+) -> Callable[[int, Array], Bools]:
+    """Return the function that tells at which places a line other than a numbered one is near."""
+    courses = list(pieces)
+    if clear_of is not None and clear_of.n_lines:
+        ids, ends = connectivity(clear_of.GetLines())
+        flat = np.asarray(clear_of.points, dtype=np.float64)[ids, :2]
+        courses += np.split(flat, ends[1:-1])
+    points = [_dense(course, STEP * letters) for course in courses]
+    owners = np.repeat(np.arange(len(points)), [len(part) for part in points])
+    if not points:
+        return lambda _, places: np.zeros(len(places), np.bool_)
+    tree = cKDTree(np.concatenate(points))
+
+    def near(number: int, places: Array) -> Bools:
+        distance, at = tree.query(places, NEIGHBOURS, distance_upper_bound=CLEAR * letters)
+        other = np.isfinite(distance)
+        other[other] = owners[np.asarray(at)[other]] != number
+        return np.asarray(other.any(axis=1))
+
+    return near
+
+
+def _dense(course: Array, step: float) -> Array:
+    """Return points along a line, no farther apart than a step."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(course, axis=0), axis=1))])
+    at = np.linspace(0, along[-1], int(along[-1] / step) + 2)
+    return np.column_stack([np.interp(at, along, course[:, axis]) for axis in (0, 1)])
 
 
 def _lines(drawn: list[tuple[Array, float]], height: float) -> pv.PolyData:
@@ -151,21 +216,16 @@ def _pieces(mesh: pv.DataSet, name: str, levels: Array) -> tuple[list[Array], li
     return list(pieces), [float(level) for level in nearest]
 
 
-def are_smooth(mesh: pv.DataSet, lines: pv.PolyData, letters: float) -> bool:
+def are_smooth(mesh: pv.DataSet, name: str, levels: Sequence[float], letters: float) -> bool:
     """Return whether isolines are few, long and apart: a field is smooth in its picture.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
-        Flat map.
-    lines : pyvista.PolyData
-        Block ``lines`` of its isolines.
-    letters : float
-        Height of letters in the unit of x and y.
+    mesh, name, levels, letters
+        As for :func:`isolines`.
     """
-    ids, ends = connectivity(lines.GetLines())
-    flat = np.asarray(lines.points, dtype=np.float64)[ids, :2]
-    lengths = np.array([_length(piece) for piece in np.split(flat, ends[1:-1])])
+    pieces, _ = _pieces(mesh, name, np.asarray(levels, dtype=np.float64))
+    lengths = np.array([_length(piece) for piece in pieces])
     x, y, _ = mesh.bounds_size
     is_apart = x * y > SPARSE * letters * lengths.sum()
     return bool(is_apart and lengths[lengths > LONG * letters].sum() > SMOOTH * lengths.sum() > 0)
@@ -176,7 +236,10 @@ def _length(piece: Array) -> float:
 
 
 def _place(
-    piece: Array, room: float, taken: list[Array], apart: float
+    piece: Array,
+    room: float,
+    taken: list[tuple[Array, float]],
+    near: Callable[[Array], Bools],
 ) -> tuple[float, float, Array, Array] | None:
     """Return where a number stands: ends along the line, its middle and its direction."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(piece, axis=0), axis=1))])
@@ -190,13 +253,15 @@ def _place(
     chord = np.linalg.norm(b - a, axis=1)
     bent = np.linalg.norm(middle - (a + b) / 2, axis=1) / room
     good = chord * STRAIGHT > room
-    for other in taken:
+    for other, apart in taken:
         good &= np.linalg.norm(middle - other, axis=1) > apart
     if not good.any():
         return None
-    # Where it is straight, and rather level than steep.
+    # Where no other line crosses it, it is straight, and rather level than steep.
     steep = np.abs(b - a)[:, 1] / np.where(chord > 0, chord, 1)
-    best = int(np.argmin(np.where(good, bent + 0.1 * steep, math.inf)))
+    shares = np.linspace(0.1, 0.9, ALONG)[:, np.newaxis, np.newaxis]
+    crossed = near(((1 - shares) * a + shares * b).reshape(-1, 2)).reshape(ALONG, -1).mean(axis=0)
+    best = int(np.argmin(np.where(good, bent + 0.1 * steep + 2 * crossed, math.inf)))
     way = (b[best] - a[best]) / chord[best]
     if way[0] < 0:
         way = -way

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import textwrap
@@ -17,11 +18,14 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from vizlight.filters.key import BEYOND, NAMES, RANGE, SCALE, TITLE, WORDS
+from vizlight.draw.live import items
+from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pyvista as pv
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 
@@ -29,8 +33,16 @@ if TYPE_CHECKING:
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032
-#: Share of the ink in the colour of the plate below keys, and width of a bar as a share of a disc.
-PLATE, BAR_WIDE = 0.05, 0.25
+#: Width of a bar as a share of a disc, least height of a single one as a share of its strip, and
+#: most numbers for which a bar is made longer.
+BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
+#: Letters of the title in those of keys, the least share of them in which a long title is set, and
+#: height of its band in letters of keys.
+TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
+#: Least distance of numbers along a bar, in letters.
+APART = 1.5
+#: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
+FEW = 5
 #: Sum of the channels of a background above which words on it are black.
 LIGHT_BACKGROUND = 1.2
 #: Keywords that say how large a bar is and where it stands: with any of them it is left as asked.
@@ -121,10 +133,10 @@ def name_no_data(bar: vtkScalarBarActor) -> None:
 
 
 class Margin:
-    """Strip beside the data with the keys of a picture on a plate.
+    """Title above the data, and keys in a strip beside them, on the ground of the picture.
 
-    It is at the right of a picture that is wider than tall, else below. The renderer of the data
-    gives up that part of its viewport, so that nothing is drawn over the data.
+    The strip is at the right of a picture that is wider than tall, else below. The renderer of the
+    data gives up these parts of its viewport, so that nothing is drawn over the data.
 
     Parameters
     ----------
@@ -137,11 +149,16 @@ class Margin:
     def __init__(self, renderer: vtkRenderer, ink: Color) -> None:
         self._whole = renderer.GetViewport()
         self._ink, self._keys, self._pixels = ink, list[MarginKey](), (0, 0)
-        self._plate = vtkRenderer()
-        ground = np.array(renderer.GetBackground())
-        self._plate.SetBackground(*(ground + PLATE * (np.array(ink) - ground)))
-        self._plate.InteractiveOff()
-        renderer.GetRenderWindow().AddRenderer(self._plate)
+        self._strip, self._band = vtkRenderer(), vtkRenderer()
+        for part in (self._strip, self._band):
+            part.SetBackground(*renderer.GetBackground())
+            part.InteractiveOff()
+            renderer.GetRenderWindow().AddRenderer(part)
+        #: The title is in its band, or below it where the data leave room there.
+        self._titles = [_text("", ink), _text("", ink)]
+        for part, title in zip((self._band, renderer), self._titles, strict=True):
+            title.GetTextProperty().SetJustificationToLeft()
+            part.AddViewProp(title)
         # The renderer holds the observer, and that the margin. VTK's stubs know no names of events.
         renderer.AddObserver("StartEvent", lambda caller, _: self.place(caller))  # type: ignore[arg-type]
 
@@ -149,37 +166,88 @@ class Margin:
         """Add a key below the others."""
         self._keys.append(MarginKey(mesh, size, self._ink))
         for part in self._keys[-1].props:
-            self._plate.AddViewProp(part)
+            self._strip.AddViewProp(part)
         self._pixels = (0, 0)
 
     def place(self, renderer: vtkRenderer) -> None:
-        """Put the keys in their places, if the size of the picture has changed."""
+        """Put the title in its place, and the keys, if the size of the picture has changed."""
         left, bottom, right, top = self._whole
         wide, high = renderer.GetRenderWindow().GetSize()
         width, height = int(wide * (right - left)), int(high * (top - bottom))
-        if (width, height) == self._pixels or not width or not height:
+        if not width or not height:
             return
-        self._pixels = (width, height)
-        size = max(key.size for key in self._keys)
-        share_x, share_y = data_share((width, height), size)
-        split = left + share_x * (right - left), top - share_y * (top - bottom)
-        renderer.SetViewport(left, split[1], split[0], top)
-        plate = (split[0], bottom, right, top) if share_x < 1 else (left, bottom, right, split[1])
-        self._plate.SetViewport(*plate)
-        room = width * (1 - share_x) or width, height * (1 - share_y) or height
-        self._lay_out(room, min(width, height), beside=share_x < 1)
+        title = "; ".join(dict.fromkeys(key.title for key in self._keys if key.title))
+        if (width, height) != self._pixels:
+            self._pixels = (width, height)
+            share_x, share_y = data_share(
+                (width, height), max(key.size for key in self._keys), titled=bool(title)
+            )
+            head = top - bool(title) * band_share((width, height)) * (top - bottom)
+            split = left + share_x * (right - left), head - share_y * (top - bottom)
+            renderer.SetViewport(left, split[1], split[0], head)
+            beside = share_x < 1
+            strip = (split[0], bottom, right, head) if beside else (left, bottom, right, split[1])
+            self._strip.SetViewport(*strip)
+            self._band.SetViewport(left, head, right, top)
+            self._band.SetDraw(bool(title))
+            room = (strip[2] - strip[0]) * wide, (strip[3] - strip[1]) * high
+            if beside and len(self._keys) == 1 and self._keys[0].is_bar:
+                self._beside(room, min(width, height), _box_of(renderer, data=True)[[1, 3]])
+            else:
+                self._stack(room, min(width, height), beside=beside)
+        self._entitle(renderer, title, (width, height))
 
-    def _lay_out(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
+    def _entitle(self, renderer: vtkRenderer, title: str, size: tuple[int, int]) -> None:
+        """Put the title into its band, or nearer to a map that leaves room below the band."""
+        short = min(size)
+        letters, gap = TITLE_SIZE * LETTERS * short, 2 * MARGIN * short
+        left, upper = _box_of(renderer, data=False)[[0, 3]]
+        is_flat = bool(renderer.GetActiveCamera().GetParallelProjection())
+        lowered = bool(is_flat and renderer.GetSize()[1] - upper > 2.2 * letters)
+        if is_flat:
+            # Above the corner of a map.
+            gap = max(float(_box_of(renderer, data=True)[0]), left, MARGIN * short)
+        room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
+        scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
+        lines = textwrap.wrap(title, max(int(room / scale), 1))
+        places = (0.4 * letters, upper + 0.7 * letters)
+        for text, y, shown in zip(self._titles, places, (not lowered, lowered), strict=True):
+            text.SetVisibility(shown)
+            text.GetTextProperty().SetFontSize(max(round(letters * scale), LEAST))
+            text.SetInput("\n".join(lines))
+            text.SetPosition(gap, y)
+
+    def _beside(self, room: tuple[float, float], short: int, rows: Array) -> None:
+        """Put a single bar beside the data, between their rows as far as there is room."""
+        (key,) = self._keys
+        letters, gap = LETTERS * short, MARGIN * short
+        wide = key.fit(short, letters, room[0] - gap, 0.0, True)[0]
+        letters *= min((room[0] - gap) / wide, 1.0)
+        low, top = np.clip(rows, gap, room[1] - gap)
+        least = LEAST_BAR * room[1]
+        if top - low < least:
+            low, top = np.mean(rows) - least / 2, np.mean(rows) + least / 2
+        box = key.fit(short, letters, room[0] - gap, top - low, True)
+        # What stands above the bar has to have room too.
+        over = max(low - letters / 2 + box[1] - room[1], 0.0)
+        high = box[1] - over
+        key.draw((box[0] / 2, low - letters / 2 + high / 2), (box[0], high), letters)
+
+    def _stack(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
         """Stack the keys in the middle of a strip, smaller where they would not fit."""
         axis = 1 if beside else 0
+        alone = len(self._keys) == 1
         scale = 1.0
         for _ in range(4):
             letters, gap = LETTERS * short * scale, MARGIN * short * scale
-            boxes = [key.fit(short * scale, letters, room[0] - 2 * gap) for key in self._keys]
+            wide = room[0] - 2 * gap
+            boxes = [key.fit(short * scale, letters, wide, 0.0, alone) for key in self._keys]
             total = sum(box[axis] for box in boxes) + gap * (len(boxes) + 1)
-            if total <= room[axis]:
+            across = max(box[1 - axis] for box in boxes)
+            over = max(total / room[axis], across / (room[1 - axis] - 2 * gap))
+            if over <= 1:
                 break
-            scale *= 0.98 * room[axis] / total
+            scale *= 0.98 / over
         place = (room[axis] - total) / 2 + gap
         for key, box in zip(self._keys, boxes, strict=True):
             if beside:
@@ -187,6 +255,35 @@ class Margin:
             else:
                 key.draw((place + box[0] / 2, room[1] / 2), box, letters)
             place += box[axis] + gap
+
+
+def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
+    """Return left, low, right and top, in pixels of a renderer, of what it draws.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+    data : bool
+        Whether the data alone count, which can be picked.
+    """
+    wide, high = renderer.GetSize()
+    corners: list[tuple[float, ...]] = []
+    for actor in items(renderer.GetActors()):
+        if actor.GetVisibility() and (actor.GetPickable() or not data):
+            bounds = np.reshape(actor.GetBounds() or (1, -1) * 3, (3, 2))
+            if np.all(bounds[:, 0] <= bounds[:, 1]):
+                corners += itertools.product(*bounds)
+    places = []
+    for corner in corners:
+        renderer.SetWorldPoint((*corner, 1.0))
+        renderer.WorldToView()
+        places.append((np.array(renderer.GetViewPoint()[:2]) + 1) / 2 * (wide, high))
+    whole = np.array([0.0, 0.0, wide, high])
+    if not places:
+        return whole
+    limits = [*whole[2:], *whole[2:]]
+    box: Array = np.clip([*np.min(places, axis=0), *np.max(places, axis=0)], 0, limits)
+    return box
 
 
 class MarginKey:
@@ -206,9 +303,16 @@ class MarginKey:
         self.size = size
         self._mesh = mesh.copy()
         self._flat = np.asarray(mesh.points, dtype=np.float64)
+        #: What stands above the data, and above the key: its unit, or all where there are several.
+        self.title, self._unit = parted(_first(mesh, TITLE))
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
-        self._marks, self._title = _marks(mesh, words)
+        self._marks = _marks(mesh, words)
+        ends = mesh.field_data.get(RANGE)
+        low, high = (0.0, 1.0) if ends is None else (float(end) for end in ends)
+        self._zero = -low / ((high - low) or 1.0)
+        #: Words of a disc, which stand below it.
+        self._below = "" if self._marks else words[0]
         if self._marks:
             # A bar stands: its length runs upward.
             self._flat = self._flat[:, [1, 0, 2]] * (1, 1, 1)
@@ -223,6 +327,7 @@ class MarginKey:
         picture = vtkActor2D()
         picture.SetMapper(mapper)
         self._heading = _text("", ink)
+        self._heading.GetTextProperty().SetLineSpacing(1.3)
         self._labels = [_text(word, ink) for _, word in self._marks]
         for label in self._labels:
             style = label.GetTextProperty()
@@ -230,22 +335,43 @@ class MarginKey:
             style.SetVerticalJustificationToCentered()
         self.props = [picture, self._heading, *self._labels]
 
-    def fit(self, short: float, letters: float, width: float) -> tuple[float, float]:
-        """Return the width and height in pixels that the key takes at a size of letters."""
+    @property
+    def is_bar(self) -> bool:
+        """Whether it is a bar with words along it, and no disc."""
+        return bool(self._marks)
+
+    def fit(
+        self, short: float, letters: float, width: float, tall: float, alone: bool
+    ) -> tuple[float, float]:
+        """Return the width and height in pixels that the key takes at a size of letters.
+
+        Parameters
+        ----------
+        short : float
+            Shorter side of the picture.
+        letters, width : float
+            Height of letters, and width that there is.
+        tall : float
+            Height of a bar; 0 for that of its own.
+        alone : bool
+            Whether the title of the key stands above the data.
+        """
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        longest = max(map(len, self._title.replace("_", " ").split()), default=0)
+        head = self._unit if alone else f"{self.title} ({self._unit})" * bool(self.title)
+        head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
+        longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
         columns = max(columns, min(longest, int(1.2 * columns)))
-        parts = [_wrapped(part, columns) for part in self._title.splitlines()]
-        self._lines = [line for part in parts for line in part]
-        below = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
+        self._lines = [line for part in head.splitlines() for line in _wrapped(part, columns)]
+        words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
-            return min(2 * self._half, width), 2 * self._half + below
+            return min(2 * self._half, width), 2 * self._half + words
         widest = max(len(word) for _, word in self._marks)
-        tall = max(4.0 * self._half, 1.3 * LINE * letters * len(self._marks))
+        least = 1.3 * LINE * letters * min(len(self._marks), MOST_NUMBERS)
         bar = 2 * BAR_WIDE * self._half
-        return bar + (0.6 + LETTER * widest) * letters, tall + letters + below
+        box = bar + (0.6 + LETTER * widest) * letters
+        return box, (tall or max(4.0 * self._half, least)) + letters + words
 
     def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""
@@ -255,20 +381,24 @@ class MarginKey:
             text.GetTextProperty().SetFontSize(size)
         self._heading.SetInput("\n".join(self._lines))
         words = LINE * letters * len(self._lines)
-        if self._marks:
-            tall = box[1] - letters - words - (0.5 * letters if self._lines else 0)
-            # The title stands above a bar, whose numbers stand at its right.
-            low, left = y - box[1] / 2 + letters / 2, x - box[0] / 2
-            bar = 2 * BAR_WIDE * self._half
-            flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
-            self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
-            for label, (share, _) in zip(self._labels, self._marks, strict=True):
-                label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
-            self._heading.SetPosition(x, y + box[1] / 2 - words)
+        if not self._marks:
+            self._heading.SetPosition(x, y - box[1] / 2)
+            top = y + box[1] / 2
+            self._move(self._flat * self._half + np.array([x, top - self._half, 0]))
             return
-        self._heading.SetPosition(x, y - box[1] / 2)
-        top = y + box[1] / 2
-        self._move(self._flat * self._half + np.array([x, top - self._half, 0]))
+        tall = box[1] - letters - words - (0.5 * letters if self._lines else 0)
+        # The title stands above a bar, whose numbers stand at its right.
+        low, left = y - box[1] / 2 + letters / 2, x - box[0] / 2
+        bar = 2 * BAR_WIDE * self._half
+        flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
+        self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
+        most = tall / (APART * letters) + 1
+        shown = _thinned([share for share, _ in self._marks], self._zero, most)
+        for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+            label.SetVisibility(visible)
+            label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
+        self._heading.GetTextProperty().SetJustificationToLeft()
+        self._heading.SetPosition(left, y + box[1] / 2 - words)
 
     def _move(self, places: Array) -> None:
         moved = vtkPoints()
@@ -277,7 +407,12 @@ class MarginKey:
         self._mesh.SetPoints(moved)
 
 
-def data_share(size: tuple[int, int], key: float) -> tuple[float, float]:
+def band_share(size: tuple[int, int]) -> float:
+    """Return the share of the height of a picture that its title takes."""
+    return BAND * LETTERS * min(size) / size[1]
+
+
+def data_share(size: tuple[int, int], key: float, *, titled: bool = True) -> tuple[float, float]:
     """Return the shares of the width and of the height of a picture that the margin leaves.
 
     Parameters
@@ -286,26 +421,56 @@ def data_share(size: tuple[int, int], key: float) -> tuple[float, float]:
         Width and height in pixels.
     key : float
         Width of a key, as a share of the shorter side.
+    titled : bool, default: True
+        Whether there is a title above the data.
     """
     width, height = size
     strip = (key + 2 * MARGIN) * min(width, height)
     # Numbers of a bar need as much room as the key.
-    strip = min(1.15 * strip, 0.5 * max(width, height))
-    return (1 - strip / width, 1.0) if width >= height else (1.0, 1 - 1.7 * strip / height)
+    strip = min(0.95 * strip, 0.5 * max(width, height))
+    tall = 1 - titled * band_share(size)
+    return (1 - strip / width, tall) if width >= height else (1.0, tall - 1.7 * strip / height)
 
 
-def _marks(mesh: pv.PolyData, words: list[str]) -> tuple[list[tuple[float, str]], str]:
-    """Return the words along a bar with their shares of its height, and the title of a key."""
-    title = str(mesh.field_data[TITLE][0]) if TITLE in mesh.field_data else ""
+def written(name: str) -> str:
+    """Return a name in words: without underscores, and with a capital where it is a word."""
+    words = " ".join(name.replace("_", " ").split())
+    # Symbols such as dT or u,v are no words.
+    is_word = re.match(r"[a-z]{3,}(?=[ ;,.]|$)", words)
+    return words[:1].upper() + words[1:] if is_word else words
+
+
+def parted(title: str) -> tuple[str, str]:
+    """Return a title in words without its unit, and the unit, which is in parentheses.
+
+    Parameters
+    ----------
+    title : str
+        Title, such as "air_pressure (hPa); lines every 4 hPa".
+    """
+    match = re.fullmatch(r"(.*?)(?: \(([^()]*)\))?((?:; .*)?)", title, re.DOTALL)
+    assert match is not None
+    return written(match[1] + match[3]), match[2] or ""
+
+
+def _first(mesh: pv.PolyData, name: str) -> str:
+    return str(mesh.field_data[name][0]) if name in mesh.field_data else ""
+
+
+def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
+    """Return the words along a bar with their shares of its height; none of a disc."""
     if len(words) == 1:
-        return [], f"{title}\n{words[0]}" if title else words[0]
+        return []
     if NAMES in mesh.field_data:
         names = [str(name) for name in mesh.field_data[NAMES]]
-        return [((i + 0.5) / len(names), name) for i, name in enumerate(names)], title
+        return [((i + 0.5) / len(names), written(name)) for i, name in enumerate(names)]
     if RANGE not in mesh.field_data:
-        return [(0.0, words[0]), (1.0, words[-1])], title
+        return [(0.0, words[0]), (1.0, words[-1])]
     low, high = (float(value) for value in mesh.field_data[RANGE])
     ticks = even_numbers(low, high)
+    if LEVELS in mesh.field_data:
+        levels = [float(level) for level in mesh.field_data[LEVELS]]
+        ticks = list(zip(levels, numerals_of(levels), strict=True))
     spread = (high - low) or 1.0
     marks = [((tick - low) / spread, word) for tick, word in ticks]
     if SCALE in mesh.field_data and mesh.field_data[SCALE][0]:
@@ -313,7 +478,7 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> tuple[list[tuple[float, str]]
     if BEYOND in mesh.field_data:
         below, above = mesh.field_data[BEYOND]
         marks = _with_beyond(marks, f"< {low:g}" * bool(below), f"> {high:g}" * bool(above))
-    return marks, title
+    return marks
 
 
 def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
@@ -335,8 +500,27 @@ def _with_beyond(marks: list[tuple[float, str]], below: str, above: str) -> list
     return sorted(near + ends)
 
 
-def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:
-    """Return at most some round numbers within a range, and their digits.
+def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
+    """Return which of some even places along a bar have words, so that these fit.
+
+    Parameters
+    ----------
+    places : list of float
+        Places, as shares of the length.
+    zero : float
+        Place of zero, whose neighbours are counted from it.
+    most : float
+        Number of words that fit.
+    """
+    if len(places) <= most:
+        return [True] * len(places)
+    every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)
+    step = places[1] - places[0]
+    return [round((place - zero) / step) % every == 0 for place in places]
+
+
+def even_levels(low: float, high: float, most: int = 5) -> list[float]:
+    """Return at most some round numbers within a range.
 
     Parameters
     ----------
@@ -346,19 +530,33 @@ def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, st
         Largest number of numbers.
     """
     if not low < high:
-        return [(low, f"{low:.4g}")]
+        return [low]
     rough = (high - low) / max(most - 1, 1)
     power = 10.0 ** math.floor(math.log10(rough))
-    step = next(s * power for s in (1, 2, 2.5, 5, 10, 20) if _count(low, high, s * power) <= most)
+    steps = (1, 2, 4, 5, 10, 20) if most > FEW else (1, 2, 2.5, 5, 10, 20)
+    step = next(s * power for s in steps if _count(low, high, s * power) <= most)
     first = math.ceil(low / step - 1e-9)
     last = math.floor(high / step + 1e-9)
-    # A whole multiple of the step: zero is 0 and not a rest of rounding.
-    values = [i * step for i in range(first, last + 1)]
-    size = max(abs(low), abs(high))
-    places = max(-math.floor(math.log10(step) + 1e-9), 0) + (step / power == 2.5)
-    if size >= 1e6 or size < 1e-3:
-        return [(value, _power(value)) for value in values]
-    return [(value, f"{value:.{places}f}") for value in values]
+    # A whole multiple of the step without a rest of rounding.
+    return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
+
+
+def numerals_of(values: Sequence[float]) -> list[str]:
+    """Return the digits of round numbers with even steps, with as many places as these need."""
+    size = max(abs(value) for value in values)
+    if size >= 1e6 or 0 < size < 1e-3:
+        return [_power(value) for value in values]
+    if len(values) < 2:
+        return [f"{value:.4g}" for value in values]
+    step = min(abs(b - a) for a, b in itertools.pairwise(values))
+    places = next(n for n in range(12) if abs(step - round(step, n)) < 1e-6 * step)
+    return [f"{value:.{places}f}" for value in values]
+
+
+def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:
+    """Return at most some round numbers within a range, and their digits; see `even_levels`."""
+    levels = even_levels(low, high, most)
+    return list(zip(levels, numerals_of(levels), strict=True))
 
 
 def _count(low: float, high: float, step: float) -> int:

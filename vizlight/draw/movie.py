@@ -282,6 +282,8 @@ def orbit(
         if i:
             plotter.camera.Azimuth(360.0 / count)
         plotter.reset_camera_clipping_range()
+        # A screenshot alone returns the frame before.
+        plotter.render()
 
     return _filmed(plotter, path, frames, fps, "turn", frame, progress_bar=progress_bar)
 

@@ -72,7 +72,7 @@ IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 #: of the size of what is drawn: enough for triangles not to hide the lines between them.
 LIFT = 3e-3
 #: Width of a key, as a share of the shorter side of the picture.
-KEY_SIZE = 0.2
+KEY_SIZE = 0.15
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,8 @@ __all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
 
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
-#: Names of the field arrays with the range of a bar of values, and the names of kinds.
-RANGE, NAMES = "range", "names"
+#: Names of the field arrays with the range of a bar of values, its levels, and the names of kinds.
+RANGE, LEVELS, NAMES = "range", "levels", "names"
 #: Names of the field arrays that say that a bar is logarithmic, and whether values lie below and
 #: above its ends.
 SCALE, BEYOND = "logarithmic", "beyond"
@@ -52,6 +52,8 @@ HOLE = 0.3
 BAR = 0.16
 #: Numbers of rings, of points around, and of points along a bar.
 RINGS, AROUND, ALONG = 24, 96, 97
+#: Half of the width of a step of colours, as a share of half of a bar.
+EDGE = 1e-3
 #: Number of places along each side of a pixel of a key's picture.
 FINE = 4
 
@@ -65,6 +67,7 @@ def key(
     conditioned: bool = False,
     cmap: ColorMap = None,
     clim: Sequence[float] | None = None,
+    levels: Sequence[float] = (),
     title: str = "",
 ) -> pv.PolyData:
     """Return the key of a scene's light as a mesh that faces the eye.
@@ -88,8 +91,12 @@ def key(
         :data:`vizlight.maps.even`.
     clim : (float, float), optional
         Values at the ends of that map, which become its words. Default: the ends of a lookup table.
+    levels : sequence of float, optional
+        Values within ``clim`` that ascend, at which the colours of the map have steps and numbers
+        stand. Default: some round numbers.
     title : str, optional
-        What the values are, which stands above a bar, or what the light shows.
+        What the values are, or what the light shows, with a unit in parentheses at its end. It
+        stands above the data, and the unit above a bar.
 
     Returns
     -------
@@ -114,7 +121,18 @@ def key(
 
     scene = required_scene(scene)
     asked = question_of(scene) if question is None else question
-    x, y, faces = _bar() if asked in ("slope", "value") else _disc(HOLE * (asked == "direction"))
+    steps: list[float] = []
+    values = _check.coordinates("levels", levels).ravel()
+    if len(values):
+        low, high = _check.limits("clim", clim)
+        if not low < high or np.any(np.diff(values) <= 0):
+            expected = "numbers that ascend, of a range that is given by clim"
+            raise ValueError(_check.message("levels", expected, list(values)))
+        steps = [(float(value) - low) / (high - low) for value in values]
+    elif names := _names_of(cmap):
+        steps = [i / len(names) for i in range(1, len(names))]
+    is_bar = asked in ("slope", "value")
+    x, y, faces = _bar(steps) if is_bar else _disc(HOLE * (asked == "direction"))
     made = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
     made[RGB] = colors_of(
         scene, x, y, question=asked, exponent=exponent, conditioned=conditioned, cmap=cmap
@@ -133,6 +151,8 @@ def key(
             ends = _check.limits("clim", clim)
             made.field_data[RANGE] = ends
             words = numerals(ends)
+        if len(values):
+            made.field_data[LEVELS] = values
     _put_words(made, WORDS, words)
     if title:
         _put_words(made, TITLE, [_check.text("title", title)])
@@ -376,8 +396,11 @@ def _disc(hole: float) -> tuple[Array, Array, NDArray[np.int64]]:
     return x.ravel(), y.ravel(), _quads(np.hstack([at, at[:, :1]]))
 
 
-def _bar() -> tuple[Array, Array, NDArray[np.int64]]:
-    x, y = np.meshgrid(np.linspace(-1, 1, ALONG), np.linspace(-BAR, BAR, 9))
+def _bar(steps: Sequence[float]) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Return places of a bar and its quadrilaterals, with columns at both sides of each step."""
+    beside = [2 * step - 1 + side * EDGE for step in steps for side in (-1, 1)]
+    columns = np.unique(np.clip([*np.linspace(-1, 1, ALONG), *beside], -1, 1))
+    x, y = np.meshgrid(columns, np.linspace(-BAR, BAR, 9))
     return x.ravel(), y.ravel(), _quads(np.arange(x.size).reshape(x.shape))
 
 

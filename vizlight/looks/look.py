@@ -168,6 +168,8 @@ class Look:
             If the file cannot be written.
         BackendError
             If a picture is asked for and no OpenGL library can draw here.
+        ValueError
+            If a movie is asked for of a map on which nothing moves.
         """
         paths = [written(steps) for steps in self.steps(path)]
         return paths[0]
@@ -189,6 +191,10 @@ class Look:
         suffix, drawing = path.suffix.lower(), self.drawing
         if suffix in MOVIES:
             moving = fields.moving(drawing)
+            if moving is None and drawing.is_flat:
+                expected = "a picture or a page of a map on which nothing moves"
+                remedy = "name a file that ends in .png, .svg or .html"
+                raise ValueError(message("path", expected, repr(str(path)), remedy))
             shown = self if moving is None else replace(self, drawing=moving)
             plotter, steps = shown._picture()
             way = "movie.orbit" if moving is None else "movie.travel"
@@ -251,6 +257,9 @@ class Look:
         if wishes.picture.get("key", True):
             # The key of a lamp that stands somewhere differs from place to place.
             keys = list(drawing.keys)
+            if keys and not any(key.get("title") for key in keys):
+                # Cameras of looks leave room for a title.
+                keys[0] = keys[0] | {"title": drawing.words}
             if near:
                 # A bar has the colours of the map, in even light.
                 even = even_light(drawing.camera)

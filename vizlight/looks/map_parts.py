@@ -12,14 +12,14 @@ from vizlight.draw import legends
 from vizlight.draw.cameras import MARGIN
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
-from vizlight.observers import eye
+from vizlight.mesh import meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import pyvista as pv
 
-    from vizlight._types import Array, Given
+    from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.wishes import Wishes
 
@@ -28,12 +28,9 @@ if TYPE_CHECKING:
 ROOM = (3.2, 1.5)
 #: Least extent in degrees of a map with coasts, which are right to some 0.1 degrees.
 COASTS = 20.0
-#: Most points of a map with isolines, most levels of these, and their letters as a share of those
-#: of the frame.
-MOST_POINTS, LEVELS, SMALL = 100_000, 8, 0.75
-#: Parts of a colour map that have one ink, and the lightness in CIELAB from which on it is black:
-#: white lines let more of the values be read, but are not seen on pale ground.
-INKS, LIGHT = 16, 75.0
+#: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
+#: more are too dense; and their letters as a share of those of the frame.
+MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -65,24 +62,44 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     return float(f"{pixels * scale / zoom:.4g}")
 
 
-def isolines(mesh: Step, array: Named, ends: tuple[float, float], letters: float) -> Step | None:
-    """Return the step that makes the isolines of a map, None where its field is not smooth."""
+def isolines(
+    mesh: Step, array: Named, ends: tuple[float, float], letters: float, coasts: Step | None
+) -> tuple[Step, list[float]] | None:
+    """Return the step that makes the isolines of a map, and their levels as they are written.
+
+    None where the field is not smooth, as few lines tell.
+
+    Parameters
+    ----------
+    mesh : Step
+        Step of the map.
+    array : Named
+        Array of values.
+    ends : (float, float)
+        Range of the values in the unit of the array.
+    letters : float
+        Height of letters of the frame, in the unit of the map.
+    coasts : Step, optional
+        Step of lines of which the numbers keep clear.
+    """
     if mesh.run().n_points > MOST_POINTS:
         return None
-    levels = [level for level, _ in legends.even_numbers(*ends, most=LEVELS)]
     size = float(f"{SMALL * letters:.4g}")
+    factor, _ = meaning.usual_unit(mesh.run(), array.name, max(map(abs, ends)))
+    shown: list[float] = []
+    for most in LEVELS:
+        levels = legends.even_levels(ends[0] / factor, ends[1] / factor, most)
+        if not iso.are_smooth(mesh.run(), array.name, [factor * level for level in levels], size):
+            break
+        shown = levels
+    if not shown:
+        return None
+    keywords: Keywords = {"letters": size, "words": legends.numerals_of(shown)}
+    if coasts is not None:
+        keywords["clear_of"] = coasts
+    levels = [float(f"{factor * level:.12g}") for level in shown]
     name = "vizlight.cartography.isolines"
-    step = Step("isolines", name, mesh, array.name, levels, letters=size)
-    return step if iso.are_smooth(mesh.run(), step.run()["lines"], size) else None
-
-
-def inks(cmap: Given) -> list[str]:
-    """Return black on light colours and white on others, for parts of a colour map in its order."""
-    from pyvista.plotting.colors import get_cmap_safe
-
-    shares = (np.arange(INKS) + 0.5) / INKS
-    colors = np.asarray(get_cmap_safe(cmap)(shares))[:, :3]
-    return ["black" if light > LIGHT else "white" for light in eye.lab(colors)[:, 0]]
+    return Step("isolines", name, mesh, array.name, levels, **keywords), shown
 
 
 def shore() -> Step:

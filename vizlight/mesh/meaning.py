@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
-    "only_vectors", "say", "seconds", "vectors", "ways", "with_named", "without_missing",
+    "only_vectors", "say", "seconds", "usual_unit", "vectors", "ways", "with_named",
+    "without_missing",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -340,11 +341,41 @@ def metres(unit: str) -> float | None:
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
 
 
+#: Units in which air has numbers of five digits and more, and the usual ones, with their sizes.
+_USUAL_UNITS = {"Pa": (100.0, "hPa")}
+#: Number from which on a unit is replaced by the usual one.
+SILLY = 1e4
+
+
+def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
+    """Return the unit in which people read an array, and its size in that of the array.
+
+    Pressures of air in Pa are read in hPa, where their numbers have five digits and more.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    size : float
+        Largest of its values, without sign.
+    """
+    attributes = of(mesh).arrays.get(name, {})
+    given = attributes.get("units", "")
+    words = " ".join(attributes.values()).lower().replace("_", " ")
+    is_of_air = "air pressure" in words or "sea level" in words or "surface pressure" in words
+    if size >= SILLY and is_of_air and "pressure" in words:
+        return _USUAL_UNITS.get(given, (1.0, given))
+    return 1.0, given
+
+
 #: Unit of times from a day on.
 _SINCE = re.compile(
     r"(\w+) since (\d{4})-(\d\d?)-(\d\d?)"
     r"(?:[T ](\d\d?):(\d\d)(?::\d\d(?:\.\d+)?)?)?(?: ?(?:UTC|Z))?"
 )
+#: Names of degrees Celsius, in lower case and in the singular.
+_CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
 
@@ -357,6 +388,8 @@ def written(unit: str) -> str:
     unit : str
         Unit as files have it, by UDUNITS.
     """
+    if unit.lower().replace("degrees", "degree") in _CELSIUS:
+        return "°C"
     factors = [_FACTOR.fullmatch(word) for word in unit.split()]
     known = [(found[1], int(found[2] or 1)) for found in factors if found is not None]
     below = [name + " ²³"[-power - 1].strip() for name, power in known if power < 0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -16,20 +17,20 @@ from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.files import FORMATS
 from vizlight.looks import map_parts
-from vizlight.looks.contents import kinds_of
+from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
-from vizlight.mesh import globes, meaning
+from vizlight.mesh import globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from vizlight._types import Array, Keywords
-    from vizlight.looks.contents import Contents, Named
+    from vizlight.looks.contents import Named
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
@@ -154,6 +155,11 @@ class Drawing:
     colors: Keywords = dataclasses.field(default_factory=dict)
     background: str | None = None
     doubt: Doubt | None = None
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether all that is drawn is a flat map, or another flat sheet seen face on."""
+        return Contents(self.layers[0].mesh.run()).flat_axis is not None
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -327,7 +333,12 @@ class Case:
         if "cmap" in colors:
             bar["cmap"] = colors["cmap"]
         if array.role != "kinds":
-            bar["clim"] = colors.get("clim") or range_of(mesh, array.name)
+            low, high = colors.get("clim") or range_of(mesh, array.name)
+            bar["clim"] = (low, high)
+            factor, unit = meaning.usual_unit(mesh, array.name, max(abs(low), abs(high)))
+            if factor != 1:
+                bar["clim"] = (low / factor, high / factor)
+                bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
         return bar
 
     @property
@@ -370,11 +381,27 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
 
 
 def titled(mesh: pv.DataSet, name: str) -> str:
-    """Return the name of an array with its unit, where the mesh says it."""
+    """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     unit = attributes.get("units", "")
-    title = name if "," in name else attributes.get("long_name") or name
+    title = attributes.get("long_name") or attributes.get("standard_name") or name
+    if "," in name:
+        title = _in_common(mesh, name.split(",")) or name
+    if series.TIME in mesh.field_data:
+        time = float(np.ravel(mesh.field_data[series.TIME])[0])
+        date = meaning.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
+        title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
+
+
+def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
+    """Return the words that the names of the components of a vector have in common."""
+    arrays = meaning.of(mesh).arrays
+    every = [arrays.get(name, {}) for name in names]
+    texts = [one.get("standard_name") or one.get("long_name") or "" for one in every]
+    first, *others = (re.split(r"[_ ]+", text) for text in texts)
+    left = [word for word in first if all(word in words for words in others)]
+    return " ".join(left).replace("component of ", "").replace(" component", "")
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:

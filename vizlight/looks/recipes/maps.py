@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import pyvista as pv
 
-from vizlight.draw.isolines import LEVEL
-from vizlight.draw.legends import ink_on
+from vizlight.draw.legends import ink_on, numerals_of, parted
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import georeference
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import Keywords
     from vizlight.looks.recipes.drawing import Case
 
@@ -26,53 +27,79 @@ BAND = 0.5
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
 UNDER_STROKES = "#9a4f1f"
+#: Colour of isolines and their numbers, which is seen on all colours of bands.
+INK = "#1a1a1a"
 
 
 def furnished(case: Case, drawing: Drawing) -> Drawing:
     """Return the drawing of a map with its coasts and its frame; of other data as it is."""
-    layers = list(drawing.layers)
     # What cannot be picked is no data, neither to a reader nor to the meter.
     beside: Keywords = {"scene": even_light(drawing.camera), "pickable": False}
     ink = ink_on(pv.Color(drawing.background or case.wishes.background))
     coasts = map_parts.coasts(case.data) if _has_coasts(case) else None
+    drawing = _with_isolines(case, drawing, beside, coasts)
+    layers = list(drawing.layers)
     if case.on_globe:
         coasts = map_parts.shore()
         layers.append(Layer(map_parts.ball(), {**beside, "color": BALL}))
     if coasts is not None:
         lines: Keywords = {"color": ink, "line_width": case.width, "halo": BAND}
-        if len(drawing.layers) > 1:
+        if "width" in drawing.layers[-1].keywords:
             # Below strokes, and unlike them.
             lines |= {"color": UNDER_STROKES, "halo": False}
         layers.insert(1, Layer(coasts, {**beside, **lines}))
-    layers[1:1] = _isolines(case, beside)
     if case.frame is not None:
         layers.append(Layer(case.frame, {**beside, "color": ink}))
     return replace(drawing, layers=layers)
 
 
-def _isolines(case: Case, beside: Keywords) -> list[Layer]:
-    """Return the layers of isolines and of their numbers, of a smooth field that nothing lights."""
-    array = case.array
-    colors: Keywords = {"cmap": LIGHTNESS} | case.wishes.colors
+def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step | None) -> Drawing:
+    """Return the drawing of a smooth field that nothing lights with isolines, in bands of colours.
+
+    Other drawings are returned as they are.
+    """
+    array, given = case.array, case.wishes.colors.get("cmap")
     is_field = array is not None and array.role == "values" and not array.of_cells
     is_field = is_field and case.question == "none" and case.contents.dimension == 2
     if case.frame is None or array is None or not is_field:
-        return []
+        return drawing
     size = case.frame.keywords["letters"]
     assert isinstance(size, float)
-    ends = colors.get("clim") or range_of(case.data.run(), array.name)
-    lines = map_parts.isolines(case.data, array, ends, size)
-    if lines is None:
-        return []
-    inks: Keywords = {"scalars": LEVEL, "clim": ends, "show_scalar_bar": False}
-    inks["cmap"] = map_parts.inks(colors["cmap"])
+    ends = case.wishes.colors.get("clim") or range_of(case.data.run(), array.name)
+    found = map_parts.isolines(case.data, array, ends, size, coasts)
+    if found is None:
+        return drawing
+    lines, shown = found
+    inks: Keywords = {"scalars": None, "color": INK}
     thin = {"line_width": round(case.width / 1.5, 1), "halo": False}
-    parts = [("lines", thin), ("numbers", {})]
-    return [
+    own = [
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
-        for name, keywords in parts
+        for name, keywords in (("lines", thin), ("numbers", {}))
         if lines.run()[name].n_points
     ]
+    first, *others = drawing.layers
+    keys = list(drawing.keys)
+    if given is None or isinstance(given, str):
+        names = {} if given is None else {"cmap": given}
+        table = Step("", "vizlight.maps.bands", lines.arguments[2], ends, *names.values())
+        first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
+        keys = [key | {"cmap": table, "levels": shown} for key in keys]
+    keys = [key | {"title": f"{key['title']}{_every(key['title'], shown)}"} for key in keys]
+    return replace(drawing, layers=[first, *own, *others], keys=keys)
+
+
+def _without_limits(keywords: Keywords) -> Keywords:
+    """Return keywords of a mesh without what a lookup table says."""
+    return {name: value for name, value in keywords.items() if name not in ("clim", "nan_color")}
+
+
+def _every(title: str, levels: Sequence[float]) -> str:
+    """Return the words that tell the step of isolines."""
+    if len(levels) < 2:
+        return ""
+    _, unit = parted(title)
+    step = numerals_of([levels[1] - levels[0]])[0]
+    return f"; lines every {step} {unit}".rstrip()
 
 
 def _has_coasts(case: Case) -> bool:
