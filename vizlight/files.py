@@ -41,6 +41,7 @@ from vizlight.mesh import (
     meaning,
     normals,
     records,
+    references,
     series,
     short_files,
 )
@@ -179,7 +180,8 @@ def read(
     Warns
     -----
     UserWarning
-        If a field of an OpenFOAM case is left out, whose directives VTK does not read.
+        If a field of an OpenFOAM case is left out, whose directives VTK does not read, or the file
+        takes others from outside of its folder.
 
     Notes
     -----
@@ -282,6 +284,8 @@ def _read(
     _warn_of_unread(path, unread)
     if isinstance(found, pv.MultiBlock):
         notes += _left_out(found, meshes)
+    if path.is_file() and (elsewhere := references.outside(path)):
+        notes.append(f"it takes files from outside of its folder: {', '.join(elsewhere)}")
     if notes:
         _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
     return meshes

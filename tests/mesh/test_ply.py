@@ -60,7 +60,8 @@ def test_a_camera_before_the_vertices_and_numbers_of_vertices(tmp_path):
              "property uchar red", "property uchar green", "property uchar blue", "end_header",
              "1", *(f"{row} 0.{i} {i} 0 255" for i, row in enumerate(POINTS[:3])),
              "3 0 1 2 9 8 7"]  # fmt: skip
-    mesh = read(tmp_path, "\r\n".join(lines).encode() + b"\r\n")
+    # Some programs write the first word in capitals.
+    mesh = read(tmp_path, "\r\n".join(lines).encode().replace(b"ply", b"PLY", 1) + b"\r\n")
     assert mesh.n_points == 3
     assert mesh.point_data["quality"].tolist() == [0, 0.1, 0.2]
     assert mesh.point_data["RGB"].tolist() == [[0, 0, 255], [1, 0, 255], [2, 0, 255]]

@@ -28,7 +28,7 @@ _TYPES = {
     "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
 }  # fmt: skip
 #: Data begin right after the line break; white space there may already be numbers.
-_HEAD = re.compile(rb"ply\s.*?^end_header[ \t]*\r?\n", re.DOTALL | re.MULTILINE)
+_HEAD = re.compile(rb"(?:ply|PLY)\s.*?^end_header[ \t]*\r?\n", re.DOTALL | re.MULTILINE)
 #: Arrays of several numbers of a vertex or a face, by the names that programs give these.
 _TOGETHER = (
     ("RGBA", ("red", "green", "blue", "alpha")),
@@ -76,7 +76,7 @@ def read(path: Path) -> pv.PolyData:
     data = path.read_bytes()
     head = _HEAD.match(data)
     if head is None:
-        raise ValueError("its header is not whole" if data[:3] == b"ply" else "no PLY file")
+        raise ValueError("its header is not whole" if data[:3].lower() == b"ply" else "no PLY file")
     form, elements = _header(head[0].decode("latin-1"))
     if form == "ascii":
         _read_text(data[head.end() :], elements, path)
