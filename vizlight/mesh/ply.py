@@ -309,7 +309,7 @@ def _parted(mesh: pv.PolyData, ids: Indices, corners: Raw) -> tuple[pv.PolyData,
     for name in mesh.point_data:
         parted.point_data[name] = np.asarray(mesh.point_data[name])[of]
     parted.point_data["TCoords"] = kept[:, 1:].astype(np.float32)
-    parted.point_data.active_texture_coordinates_name = "TCoords"
+    parted.GetPointData().SetActiveTCoords("TCoords")
     return parted, number.ravel()
 
 
@@ -331,7 +331,7 @@ def _attach(data: pv.DataSetAttributes, columns: dict[str, Raw]) -> None:
     if "Normals" in data and data.association == pv.FieldAssociation.POINT:
         data.active_normals_name = "Normals"
     if "TCoords" in data and data.association == pv.FieldAssociation.POINT:
-        data.active_texture_coordinates_name = "TCoords"
+        data.VTKObject.SetActiveTCoords("TCoords")
     colors = next((name for name in ("RGBA", "RGB") if name in data), None)
     if colors:
         data.active_scalars_name = colors
