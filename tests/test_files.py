@@ -412,7 +412,7 @@ def test_what_meshio_says_is_a_warning_or_left_to_the_error(tmp_path, capfd):
     meshio = pytest.importorskip("meshio")
     path = tmp_path / "a.mesh"
     meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(path)
-    unknown = "NormalAtVertices\n1\n1 1\n"
+    unknown = "RequiredVertices\n1\n1\n"
     path.write_text(path.read_text().replace("End", 2 * unknown + "End"))
     with pytest.warns(UserWarning, match=r"a\.mesh': Meshio doesn't know .*first of 2 warnings"):
         assert files.read(path).n_cells == 1
