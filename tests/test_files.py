@@ -751,3 +751,12 @@ def test_sets_of_exodus_are_no_blocks(tmp_path, monkeypatch):
     path.touch()
     (part,) = files.read_parts(path)
     assert part.n_cells == 4
+
+
+def test_many_writers_of_one_file(tmp_path):
+    """A writer that sweeps may remove the empty folder of one that has just ended."""
+    mesh, path = pv.Plane(i_resolution=2, j_resolution=2), tmp_path / "a.vtp"
+    with ThreadPoolExecutor(8) as pool:
+        assert {*pool.map(lambda _: files.write_mesh(mesh, path), range(40))} == {path}
+    assert [one.name for one in tmp_path.iterdir()] == ["a.vtp"]
+    assert pv.read(path).n_points == 9

@@ -1225,7 +1225,8 @@ def replace_file(
                     # new one.
                     draft.replace(target)
             finally:
-                shutil.rmtree(folder if folder.exists() else fresh)
+                # Without its lock another writer may sweep it at the same time.
+                shutil.rmtree(folder if folder.exists() else fresh, ignore_errors=True)
     except OSError as error:
         got = f"'{path}' ({error.strerror})"
         raise FileError(_check.message("output", "a file that can be written", got)) from error
