@@ -16,9 +16,8 @@ import numpy as np
 from hostile import runner, seeds
 from hostile.runner import ask
 
-#: Formats that do not say how much they hold, and one whose reader does not hold a file to its
-#: counts: lines of such a file are a whole file.
-UNCOUNTED = (".obj", ".su2")
+#: Formats that do not say how much they hold: lines of such a file are a whole file.
+UNCOUNTED = (".obj", ".inp", ".bdf", ".mdpa", ".swc", ".xyz")
 #: Where files that failed are kept.
 KEPT = Path("failed_files")
 #: Files of one process, and the least number of bytes that matter in a mutation.
@@ -94,7 +93,8 @@ def fault(run, path, data, out, mutation, whole):
     found = lit(out)
     if isinstance(found, str):
         return found
-    if mutation is cut and path.suffix not in UNCOUNTED and not same(found, whole):
+    stated = path.suffix not in UNCOUNTED and "may be cut" not in run.err
+    if mutation is cut and stated and not same(found, whole):
         return "a cut file was lit as if it were whole"
     return ""
 

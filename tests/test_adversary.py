@@ -97,6 +97,26 @@ def test_the_judge_can_fail(function, value, words, monkeypatch):
     assert re.search(words, found)
 
 
+@pytest.mark.opengl
+@pytest.mark.parametrize(
+    ("name", "argument", "label"),
+    [
+        ("accessor.Accessor.sky", "mesh", "mesh:inf points"),
+        ("accessor.Accessor.streamlines", "mesh", "mesh:huge points"),
+        ("draw.component.Component.export_html", "source", "array:inf"),
+        ("draw.component.Component.show_key", "mesh", "mesh:line"),
+        ("draw.movie.orbit", "plotter", "other:{}"),
+        ("draw.render.save", "plotter", "other:None"),
+        ("mesh.globes.globe", "mesh", "mesh:NaN points"),
+        ("observers.legibility.legibility", "cmap", "text:{'x'}"),
+        ("shading.engine.shade", "repeat", "number:np.int8(1)"),
+    ],
+)
+def test_values_that_were_not_refused_in_words(name, argument, label):
+    found = [c for c in adversary.calls(name) if (c.argument, c.label) == (argument, label)]
+    assert [adversary.judge(call) for call in found[:1]] == [""]
+
+
 def test_warnings_of_the_package_pass(monkeypatch):
     def warning(value):
         _check.warn("of vizlight")

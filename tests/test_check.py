@@ -1,5 +1,7 @@
 """Every validator lets good values pass and refuses bad ones by name."""
 
+import contextlib
+import warnings
 from fractions import Fraction
 
 import numpy as np
@@ -95,3 +97,19 @@ def test_colours_have_the_names_of_pyvista():
 def test_flags_become_truth_values():
     assert LightOptions(line_field=1).line_field is True
     assert LightOptions(components=np.False_).components is False
+
+
+def test_warnings_are_held_until_a_block_ends_well():
+    def reading():
+        with _check.held():
+            _check.warn("first")
+            with contextlib.suppress(ValueError), _check.held():
+                _check.warn("of what failed")
+                raise ValueError
+            _check.warn("second")
+
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        reading()
+    assert [str(one.message) for one in heard] == ["first", "second"]
+    assert heard[0].filename == __file__

@@ -12,6 +12,7 @@ import numbers
 import os
 import re
 import sys
+import threading
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -55,8 +56,29 @@ _OTHERS = {
 }  # fmt: skip
 
 
+class held:  # noqa: N801 - used as a function
+    """Hold the warnings of a thread until a block ends well; an error says what is wrong alone."""
+
+    _texts = threading.local()
+
+    def __enter__(self) -> None:
+        """Begin to hold; what an outer block holds it keeps."""
+        self._outer: list[str] | None = getattr(self._texts, "held", None)
+        self._texts.held = []
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        """Issue what was held, if there was no error."""
+        texts, self._texts.held = self._texts.held, self._outer
+        for text in texts if kind is None else ():
+            warn(text)
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Issue a warning that points at the caller's line outside this package."""
+    texts: list[str] | None = getattr(held._texts, "held", None)
+    if texts is not None and category is UserWarning:
+        texts.append(text)
+        return
     level, frame = 2, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "vizlight":
         level, frame = level + 1, frame.f_back

@@ -40,8 +40,8 @@ from vizlight.mesh import (
     height_grids,
     meaning,
     normals,
-    ply_points,
     records,
+    references,
     series,
     short_files,
 )
@@ -180,19 +180,21 @@ def read(
     Warns
     -----
     UserWarning
-        If a field of an OpenFOAM case is left out, whose directives VTK does not read.
+        If a field of an OpenFOAM case is left out, whose directives VTK does not read, or the file
+        takes others from outside of its folder.
 
     Notes
     -----
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
-    states: .stl, .ply, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same
+    states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same
     time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
     VTK may print.
     """
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
-    return _read(path, time, overlay, at, nodata, whole=True)[0]
+    with _check.held():
+        return _read(path, time, overlay, at, nodata, whole=True)[0]
 
 
 def read_parts(
@@ -223,7 +225,8 @@ def read_parts(
     FileError
         As for :func:`vizlight.read`.
     """
-    return _read(path, time, overlay, at, nodata, whole=False)
+    with _check.held():
+        return _read(path, time, overlay, at, nodata, whole=False)
 
 
 def _read(
@@ -283,6 +286,8 @@ def _read(
     _warn_of_unread(path, unread)
     if isinstance(found, pv.MultiBlock):
         notes += _left_out(found, meshes)
+    if path.is_file() and (elsewhere := references.outside(path)):
+        notes.append(f"it takes files from outside of its folder: {', '.join(elsewhere)}")
     if notes:
         _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
     return meshes
@@ -442,11 +447,6 @@ def _found(
     found: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     found = series.read(path, time) if found is None else found
     found = _by_vtk(path) if found is None else found
-    if path.suffix.lower() == ".ply" and isinstance(found, pv.PolyData):
-        places = ply_points.exact(path)
-        # VTK repeats points whose faces have their own texture coordinates.
-        if places is not None and len(places) == found.n_points:
-            found.points = places
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -508,9 +508,10 @@ def _by_vtk(path: Path) -> pv.DataObject:
     """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
     reader = series.reader_of(path)
     if reader is not None:
-        return reader.read()  # type: ignore[no-any-return]
+        found: pv.DataObject = series.unchecked(reader)
+        return found
     try:
-        return pv.read(path)
+        return pv.read(path, validate=False)
     except OSError as error:
         way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
@@ -1226,7 +1227,8 @@ def replace_file(
                     # new one.
                     draft.replace(target)
             finally:
-                shutil.rmtree(folder if folder.exists() else fresh)
+                # Without its lock another writer may sweep it at the same time.
+                shutil.rmtree(folder if folder.exists() else fresh, ignore_errors=True)
     except OSError as error:
         got = f"'{path}' ({error.strerror})"
         raise FileError(_check.message("output", "a file that can be written", got)) from error

@@ -1,5 +1,7 @@
 """Small valid files of the kinds that vizlight reads, from which damaged ones are made."""
 
+import gzip
+
 import numpy as np
 import pyvista as pv
 
@@ -90,6 +92,60 @@ def _surfaces(folder):
     vizlight.save_gltf(ball_, folder / "ball.glb", scene=scene)
 
 
+def _texts(folder):
+    """Write files of text, and packed ones and scenes of them."""
+    rows = [" ".join(f"{x:.4f}" for x in point) for point in lines()[0]]
+    (folder / "scan.xyz").write_text("\n".join(rows) + "\n")
+    (folder / "scan.pts").write_text("\n".join([str(len(rows)), *rows]) + "\n")
+    branch = [f"{i + 1} 3 {row} 0.5 {i or -1}" for i, row in enumerate(rows)]
+    (folder / "neuron.swc").write_text("\n".join(branch) + "\n")
+    corners = "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n"
+    (folder / "four.off").write_text(f"4OFF\n4 2 0\n{corners}3 0 1 2\n3 0 2 3\n")
+    place = "point [0 0 0, 1 0 0, 1 1 0, 0 1 0]"
+    shape = f"IndexedFaceSet {{ coord Coordinate {{ {place} }} coordIndex [0 1 2 3 -1] }}"
+    (folder / "scene.wrl").write_text(f"#VRML V2.0 utf8\nShape {{ geometry {shape} }}\n")
+    ball().save(folder / "packed.vtp")
+    (folder / "ball.vtp.gz").write_bytes(gzip.compress((folder / "packed.vtp").read_bytes()))
+    (folder / "packed.vtp").unlink()
+    mixed = pv.Cylinder(resolution=5)
+    mixed.clear_data()
+    mixed.save(folder / "mixed.ply")
+
+
+def _scans(folder):
+    import laspy
+    import nibabel
+
+    cloud = laspy.create(point_format=3, file_version="1.2")
+    cloud.x, cloud.y, cloud.z = np.concatenate(lines()).T
+    cloud.write(folder / "scan.las")
+    image = nibabel.Nifti1Image(np.arange(60, dtype=np.int16).reshape(5, 4, 3), np.eye(4))
+    nibabel.save(image, folder / "image.nii")
+    surface = ball()
+    arrays = [
+        nibabel.gifti.GiftiDataArray(np.asarray(surface.points), "NIFTI_INTENT_POINTSET"),
+        nibabel.gifti.GiftiDataArray(
+            surface.regular_faces.astype(np.int32), "NIFTI_INTENT_TRIANGLE"
+        ),
+    ]
+    nibabel.save(nibabel.gifti.GiftiImage(darrays=arrays), folder / "ball.surf.gii")
+
+
+def _rasters(folder):
+    import rasterio
+
+    heights = np.add.outer(np.arange(9.0), np.arange(7.0) ** 2).astype(np.float32)
+    how = {"driver": "GTiff", "width": 7, "height": 9, "count": 1, "dtype": "float32"}
+    with rasterio.open(
+        folder / "map.tif", "w", crs="EPSG:32633",
+        transform=rasterio.Affine(30, 0, 4e5, 0, -30, 5e6), **how,
+    ) as file:  # fmt: skip
+        file.write(heights, 1)
+    head = "ncols 7\nnrows 9\nxllcorner 0\nyllcorner 0\ncellsize 30\n"
+    rows = "\n".join(" ".join(f"{x:g}" for x in row) for row in heights)
+    (folder / "map.asc").write_text(f"{head}{rows}\n")
+
+
 def _of_meshio(folder):
     import meshio
 
@@ -103,6 +159,11 @@ def _of_meshio(folder):
     of_volume.write(folder / "grid-ascii.msh", file_format="gmsh", binary=False)
     of_volume.write(folder / "grid-binary.msh", file_format="gmsh", binary=True)
     of_volume.write(folder / "grid.e", file_format="exodus")
+    for suffix in ("bdf", "med", "vol", "mdpa"):
+        of_volume.write(folder / f"grid.{suffix}")
+    of_volume.write(folder / "grid.xmf", data_format="XML")
+    of_ball.write(folder / "ball.inp", file_format="abaqus")
+    of_volume.write(folder / "avs.inp", file_format="avsucd")
 
 
 def _tracts(folder):
@@ -142,7 +203,7 @@ def _netcdf(folder):
 
 def write(folder):
     """Write all files whose packages are installed, and return their paths in order."""
-    for kind in (_vtk, _surfaces, _of_meshio, _tracts, _trx, _netcdf):
+    for kind in (_vtk, _surfaces, _texts, _of_meshio, _tracts, _trx, _scans, _rasters, _netcdf):
         try:
             kind(folder)
         except ImportError:

@@ -340,7 +340,7 @@ def test_points_of_a_scan(tmp_path, count):
     scan = vizlight.read(tmp_path / "a.pts")
     np.testing.assert_array_equal(scan.points, [[0, 0, 0], [1, 2, 3]])
     np.testing.assert_array_equal(scan["intensity"], [5, 6])
-    np.testing.assert_array_equal(scan["rgb"], [[255, 0, 0], [0, 255, 7]])
+    np.testing.assert_array_equal(scan["color"], [[255, 0, 0], [0, 255, 7]])
 
 
 def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):
@@ -377,13 +377,13 @@ def test_points_of_a_lidar(tmp_path, name):
     mesh = vizlight.read(tmp_path / name)
     np.testing.assert_allclose(mesh.points, places, atol=0.005)
     assert mesh["intensity"].tolist() == [3, 9]
-    assert mesh["rgb"].tolist() == [[255, 1, 0], [0, 2, 255]]
+    assert mesh["color"].tolist() == [[255, 1, 0], [0, 2, 255]]
 
 
 def test_points_in_lines_of_text(tmp_path):
     (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
     mesh = vizlight.read(tmp_path / "a.xyz")
-    assert mesh["rgb"].tolist() == [[10, 20, 30], [40, 50, 60]]
+    assert mesh["color"].tolist() == [[10, 20, 30], [40, 50, 60]]
 
 
 def test_tracts_say_in_which_frame_they_are():

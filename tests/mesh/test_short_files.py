@@ -30,22 +30,6 @@ def test_pieces_cover_the_whole(tmp_path, suffix, binary):
             vizlight.read(path)
 
 
-def test_the_last_line_of_a_text(tmp_path):
-    path = tmp_path / "a.ply"
-    pv.Sphere(theta_resolution=5, phi_resolution=5).save(path, binary=False)
-    whole = path.read_text().rstrip()
-    path.write_text(whole + "\n")
-    expected = vizlight.read(path)
-    path.write_text(whole)
-    with pytest.warns(UserWarning, match="may be cut in its last line, which has no line break"):
-        assert vizlight.read(path) == expected
-    path.write_text(whole.rpartition(" ")[0])
-    with pytest.raises(files.FileError, match="3 of 4 numbers of the last line are there"):
-        vizlight.read(path)
-    path.write_text(whole + "\nmore\n")
-    assert vizlight.read(path) == expected
-
-
 def test_places_beyond_the_largest(tmp_path):
     pv.RectilinearGrid([0.0, 1e200], [0.0, 1], [0.0, 1]).save(tmp_path / "a.vtr")
     with pytest.raises(files.FileError, match=r"points beyond 1e\+100, the largest coordinate"):

@@ -7,6 +7,7 @@ import importlib
 import weakref
 from typing import TYPE_CHECKING, get_args
 
+import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkWeakReference
 
@@ -20,7 +21,7 @@ from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.draw.strokes import check_widths, has_pass, stroke_of
 from vizlight.filters import relight
-from vizlight.filters.key import key, question_of
+from vizlight.filters.key import WORDS, key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.mesh.strokes import PHASE, WIDTH
@@ -317,6 +318,9 @@ class Component:
         """
         plotter = self._open_plotter()
         size = _check.number("size", size, low=0.02, high=1.0)
+        if not isinstance(mesh, pv.PolyData) or WORDS not in mesh.field_data:
+            expected = "a mesh that vizlight.presets.key returned"
+            raise TypeError(_check.message("mesh", expected, _check.describe(mesh)))
         renderer = plotter.renderer
         if _address(renderer) not in self._margins:
             ink = _check.color("color", color)
@@ -609,6 +613,9 @@ class Component:
                 drawing["rgb"] = True
             else:
                 drawing |= _map_of(drawing)
+                values = live.drawn[drawing["scalars"]]
+                if drawing.get("clim") is None and not np.isfinite(values).any():
+                    drawing["clim"] = (0.0, 1.0)  # of no value at all
                 drawing["scalar_bar_args"] = {"title": scalars} | asked
         live.attach()
         drawing = live.drawing(drawing)

@@ -779,6 +779,9 @@ def page_text(
     """
     _check.text("title", title)
     panel, key = _check.boolean("panel", panel), _check.boolean("key", key)
+    if not isinstance(source, list | tuple):
+        got = _check.describe(source)
+        raise TypeError(_check.message("source", "a list of the words of a command", got))
     page = Page(plotter.renderer)
     for one in shown:
         page.add(one)

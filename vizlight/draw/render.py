@@ -565,6 +565,18 @@ def _window_of(
         return contextlib.nullcontext()
 
 
+def check_plotter(plotter: object) -> None:
+    """Raise TypeError for what is no plotter.
+
+    Parameters
+    ----------
+    plotter : object
+    """
+    if not isinstance(plotter, pv.BasePlotter):
+        expected, got = "a pyvista.Plotter", _check.describe(plotter)
+        raise TypeError(_check.message("plotter", expected, got))
+
+
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     """Save the picture of a plotter as a PNG or another image, and close the plotter.
 
@@ -585,6 +597,7 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     FileError
         If the file cannot be written. No partial file is left.
     """
+    check_plotter(plotter)
     path = check_output(path, IMAGES)
     try:
         plotter.reset_camera_clipping_range()

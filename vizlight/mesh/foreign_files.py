@@ -16,13 +16,26 @@ import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check
-from vizlight.mesh import brains, cf_grids, geomview, georeference, meaning, polylines, scene_files
+from vizlight.mesh import (
+    abaqus,
+    brains,
+    cf_grids,
+    geomview,
+    georeference,
+    meaning,
+    ply,
+    polylines,
+    scene_files,
+    su2,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     from vizlight._types import Array, Foreign, Indices, Raw
 
+#: Bytes at the begin of a .inp file by which it is told of Abaqus.
+_INP_HEAD = 64
 #: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {
     ".trk": ("nibabel", "tracts"),
@@ -37,8 +50,8 @@ PACKAGES = {
     cf_grids.GRIB, ("cfgrib", "")
 ) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
     (
-        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".inp", ".mdpa", ".mesh",
-        ".meshb", ".msh", ".nas", ".node", ".post", ".su2", ".tec", ".ugrid", ".vol",
+        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".mdpa", ".mesh",
+        ".meshb", ".msh", ".nas", ".node", ".post", ".tec", ".ugrid", ".vol",
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
@@ -97,9 +110,9 @@ def read(
         return geomview.read_mesh(path)
     if suffix == ".dem":
         _refuse_narrow(path)
-    if suffix == ".inp" and _head(path, 1) == b"*":
+    if suffix == ".inp" and _head(path, _INP_HEAD).lstrip().startswith(b"*"):
         # PyVista takes it for the format of AVS.
-        return _of_meshio(path, ("abaqus",))
+        return abaqus.read(path)
     if PACKAGES.get(suffix, ("",))[0] in ("meshio", "h5py") and missing(path) == "":
         return _of_meshio(path)
     # PyVista has readers for the parallel files of grids, but none for those of surfaces.
@@ -116,7 +129,7 @@ def _head(path: Path, count: int) -> bytes:
         return file.read(count)
 
 
-def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
+def _of_meshio(path: Path) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
     ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
@@ -126,7 +139,7 @@ def _of_meshio(path: Path, kinds: Sequence[str] = ()) -> pv.DataSet:
 
     # The class is replaced for the whole process: meshio makes a console for each message.
     meshio._common.Console, _SAID.texts = _Console, []
-    kinds = kinds or meshio.extension_to_filetypes[path.suffix.lower()]
+    kinds = meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
@@ -164,7 +177,7 @@ class _Console:
 
 
 #: Columns of a line of a scan: place, intensity, colour.
-_SCAN = {3: (), 4: ("intensity",), 6: ("rgb",), 7: ("intensity", "rgb")}
+_SCAN = {3: (), 4: ("intensity",), 6: ("color",), 7: ("intensity", "color")}
 
 
 def _scan(path: Path) -> pv.PolyData:
@@ -186,7 +199,7 @@ def _scan(path: Path) -> pv.PolyData:
         raise ValueError(f"{len(rows)} of {count} points are there")
     mesh = pv.PolyData(rows[:, :3].copy())
     for name in _SCAN[rows.shape[1]]:
-        mesh.point_data[name] = rows[:, -3:].astype(np.uint8) if name == "rgb" else rows[:, 3]
+        mesh.point_data[name] = rows[:, -3:].astype(np.uint8) if name == "color" else rows[:, 3]
     return mesh
 
 
@@ -203,7 +216,7 @@ def _lidar(path: Path) -> pv.PolyData:
         colors = np.stack([cloud.red, cloud.green, cloud.blue], axis=1)
         # Colours have 16 bits by the standard, and 8 by many writers.
         depth = 256 if colors.max(initial=0) > 255 else 1
-        mesh.point_data["rgb"] = (colors // depth).astype(np.uint8)
+        mesh.point_data["color"] = (colors // depth).astype(np.uint8)
     return mesh
 
 
@@ -369,5 +382,7 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 #: Readers that need the path alone, by suffix.
 _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock]] = {
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
-    ".las": _lidar, ".laz": _lidar, ".off": geomview.read_off, ".swc": _neuron,
-} | dict.fromkeys(scene_files.SUFFIXES, scene_files.read)  # fmt: skip
+    ".las": _lidar, ".laz": _lidar, ".off": geomview.read_off, ".ply": ply.read,
+    ".su2": su2.read, ".swc": _neuron,
+    **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
+}  # fmt: skip

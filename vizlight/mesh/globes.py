@@ -63,6 +63,8 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
         remedy = "pass it through vizlight.cartography.in_degrees"
         raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))
     _check.coordinates("mesh", mesh.bounds)
+    if not np.isfinite(np.asarray(mesh.points)).all():
+        raise ValueError(_check.message("mesh", "points that are finite", "NaN"))
     if mesh.bounds_size[2] > 0:
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
         raise ValueError(_check.message("mesh", expected, got))

@@ -343,7 +343,18 @@ def at(reader: Foreign, time: float) -> Foreign:
     else:
         # The request stays in the pipeline, so that the read below gives this step.
         reader.reader.UpdateTimeStep(time)
-    return reader.read()
+    return unchecked(reader)
+
+
+def unchecked(reader: Foreign) -> Foreign:
+    """Return what a reader reads; PyVista would warn of arrays that do not fit, which are refused.
+
+    Parameters
+    ----------
+    reader : object
+        Reader of PyVista, or of VTK as :func:`reader_of` returns it.
+    """
+    return reader.read() if isinstance(reader, _OfVtk) else reader.read(validate=False)
 
 
 def read(path: Path, time: object) -> pv.DataObject | None:

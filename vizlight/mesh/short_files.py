@@ -8,12 +8,11 @@ from __future__ import annotations
 import mmap
 import re
 import struct
-from typing import TYPE_CHECKING, BinaryIO, Literal
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
 from vizlight.mesh import series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
@@ -23,14 +22,14 @@ if TYPE_CHECKING:
 
 __all__ = ["missing_numbers", "missing_part"]
 
-#: Bytes at the start and at the end of a file in which its header and its last words stand.
-_HEAD, _END = 100_000, 512
+#: Bytes at the end of a file in which its last words stand.
+_END = 512
 
 
 def missing_part(path: Path, /) -> str:
     """Return what a file lacks of the size or the end that it states.
 
-    These are the XML files of VTK, netCDF, HDF5, PLY and STL.
+    These are the XML files of VTK, netCDF, HDF5 and STL.
 
     Parameters
     ----------
@@ -132,77 +131,6 @@ def _stl(file: BinaryIO) -> str:
     return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
 
 
-#: Bytes of the numbers of PLY by their types; others have four.
-_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2,
-          "uint16": 2, "double": 8, "float64": 8}  # fmt: skip
-
-
-def _ply(file: BinaryIO) -> str:
-    """Compare the lines or the bytes after the header with its counts."""
-    # The data begin right after the line break; white space there may already be numbers.
-    whole = re.match(rb"ply\s.*?^end_header\r?\n", file.read(_HEAD), re.DOTALL | re.MULTILINE)
-    file.seek(0)
-    if whole is None:
-        return "its header is not whole" if file.read(3) == b"ply" else ""  # VTK's reader says so
-    file.seek(whole.end())
-    form, elements = "", list[tuple[int, list[list[int]]]]()
-    for words in (line.split() for line in whole[0].decode("latin-1").splitlines()):
-        if words[:1] == ["format"]:
-            form = words[1]
-        elif words[:1] == ["element"]:
-            elements.append((int(words[-1]), []))
-        elif words[:1] == ["property"]:
-            kinds = words[2:-1] if words[1] == "list" else words[1:-1]
-            if len(kinds) != (2 if words[1] == "list" else 1):
-                raise ValueError(" ".join(words))
-            # A list has two: the types of its count and of its numbers.
-            elements[-1][1].append([_SIZES.get(kind, 4) for kind in kinds])
-    if form != "ascii":
-        order: Literal["big", "little"] = "big" if "big" in form else "little"
-        return _size(file, whole.end() + _stated_bytes(file.read(), elements, order))
-    lines = sum(count for count, _ in elements)
-    there, last = 0, b""
-    for line in file:
-        if line.strip():
-            there, last = there + 1, line
-    if there < lines:
-        return f"{there} of {lines} lines are there"
-    # More lines are comments of other programs.
-    if there > lines or not elements:
-        return ""
-    row, numbers = last.split(), 0
-    for sizes in next(own for count, own in reversed(elements) if count):
-        # The first number of a list says how many follow it.
-        numbers += 1 if len(sizes) == 1 else 1 + int(row[numbers])
-    if len(row) < numbers:
-        return f"{len(row)} of {numbers} numbers of the last line are there"
-    if not last.endswith(b"\n"):
-        _check.warn(f"file: '{file.name}' may be cut in its last line, which has no line break")
-    return ""
-
-
-def _stated_bytes(
-    data: bytes, elements: list[tuple[int, list[list[int]]]], order: Literal["big", "little"]
-) -> int:
-    """Return the bytes of binary elements, or a number beyond the data where these end earlier."""
-    at = 0
-    for count, properties in elements:
-        # Rows without a list are all of one length.
-        if all(len(sizes) == 1 for sizes in properties):
-            at += count * sum(size for (size,) in properties)
-            continue
-        # A list has its own count in each row, so rows are followed one by one.
-        for _ in range(count):
-            for size, *each in properties:
-                if each:
-                    at += each[0] * int.from_bytes(data[at : at + size], order)
-                at += size
-            # A damaged count may be in the billions: what is not there is not followed.
-            if at > len(data):
-                return at
-    return at
-
-
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".vtm", ".vtp", ".vtu"), _xml),
     **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
@@ -210,7 +138,6 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys(
         (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
     ),
-    ".ply": _ply,
     ".stl": _stl,
 }
 

@@ -310,7 +310,8 @@ def beside(points: Array, triangles: Indices) -> tuple[Array, Array]:
     there = largest >= 0
     near, out = points.copy(), np.zeros(points.shape)
     own = largest[there]
-    near[there] += BESIDE * (points[triangles[own]].mean(axis=1) - points[there])
+    with np.errstate(invalid="ignore"):  # at points that are infinite
+        near[there] += BESIDE * (points[triangles[own]].mean(axis=1) - points[there])
     out[there] = normals[own]
     return near, out
 

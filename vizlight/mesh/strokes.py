@@ -66,7 +66,9 @@ def segments_of(mesh: pv.PolyData) -> Segments:
     number = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
     inner = np.flatnonzero(number[1:] == number[:-1])
     starts, ends, lines = ids[inner], ids[inner + 1], number[inner]
-    lengths = np.linalg.norm(points[ends].astype(np.float64) - points[starts], axis=1)
+    steps = points[ends].astype(np.float64) - points[starts]
+    # Squares of the largest coordinates would overflow.
+    lengths = np.hypot(np.hypot(steps[:, 0], steps[:, 1]), steps[:, 2])
     sums = np.cumsum(lengths) - lengths
     first = np.flatnonzero(np.diff(lines, prepend=-1))
     before = sums - np.repeat(sums[first], np.diff(first, append=len(lines)))

@@ -212,6 +212,8 @@ def legibility(
         checked = reading(rgb.shape[1], size_mm, distance_mm, screen, noise, samples, seed)
         own = camera_of(mesh, None, camera, 1.0)
         return measure(rgb, _parts(mesh, key, asked, scalars, own), own, **checked)
+    if cmap is not None:
+        color_table([], cmap=cmap)
     for name, value in (("key", key), ("camera", camera)):
         if value is not None:
             raise ValueError(_check.message(name, "picture= beside it", "none"))

@@ -253,6 +253,7 @@ def shade(
     }  # fmt: skip
     there: Keywords = {name: array_source(name, x) for name, x in optional.items() if x is not None}
     at = array_source("points", points)
+    repeat = _check.integer("repeat", repeat, low=1)
     inputs = ShadingInputs(points=at, fur=fur, two_sided=two_sided, repeat=repeat, **there)
     return run(inputs, scene, chosen, block=block, progress=progress)
 

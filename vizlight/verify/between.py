@@ -299,7 +299,8 @@ def random_places(
     s = cells.shape[1]
     # In units of the extent squares of lengths neither overflow nor vanish.
     unit = float(np.ptp(points, axis=0).max(initial=0)) or 1.0
-    sides = [(points[cells[:, i]] - points[cells[:, 0]]) / unit for i in range(1, s)]
+    with np.errstate(invalid="ignore"):  # at points that are infinite
+        sides = [(points[cells[:, i]] - points[cells[:, 0]]) / unit for i in range(1, s)]
     square = _dots(sides[0], sides[0])
     if s == 3:
         # |a|^2 |b|^2 - (a . b)^2 is the squared area of the parallelogram, in a space of any

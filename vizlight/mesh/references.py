@@ -1,0 +1,38 @@
+"""Files that a file names and that are read with it."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+#: What names another file in the formats that do so, by suffix.
+_NAMED = {
+    **dict.fromkeys(
+        (".vtm", ".vtmb", ".vtpd", ".pvd", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"),
+        rb"\s(?:file|Source)\s*=\s*[\"']([^\"']+)[\"']",
+    ),
+    ".gltf": rb"\"uri\"\s*:\s*\"(?!data:)([^\"]+)\"",
+    **dict.fromkeys((".xmf", ".xdmf"), rb">\s*([^<>:\s]+)\s*:/"),
+    ".inp": rb"(?im)^\*(?:INCLUDE|NODE|ELEMENT)\b[^\n]*?\bINPUT\s*=\s*\"?([^\s,\"]+)",
+    ".case": rb"(?im)^\s*(?:model|measured|match|boundary)\s*:\s*(?:\d+\s+)*(\S+)",
+}
+
+
+def outside(path: Path) -> list[str]:
+    """Return the names of the files that a file takes from elsewhere than its own folder.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file, of any format.
+    """
+    pattern = _NAMED.get(path.suffix.lower())
+    if pattern is None:
+        return []
+    named = {unquote(os.fsdecode(name)) for name in re.findall(pattern, path.read_bytes())}
+    folder = path.parent.absolute()
+    # By the words alone, as links within the folder are its owner's.
+    places = {name: Path(os.path.normpath(folder / name)) for name in named}
+    return sorted(name for name, place in places.items() if not place.is_relative_to(folder))
