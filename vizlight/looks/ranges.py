@@ -43,10 +43,10 @@ class Range(NamedTuple):
     def words(self, name: str) -> str:
         """Return the words that say how the range differs from that of the values, if it does."""
         if self.logarithmic:
-            return f"colours of {name} are logarithmic from {self.low:g} to {self.high:g}"
+            return f"colours of {name} are logarithmic from {self.low:.3g} to {self.high:.3g}"
         if not any(self.clipped):
             return ""
-        told = f"colours of {name} run from {self.low:g} to {self.high:g}, where most values are"
+        told = f"colours of {name} run from {self.low:.3g} to {self.high:.3g}, where most values are"
         return told + "; one value below, in a region apart, is grey" * self.apart
 
 

@@ -49,18 +49,20 @@ LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 3.5
-#: Width of the head of a stroke as a share of its length, its least and largest one in least widths
-#: of lines: wider ones darken what is beside them for the eye.
-HEAD_WIDTH, NARROWEST, WIDEST = 0.55, 3.0, 3.8
+#: Width of the head of a stroke as a share of its length, and its least and largest one in least
+#: widths of lines: on surfaces, where wider ones darken what is beside them for the eye, and in
+#: volumes.
+HEAD_WIDTH, WIDTHS, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (4.0, 5.5)
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
-#: Distance between streamlines of a volume, and length of their strokes, as shares of its size.
-SPACING_IN_VOLUME, LONG_IN_VOLUME = 1 / 25, 1 / 10
+#: Distances between streamlines of a volume as shares of its size: the second where more of the
+#: first are left out than are kept, as in thin vessels.
+SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
+#: Length of strokes in a volume, and length below which streamlines are left out, in these
+#: distances: many are cut short where the field is noise.
+LONG_IN_VOLUME, SHORTEST = 2.5, 4
 #: Largest width of those without a sense, and the halo of all.
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
-#: Length below which streamlines of a volume are left out, in distances between them: many are cut
-#: short where the field is noise.
-SHORTEST = 4 * SPACING_IN_VOLUME
 #: Words of the key for the sense of strokes.
 SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
@@ -183,19 +185,19 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
     scene = even_light(camera)
-    wide = _head_width(case, strokes, camera)
+    wide = _head_width(case, strokes, camera, WIDTHS)
     return Layer(
         strokes,
         {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},
     )
 
 
-def _head_width(case: Case, strokes: Step, camera: Step) -> float:
+def _head_width(case: Case, strokes: Step, camera: Step, between: tuple[float, float]) -> float:
     """Return the width of the heads of strokes in pixels."""
     step: Foreign = strokes.keywords["stroke_length"]
     length = HEAD * step / pixel_of(case, camera)
-    ends = NARROWEST * case.width, WIDEST * case.width
-    return round(float(np.clip(HEAD_WIDTH * length, *ends)), 1)
+    low, high = (case.width * end for end in between)
+    return round(float(np.clip(HEAD_WIDTH * length, low, high)), 1)
 
 
 def pixel_of(case: Case, camera: Step) -> float:
@@ -243,7 +245,7 @@ def flow(case: Case) -> Drawing:
     keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     wide = round(WIDE_IN_VOLUME * case.width, 1)
     if not keywords.get("line_field"):
-        wide = _head_width(case, lit, camera)
+        wide = _head_width(case, lit, camera, WIDTHS_IN_VOLUME)
     drawn: Keywords = {"width": "width", "line_width": wide}
     drawn["halo"] = HALO_IN_VOLUME
     words = f"streamlines of {array.name}"
@@ -264,7 +266,7 @@ def flow(case: Case) -> Drawing:
         # The surface that conditions the light of the lines is not drawn with them.
         name = str(keywords.get("name", "luminance"))
         lines = unlit(lit, scene, name, line_width=case.width)
-    if left_out := int(lit.run().field_data.get("left_out", [0])[0]):
+    if left_out := _left_out(lit):
         least = f"{lit.keywords['min_length']:g}"
         notes += [
             f"lines shorter than {least}, four times their distance, are left out: {left_out}"
@@ -306,26 +308,40 @@ def _have_sense(strokes: Step) -> bool:
 
 def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Step:
     """Return the step that lays strokes in a volume, without short ones where some are long."""
-    size = float(mesh.run().length)
-    own: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * size:.3g}")}
-    if "spacing" not in keywords and "seeds" not in keywords:
-        if mesh.run().n_cells <= MOST_CELLS and "surface" not in keywords:
-            own["spacing"] = float(f"{SPACING_IN_VOLUME * size:.3g}")
-        else:
+    evenly = "spacing" not in keywords and "seeds" not in keywords
+    evenly = evenly and mesh.run().n_cells <= MOST_CELLS and "surface" not in keywords
+    for share in SPACINGS_IN_VOLUME:
+        spacing = share * float(mesh.run().length)
+        own: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * spacing:.3g}")}
+        if evenly:
+            own["spacing"] = float(f"{spacing:.3g}")
+        elif "spacing" not in keywords:
             own["seeds"] = SEEDS
-    shortest = {"min_length": float(f"{SHORTEST * size:.3g}")}
-    for least in (shortest, {}):
-        step = case.wishes.step("lit", "streamlines", mesh, scene, **(own | least | keywords))
+        step = _long_lines(case, mesh, scene, own | keywords, float(f"{SHORTEST * spacing:.3g}"))
+        if not evenly or _left_out(step) <= step.run().n_lines:
+            break
+    return step
+
+
+def _long_lines(case: Case, mesh: Step, scene: Step, keywords: Keywords, least: float) -> Step:
+    """Return the step that lays streamlines of a least length, of any where none is so long."""
+    for shortest in ({"min_length": least}, {}):
+        step = case.wishes.step("lit", "streamlines", mesh, scene, **(shortest | keywords))
         # Fewer lines than a number that nobody asked for are no concern of the reader.
         step.quiet = "seeds" not in case.wishes.light
         try:
             step.run()
         except ValueError as error:
-            if least and "min_length" in str(error):
+            if shortest and "min_length" in str(error):
                 continue
             raise
         break
     return step
+
+
+def _left_out(lines: Step) -> int:
+    """Return the number of lines that were too short."""
+    return int(lines.run().field_data.get("left_out", [0])[0])
 
 
 def _hull(mesh: Step) -> Layer:
