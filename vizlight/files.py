@@ -173,6 +173,8 @@ def read(
 
     Raises
     ------
+    TypeError
+        If ``at`` is no dict.
     FileError
         If the file does not exist, cannot be read or is damaged, the package that reads it is not
         installed, or it has no points or no such step.
@@ -191,6 +193,7 @@ def read(
     time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
     VTK may print.
     """
+    _check.instance("at", at, dict, optional=True)
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
     with _check.held():
@@ -222,9 +225,10 @@ def read_parts(
 
     Raises
     ------
-    FileError
+    TypeError, FileError
         As for :func:`vizlight.read`.
     """
+    _check.instance("at", at, dict, optional=True)
     with _check.held():
         return _read(path, time, overlay, at, nodata, whole=False)
 

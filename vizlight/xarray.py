@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign
 
-__all__ = ["GridAccessor"]
-
 
 @xarray.register_dataset_accessor("vizlight")
 @xarray.register_dataarray_accessor("vizlight")

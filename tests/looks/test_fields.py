@@ -108,9 +108,9 @@ def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
     x, y, _ = (np.asarray(image.points) - 2).T
     vectors = np.stack([-y, x, 0 * x + 3], axis=1)
     image["m"] = vectors
-    assert vizlight.look(image, size=(120, 80), spacing=1.0).drawing.keys[0]["question"] == "value"
+    assert vizlight.look(image, size=(120, 80)).drawing.keys[0]["question"] == "value"
     image["m"] = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-    look = vizlight.look(image, size=(120, 80), spacing=1.0)
+    look = vizlight.look(image, size=(120, 80))
     assert "question" not in look.drawing.keys[0]
     assert "speed" not in look.summary
 

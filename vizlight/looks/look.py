@@ -255,17 +255,17 @@ class Look:
         steps = [layer.added(plotter) for layer in drawing.layers]
         near = any(light.position is not None for light in self.scene.lights)
         if wishes.picture.get("key", True):
-            # The key of a lamp that stands somewhere differs from place to place.
             keys = list(drawing.keys)
             if keys and not any(key.get("title") for key in keys):
                 # Cameras of looks leave room for a title.
                 keys[0] = keys[0] | {"title": drawing.words}
-            if near:
-                # A bar has the colours of the map, in even light.
-                even = even_light(drawing.camera)
-                bars = [key for key in keys if key.get("question") == "value"]
-                keys = [bar | {"scene": even} for bar in bars]
-            steps += [_key_step(plotter, key) for key in keys]
+            for key in keys:
+                if key.get("question") == "value":
+                    # A bar has the colours of the map, in even light.
+                    steps.append(_key_step(plotter, key | {"scene": even_light(drawing.camera)}))
+                elif not near:
+                    # The key of a lamp that stands somewhere differs from place to place.
+                    steps.append(_key_step(plotter, key))
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps
 

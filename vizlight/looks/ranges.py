@@ -46,7 +46,8 @@ class Range(NamedTuple):
             return f"colours of {name} are logarithmic from {self.low:.3g} to {self.high:.3g}"
         if not any(self.clipped):
             return ""
-        told = f"colours of {name} run from {self.low:.3g} to {self.high:.3g}, where most values are"
+        ends = f"{self.low:.3g} to {self.high:.3g}"
+        told = f"colours of {name} run from {ends}, where most values are"
         return told + "; one value below, in a region apart, is grey" * self.apart
 
 

@@ -352,9 +352,9 @@ def unchecked(reader: Foreign) -> Foreign:
     Parameters
     ----------
     reader : object
-        Reader of PyVista, or of VTK as :func:`reader_of` returns it.
+        Reader of PyVista, or one of :func:`reader_of`.
     """
-    return reader.read() if isinstance(reader, _OfVtk) else reader.read(validate=False)
+    return reader.read(validate=False) if isinstance(reader, pv.BaseReader) else reader.read()
 
 
 def read(path: Path, time: object) -> pv.DataObject | None:
