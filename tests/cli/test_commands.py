@@ -209,7 +209,7 @@ def test_components_of_vectors_are_joined(folder, run, done):
 @pytest.mark.opengl
 def test_colours_of_data_are_multiplied_by_the_light(folder, done):
     arguments = ("light", "flow.vti", "--slice", "z:4", "--scalars", "r", "-o", "a.png", *SMALL)
-    done(*arguments, "--light", "0,0,1")
+    done(*arguments, "--light", "1,0,1")
     lit = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
     done(*arguments)
     picture = np.asarray(pv.read("a.png")["PNGImage"], dtype=int)
