@@ -18,7 +18,7 @@ COUNTED = """
 import sys
 import pyvista as pv
 read, reads = pv.BaseReader.read, []
-pv.BaseReader.read = lambda *args: reads.append(args) or read(*args)
+pv.BaseReader.read = lambda *args, **how: reads.append(args) or read(*args, **how)
 from vizlight import cli
 assert cli.main(sys.argv[1:]) == cli.OK
 print(len(reads), *sys.modules)
