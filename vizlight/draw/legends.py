@@ -362,7 +362,7 @@ class MarginKey:
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
-        columns = max(columns, min(longest, int(1.2 * columns)))
+        columns = max(columns, min(longest, int(1.4 * columns)))
         self._lines = [line for part in head.splitlines() for line in _wrapped(part, columns)]
         words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
