@@ -321,7 +321,7 @@ def test_a_wedge_is_told_from_one_that_is_turned():
     # At twice as many pixels in a degree there are 6 square arc minutes.
     for more, answer in ((3.99, 1), (3.97, 0)):
         assert ahead_of(glyphs, np.where(bare, 0, more), bare, Eye(120.0)) == answer
-    # Where other glyphs stand nothing is told, and nothing is asked of what is not seen.
+    # Without bare pixels around it a glyph has no sense; one that is not seen has no answer.
     assert ahead_of(glyphs, ink, np.zeros_like(bare), eye) == 0
     hidden = glyphs._replace(number=np.full_like(glyphs.number, -1))
     assert np.isnan(ahead_of(hidden, ink, bare, eye)).all()

@@ -18,7 +18,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextActor,
 )
 
-from vizlight.draw.live import items
+from vizlight.draw.live import in_view, items
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 from vizlight.shading.display import NO_DATA_NAME
@@ -201,12 +201,12 @@ class Margin:
         """Put the title into its band, or nearer to a map that leaves room below the band."""
         short = min(size)
         letters, gap = TITLE_SIZE * LETTERS * short, 2 * MARGIN * short
-        left, upper = _box_of(renderer, data=False)[[0, 3]]
-        is_flat = bool(renderer.GetActiveCamera().GetParallelProjection())
-        lowered = bool(is_flat and renderer.GetSize()[1] - upper > 2.2 * letters)
-        if is_flat:
+        upper = float(renderer.GetSize()[1])
+        if renderer.GetActiveCamera().GetParallelProjection():
             # Above the corner of a map.
+            left, upper = _box_of(renderer, data=False)[[0, 3]]
             gap = max(float(_box_of(renderer, data=True)[0]), left, MARGIN * short)
+        lowered = bool(renderer.GetSize()[1] - upper > 2.2 * letters)
         room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
         scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
         lines = textwrap.wrap(title, max(int(room / scale), 1))
@@ -273,16 +273,11 @@ def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
             bounds = np.reshape(actor.GetBounds() or (1, -1) * 3, (3, 2))
             if np.all(bounds[:, 0] <= bounds[:, 1]):
                 corners += itertools.product(*bounds)
-    places = []
-    for corner in corners:
-        renderer.SetWorldPoint((*corner, 1.0))
-        renderer.WorldToView()
-        places.append((np.array(renderer.GetViewPoint()[:2]) + 1) / 2 * (wide, high))
-    whole = np.array([0.0, 0.0, wide, high])
-    if not places:
-        return whole
-    limits = [*whole[2:], *whole[2:]]
-    box: Array = np.clip([*np.min(places, axis=0), *np.max(places, axis=0)], 0, limits)
+    if not corners:
+        return np.array([0.0, 0.0, wide, high])
+    camera, aspect = renderer.GetActiveCamera(), renderer.GetTiledAspectRatio()
+    places = (in_view(camera, aspect, np.array(corners))[0][:, :2] + 1) / 2 * (wide, high)
+    box: Array = np.clip([*places.min(axis=0), *places.max(axis=0)], 0, [wide, high, wide, high])
     return box
 
 

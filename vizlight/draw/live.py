@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
     from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
     from vizlight.filters.relight import Source
@@ -433,6 +433,29 @@ def draws_light(actor: vtkActor) -> bool:
 def matrix_of(matrix: vtkMatrix4x4) -> Array:
     """Return a matrix of VTK in float64."""
     return np.asarray(pv.array_from_vtkmatrix(matrix), np.float64)
+
+
+def in_view(camera: vtkCamera, aspect: float, points: Array) -> tuple[Array, Bools]:
+    """Return where points are in the view of a camera, and which of them are in front of the eye.
+
+    Parameters
+    ----------
+    camera : vtkCamera
+    aspect : float
+        Width of the picture by its height.
+    points : ndarray, shape (N, 3)
+
+    Returns
+    -------
+    places : ndarray, shape (N, 3)
+        From -1 to 1 to the right, up, and from the near plane to the far one; of no meaning behind
+        the eye.
+    front : ndarray of bool, shape (N,)
+    """
+    matrix = matrix_of(camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1))
+    whole = points @ matrix[:, :3].T + matrix[:, 3]
+    front = whole[:, 3] > 0
+    return whole[:, :3] / np.where(front, whole[:, 3], 1)[:, np.newaxis], front
 
 
 def lifted(scene: Scene, n: int) -> Scene:

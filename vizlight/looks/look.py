@@ -479,9 +479,10 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
     if not isinstance(mesh, pv.DataSet):
         expected = "a PyVista mesh, a path or an xarray object"
         raise TypeError(message("data", expected, _check.describe(data)))
-    for name in keywords:
+    if keywords:
+        name, value = next(iter(keywords.items()))
         expected = "no such option beside a mesh, which is read already"
-        raise ValueError(message(name, expected, _check.describe(wishes.part[name])))
+        raise ValueError(message(name, expected, _check.describe(value)))
     return [Step("mesh", "-", mesh)]
 
 

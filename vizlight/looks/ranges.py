@@ -47,8 +47,8 @@ class Range(NamedTuple):
         if not any(self.clipped):
             return ""
         ends = f"{self.low:.3g} to {self.high:.3g}"
-        told = f"colours of {name} run from {ends}, where most values are"
-        return told + "; one value below, in a region apart, is grey" * self.apart
+        words = f"colours of {name} run from {ends}, where most values are"
+        return words + "; one value below, in a region apart, is grey" * self.apart
 
 
 def range_shown(values: Array, *, lengths: bool = False) -> Range:

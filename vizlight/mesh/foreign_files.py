@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Indices, Raw
 
-#: Bytes at the begin of a .inp file by which it is told of Abaqus.
+#: Number of bytes at the start of an .inp file that show whether it is one of Abaqus.
 _INP_HEAD = 64
 #: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {

@@ -14,7 +14,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, short_files
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -130,8 +130,8 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
             for i, (name, kind) in enumerate(element.kinds.items()):
                 element.columns[name] = _numbers([row[i] for row in rows], kind)
     # More lines are comments of other programs.
-    if first == len(lines) and lines and not data.endswith((b"\n", b"\r")):
-        _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
+    if first == len(lines) and lines:
+        short_files.warn_of_last_line(path, data)
 
 
 def _short(there: int, expected: int) -> ValueError:

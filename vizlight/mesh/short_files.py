@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight.mesh import series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-__all__ = ["missing_numbers", "missing_part"]
+__all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
 #: Bytes at the end of a file in which its last words stand.
 _END = 512
@@ -49,6 +50,20 @@ def missing_part(path: Path, /) -> str:
             return lacks(file)
         except (LookupError, ValueError, struct.error) as error:
             return f"its header cannot be read: {error}"
+
+
+def warn_of_last_line(path: Path, data: bytes) -> None:
+    """Warn of a text without a line break at its end, which may be cut in its last number.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    data : bytes
+        Its content.
+    """
+    if not data.endswith((b"\n", b"\r")):
+        _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
 
 def _size(file: BinaryIO, least: int) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight.mesh import short_files
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,8 +61,7 @@ def read(path: Path) -> pv.MultiBlock:
     """
     zones, marker = [_Zone()], ""
     data = path.read_bytes()
-    if not data.endswith(b"\n"):
-        _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
+    short_files.warn_of_last_line(path, data)
     lines = iter([line for one in data.splitlines() if (line := one.partition(b"%")[0].strip())])
     for line in lines:
         word, given, value = (part.strip() for part in line.partition(b"="))

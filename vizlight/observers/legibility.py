@@ -170,11 +170,11 @@ def legibility(
     crossings the borders of the nearer line, darker ones inside it too, or gaps beside it, differ
     by 3 deviations of the noise (Rose 1948), on both sides and by more than those of the other;
     crossings with a third line within 5.5 pixels are left out. Of two narrow lines of 3 pixels on
-    black without halos the darker one is told wrongly. *sense*: the sense of a stroke is told
-    where its ends differ by 3 deviations of the noise, in lightness or in contrast, each as the
-    mean of 8 arc minutes. It needs lines that have ``tangents``, or VTK's ``IntegrationTime``. The
-    sense of a glyph is told where what it would not have if it were turned round stands out more
-    than what it would have then.
+    black without halos the darker one is read as the nearer. *sense*: a reader sees which end of a
+    stroke is ahead where its ends differ by 3 deviations of the noise, in lightness or in contrast,
+    each as the mean of 8 arc minutes. It needs lines that have ``tangents``, or VTK's
+    ``IntegrationTime``. For a glyph, the pixels that it covers are compared with those that it
+    would cover if it were turned round: the sense is right where the former stand out more.
 
     A reader of a surface with lines on it looks between them, as far as 10 arc minutes away.
 

@@ -16,7 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.cameras import pixel_sizes
-from vizlight.draw.live import matrix_of
+from vizlight.draw.live import in_view
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
@@ -185,10 +185,9 @@ def in_pixels(camera: pv.Camera, size: tuple[int, int], points: Array) -> Array:
     What is behind the eye has no place in the picture: NaN.
     """
     width, height = size
-    project = matrix_of(camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1))
-    x, y, _, scale = project @ np.column_stack([points, np.ones(len(points))]).T
-    scale = np.where(scale > 0, scale, np.nan)
-    return np.column_stack([(1 + x / scale) / 2 * width, (1 - y / scale) / 2 * height])
+    places, front = in_view(camera, width / height, points)
+    x, y, _ = np.where(front, places.T, np.nan)
+    return np.column_stack([(1 + x) / 2 * width, (1 - y) / 2 * height])
 
 
 def courses(

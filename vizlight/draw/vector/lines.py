@@ -9,7 +9,7 @@ import pyvista as pv
 
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
-from vizlight.draw.live import matrix_of
+from vizlight.draw.live import in_view, matrix_of
 from vizlight.draw.strokes import LEAST
 from vizlight.draw.vector.files import Stroke
 from vizlight.draw.vector.samples import actors_of
@@ -222,12 +222,7 @@ def _over_surface(
 
 def _projected(points: Array, renderer: vtkRenderer) -> Array:
     """Return places in samples from the lower left, depths from 0 to 1, and whether in front."""
-    camera = renderer.GetActiveCamera()
-    aspect = renderer.GetTiledAspectRatio()
-    matrix = matrix_of(camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1))
-    whole = points @ matrix[:, :3].T + matrix[:, 3]
-    front = whole[:, 3] > 0
-    shown = whole[:, :3] / np.where(front, whole[:, 3], 1)[:, np.newaxis]
+    shown, front = in_view(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio(), points)
     size, origin = np.array(renderer.GetSize()), np.array(renderer.GetOrigin())
     places = origin + (shown[:, :2] + 1) / 2 * size
     return np.column_stack([places, (shown[:, 2] + 1) / 2, front])

@@ -158,15 +158,17 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    sense = "" if strokes is None else SENSE
-    title = f"{titled_length(mesh.run(), array.name)}{sense}"
-    bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
-    bar |= {} if bent else {"scene": scene}
-    bar["clim"] = colors["clim"]
+    bar = _bar(mesh, array.name, colors, "" if strokes is None else SENSE)
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
     lit = case.lit(mesh, scene, **light)
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, words, [bar], notes=notes, kind=mesh)
+
+
+def _bar(mesh: Step, name: str, colors: Keywords, sense: str) -> Keywords:
+    """Return the keywords of the key of lengths of vectors in colours."""
+    title = f"{titled_length(mesh.run(), name)}{sense}"
+    return {"question": "value", "title": title, "cmap": colors["cmap"], "clim": colors["clim"]}
 
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
@@ -246,8 +248,7 @@ def flow(case: Case) -> Drawing:
     wide = round(WIDE_IN_VOLUME * case.width, 1)
     if not keywords.get("line_field"):
         wide = _head_width(case, lit, camera, WIDTHS_IN_VOLUME)
-    drawn: Keywords = {"width": "width", "line_width": wide}
-    drawn["halo"] = HALO_IN_VOLUME
+    drawn: Keywords = {"width": "width", "line_width": wide, "halo": HALO_IN_VOLUME}
     words = f"streamlines of {array.name}"
     notes = []
     if by_speed:
@@ -256,10 +257,7 @@ def flow(case: Case) -> Drawing:
         colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
         notes += [note] if note else []
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
-        title = f"{titled_length(mesh.run(), array.name)}{SENSE}"
-        bar: Keywords = {"question": "value", "title": title, "cmap": colors["cmap"]}
-        bar |= {"scene": scene, "clim": colors["clim"]}
-        keys = [bar]
+        keys = [_bar(mesh, array.name, colors, SENSE)]
         words += " in the colours of their speed"
     lines = Layer(lit, {"scene": scene, **drawn})
     if "surface" in keywords:

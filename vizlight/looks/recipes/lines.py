@@ -97,7 +97,7 @@ def points(case: Case) -> Drawing:
         ends = float(np.nanmin(lengths)), float(np.nanmax(lengths))
         colors: Keywords = {"cmap": LIGHTNESS, "clim": ends} | case.wishes.colors
         drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
-        bar: Keywords = {"question": "value", "scene": scene, **colors}
+        bar: Keywords = {"question": "value", **colors}
         keys = [bar | {"title": titled_length(mesh.run(), array.name)}]
         words = f"points in the colours of the length of {array.name}"
     elif array is not None:
