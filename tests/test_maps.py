@@ -98,14 +98,13 @@ def test_bands_have_a_step_at_each_level_and_black_lines_are_seen_on_them():
     jumps = np.linalg.norm(np.diff(light, axis=0), axis=1)
     at = (np.sort(np.argsort(jumps)[-2:]) + 1) / len(colors) * 3
     np.testing.assert_allclose(at, [1, 2], atol=3 / len(colors))
-    # Within a band 0.8 of the colours are left.
-    assert np.sort(jumps)[-2] > 5 * np.median(jumps)
+    assert len(np.unique(colors, axis=0)) == 3
     assert (table.scalar_range, table.nan_color.hex_rgb) == ((0.0, 3.0), maps.MISSING)
 
 
 @pytest.mark.parametrize(("limits", "middle"), [((-2.0, 2.2), 0.0), ((-1.0, 3.0), 1.0)])
 def test_bands_of_two_sides_have_their_middle_at_zero(limits, middle):
-    table = maps.bands([], limits, "RdBu_r")
+    table = maps.bands(np.linspace(*limits, 40), limits, "RdBu_r")
     values = limits[0] + np.ptp(limits) * (np.arange(table.n_values) + 0.5) / table.n_values
     lightest = values[np.argmax(cielab(linear(np.asarray(table.values)[:, :3] / 255))[:, 0])]
     assert lightest == pytest.approx(middle, abs=0.2)

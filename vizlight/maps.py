@@ -149,9 +149,8 @@ _BANDS = LinearSegmentedColormap.from_list(
     ],
 )
 colormaps.register(_BANDS, force=True)
-#: Colours of a table of bands, and how much of the colours of a map goes on within a band: the rest
-#: is the step at each level.
-_FINE, _WITHIN = 1024, 0.8
+#: Colours of a table of bands.
+_FINE = 1024
 #: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
 #: sides.
 _TWO_SIDED = 0.6
@@ -160,17 +159,15 @@ _TWO_SIDED = 0.6
 def bands(
     levels: Sequence[float], limits: Sequence[float], cmap: str = "vizlight.bands", /
 ) -> pv.LookupTable:
-    """Return a lookup table whose colours have a step at each level, as bands between isolines.
-
-    Within a band 0.8 of the difference is left, so that values between levels can be read.
+    """Return a lookup table with one colour between each level and the next, as between isolines.
 
     Parameters
     ----------
     levels : sequence of float
-        Values at the steps.
+        Values at which the colour changes.
     limits : (float, float)
-        Values at the ends of the colours. Where they are on both sides of 0, and the smaller is at
-        least 0.6 of the larger, the middle of the map is at 0.
+        Values at the ends of the colours, which are levels too. Where they are on both sides of 0,
+        and the smaller is at least 0.6 of the larger, the middle of the map is at 0.
     cmap : str, default: "vizlight.bands"
         Colour map; blue over pale yellow to red by default, on all of which black lines are seen.
 
@@ -202,7 +199,7 @@ def bands(
     # The middles of the steps of the table.
     values = low + (high - low) * (np.arange(_FINE) + 0.5) / _FINE
     middles = (0.5 * (edges[1:] + edges[:-1]))[np.searchsorted(edges[1:-1], values)]
-    shares = (_WITHIN * values + (1 - _WITHIN) * middles - start) / (end - start)
+    shares = (middles - start) / (end - start)
     table = pv.LookupTable(n_values=_FINE)
     # PyVista types names of maps one by one.
     colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]

@@ -187,6 +187,37 @@ def test_the_title_is_above_a_map_and_its_bar_as_tall(size):
     assert red.max() <= blue.max() + 2
 
 
+def test_a_bar_that_lies_is_below_a_map_and_as_wide():
+    size, plotter = (600, 400), pv.Plotter(off_screen=True, window_size=(600, 400))
+    plotter.vizlight.add_mesh(pv.Plane(i_size=6, j_size=2), color="blue", lighting=False)
+    bar = {"question": "value", "cmap": "Reds", "clim": (0, 3), "levels": [0, 1, 2, 3]}
+    plotter.vizlight.add_key(presets.shape(), title="rise (m)", lying=True, **bar)
+    share = legends.data_share(size, 0.15, lying=True)
+    assert share[0] == 1
+    aspect = size[0] / (size[1] * share[1])
+    plotter.camera = render.camera_on(plotter.meshes[0], (0, 0, 1), parallel=True, aspect=aspect)
+    seen = plotter.screenshot(return_img=True).astype(int)
+    blue = np.argwhere(seen[..., 2] - seen[..., 0] > 60)
+    red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
+    # The map leaves room below it, which the bar takes; the lightest red counts as none.
+    letters = legends.LETTERS * min(size)
+    assert blue[:, 0].max() < red[:, 0].min() < blue[:, 0].max() + 2 * letters
+    assert red[:, 1].max() == pytest.approx(blue[:, 1].max(), abs=2)
+    assert np.ptp(red[:, 0]) < letters
+    # A second key stands at the right, with the first.
+    plotter.vizlight.add_key(presets.shape(), **bar)
+    seen = plotter.screenshot(return_img=True).astype(int)
+    red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
+    assert red[:, 1].min() > size[0] * legends.data_share(size, 0.15)[0]
+
+
+def test_a_disc_does_not_lie():
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    with pytest.raises(ValueError, match="lying: expected False for a key that is a disc"):
+        plotter.vizlight.add_key(presets.shape(), lying=True)
+    plotter.close()
+
+
 def test_the_key_of_the_live_light_has_its_exponent():
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     line = pv.Line(resolution=4)

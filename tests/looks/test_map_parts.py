@@ -8,8 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.draw.cameras import MARGIN
-from vizlight.draw.legends import LETTERS, data_share
-from vizlight.draw.render import KEY_SIZE
+from vizlight.draw.legends import LETTERS
 from vizlight.mesh import meaning
 
 SIZE = (300, 200)
@@ -43,7 +42,7 @@ def paths(look):
         (chart(360, 180, -180, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(360, 180, 0, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
-        (chart(60, 40, name="elevation"), {}, ["frame"]),
+        (chart(60, 40, name="elevation"), {}, [*ISOLINES, "frame"]),
         (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
         (chart(60, 40), {"view": "iso"}, ["coasts"]),
     ],
@@ -63,9 +62,9 @@ def test_two_maps_in_one_picture_have_no_frame_of_one():
 def test_all_of_the_frame_is_in_the_picture_and_the_map_fills_the_rest(sides):
     look = vizlight.look(chart(*sides, west=-20, south=-30), size=SIZE)
     camera, frame = look.view, look.drawing.layers[-1].mesh.run()
-    share = data_share(SIZE, KEY_SIZE)
+    room = look.wishes.room
     high = camera.parallel_scale
-    wide = high * SIZE[0] * share[0] / (SIZE[1] * share[1])
+    wide = high * room[0] / room[1]
     x, y, _ = np.asarray(frame.points, dtype=float).T - np.reshape(camera.focal_point, (3, 1))
     up = np.array(camera.up)[:2]
     right = np.array([up[1], -up[0]])
@@ -75,7 +74,7 @@ def test_all_of_the_frame_is_in_the_picture_and_the_map_fills_the_rest(sides):
     ]
     assert max(filled) == pytest.approx(1 / MARGIN, abs=0.03)
     # Letters are as high as those of keys.
-    pixels = look.drawing.layers[-1].mesh.keywords["letters"] / (2 * high) * SIZE[1] * share[1]
+    pixels = look.drawing.layers[-1].mesh.keywords["letters"] / (2 * high) * room[1]
     assert pixels == pytest.approx(LETTERS * min(SIZE), rel=0.06)
 
 
@@ -85,14 +84,48 @@ def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
     table = look.drawing.layers[0].keywords["cmap"].run()
     lines = look.drawing.layers[2].mesh.run()
     assert set(np.unique(lines["level"])) <= set(key["levels"])
-    step = key["levels"][1] - key["levels"][0]
+    # Of few lines, classes end halfway between them too.
+    step = 2 * (key["levels"][1] - key["levels"][0])
     assert key["title"] == f"warmth; lines every {step:g}"
     low, high = table.scalar_range
+    assert (low, high) == (key["levels"][0], key["levels"][-1]) == key["clim"]
     colors = np.asarray(table.values).astype(int)
     jumps = np.abs(np.diff(colors, axis=0)).sum(axis=1)
     at = low + (np.argsort(jumps)[-4:] + 1) / len(colors) * (high - low)
     nearest = np.abs(at[:, np.newaxis] - key["levels"]).min(axis=1)
     assert nearest.max() < 2 * (high - low) / len(colors)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "options", "lies"),
+    [
+        (chart(90, 40), {}, True),
+        (chart(40, 40), {}, False),
+        (chart(90, 40), {"key": False}, False),
+        (chart(90, 40), {"view": "above"}, False),
+        (chart(90, 40, name="elevation"), {}, True),
+    ],
+)
+def test_the_bar_of_a_wide_map_lies_below_it(mesh, options, lies):
+    look = vizlight.look(mesh, size=SIZE, **options)
+    _, steps = look._picture()
+    assert any(step.keywords.get("lying") for step in steps) == lies
+    assert (look.wishes.room[0] == SIZE[0]) == (lies or "key" in options)
+
+
+def test_the_disc_of_a_wide_map_stands_beside_it():
+    mesh = chart(90, 40)
+    mesh["wind"] = np.full((mesh.n_points, 3), (1.0, 2.0, 0.0))
+    look = vizlight.look(mesh, "direction", size=SIZE)
+    assert look.wishes.room[0] < SIZE[0]
+
+
+def test_contours_of_a_relief_are_thin_and_its_colours_have_no_classes():
+    look = vizlight.look(chart(60, 40, name="elevation"), size=SIZE)
+    lines, (key,) = look.drawing.layers[1], look.drawing.keys
+    assert lines.keywords["line_width"] < 1.5
+    assert "levels" not in key
+    assert re.search(r"; lines every [\d.]+$", key["title"])
 
 
 def test_pressure_of_air_is_read_in_hectopascals():
@@ -103,11 +136,13 @@ def test_pressure_of_air_is_read_in_hectopascals():
     meaning.attach(mesh, said)
     look = vizlight.look(mesh, size=SIZE)
     (key,) = look.drawing.keys
-    low, high = mesh.get_data_range("air_pressure")
-    np.testing.assert_allclose(key["clim"], (low / 100, high / 100))
+    low, high = np.divide(mesh.get_data_range("air_pressure"), 100)
+    step = np.diff(key["levels"]).min()
+    assert key["clim"][0] <= low < key["clim"][0] + step
+    assert key["clim"][1] - step < high <= key["clim"][1]
     assert re.fullmatch(r"air_pressure \(hPa\); lines every \d hPa", key["title"])
     levels = look.drawing.layers[2].mesh.arguments[0].arguments[2]
-    np.testing.assert_allclose(levels, 100 * np.array(key["levels"]))
+    assert set(np.divide(levels, 100)) <= set(key["levels"])
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.mp4"])

@@ -244,6 +244,7 @@ class Component:
         question: Question | None = None,
         size: float = 0.15,
         color: ColorLike | None = None,
+        lying: bool = False,
         **options: Given,
     ) -> pv.PolyData:
         """Draw the key of the light, with its words, in a margin beside the data.
@@ -264,6 +265,9 @@ class Component:
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
         color : colour, optional
             Colour of the words. Default: black on a light background, white on a dark one.
+        lying : bool, default: False
+            Whether a bar lies below the data, which suits wide maps, as long as there is no other
+            key.
         **options
             Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim, levels,
             title.
@@ -292,11 +296,17 @@ class Component:
             options = own | options
         asked: Keywords = {"question": question}
         made = key(scene, **(asked | options))
-        self.show_key(made, size=size, color=color)
+        self.show_key(made, size=size, color=color, lying=lying)
         return made
 
     def show_key(
-        self, mesh: pv.PolyData, /, *, size: float = 0.15, color: ColorLike | None = None
+        self,
+        mesh: pv.PolyData,
+        /,
+        *,
+        size: float = 0.15,
+        color: ColorLike | None = None,
+        lying: bool = False,
     ) -> None:
         """Draw a key that was made by :func:`vizlight.presets.key` in the margin.
 
@@ -308,6 +318,8 @@ class Component:
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
         color : colour, optional
             Colour of the words of the first key, as for :meth:`add_key`.
+        lying : bool, default: False
+            As for :meth:`add_key`.
 
         Raises
         ------
@@ -321,13 +333,17 @@ class Component:
         if not isinstance(mesh, pv.PolyData) or WORDS not in mesh.field_data:
             expected = "a mesh that vizlight.presets.key returned"
             raise TypeError(_check.message("mesh", expected, _check.describe(mesh)))
+        lying = _check.boolean("lying", lying)
+        if lying and len(mesh.field_data[WORDS]) == 1:
+            expected = "False for a key that is a disc"
+            raise ValueError(_check.message("lying", expected, lying, "take the key of a bar"))
         renderer = plotter.renderer
         if _address(renderer) not in self._margins:
             ink = _check.color("color", color)
             if ink is None:
                 ink = ink_on(plotter.background_color)
             self._margins[_address(renderer)] = Margin(renderer, ink)
-        self._margins[_address(renderer)].add(mesh, size)
+        self._margins[_address(renderer)].add(mesh, size, lying=lying)
 
     def _first_light(
         self, plotter: pv.BasePlotter, question: Question | None

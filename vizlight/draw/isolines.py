@@ -27,9 +27,9 @@ __all__ = ["isolines"]
 GAP, APART, FAR = 0.35, 4.0, 14.0
 #: Largest length of the arc below a number, in lengths of its chord: where a line is as straight.
 STRAIGHT = 1.06
-#: Length of lines that count as long, and distance between lines, in heights of letters; share of
-#: the length of all in long ones, from which on a field is smooth in its picture.
-LONG, SPARSE, SMOOTH = 6.0, 1.3, 0.75
+#: Length of lines that count as long, in heights of letters, and share of the length of all in long
+#: ones from which on a field is smooth in its picture.
+LONG, SMOOTH = 6.0, 0.75
 #: Places along a line at which a number may stand.
 PLACES = 60
 #: Length of the rest of a line from which on it has a number too, in heights of letters.
@@ -216,18 +216,22 @@ def _pieces(mesh: pv.DataSet, name: str, levels: Array) -> tuple[list[Array], li
     return list(pieces), [float(level) for level in nearest]
 
 
-def are_smooth(mesh: pv.DataSet, name: str, levels: Sequence[float], letters: float) -> bool:
+def are_smooth(
+    mesh: pv.DataSet, name: str, levels: Sequence[float], letters: float, *, sparse: float
+) -> bool:
     """Return whether isolines are few, long and apart: a field is smooth in its picture.
 
     Parameters
     ----------
     mesh, name, levels, letters
         As for :func:`isolines`.
+    sparse : float
+        Least distance between lines, in heights of letters.
     """
     pieces, _ = _pieces(mesh, name, np.asarray(levels, dtype=np.float64))
     lengths = np.array([_length(piece) for piece in pieces])
     x, y, _ = mesh.bounds_size
-    is_apart = x * y > SPARSE * letters * lengths.sum()
+    is_apart = x * y > sparse * letters * lengths.sum()
     return bool(is_apart and lengths[lengths > LONG * letters].sum() > SMOOTH * lengths.sum() > 0)
 
 

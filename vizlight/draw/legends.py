@@ -36,6 +36,8 @@ MARGIN, LETTERS = 0.025, 0.032
 #: Width of a bar as a share of a disc, least height of a single one as a share of its strip, and
 #: most numbers for which a bar is made longer.
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
+#: Height of a bar that lies, in letters, and most numbers below it.
+BAR_HIGH, MOST_LYING = 0.8, 9
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
 #: height of its band in letters of keys.
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
@@ -135,7 +137,8 @@ def name_no_data(bar: vtkScalarBarActor) -> None:
 class Margin:
     """Title above the data, and keys in a strip beside them, on the ground of the picture.
 
-    The strip is at the right of a picture that is wider than tall, else below. The renderer of the
+    The strip is at the right of a picture that is wider than tall, else below; a bar that lies is
+    below. The renderer of the
     data gives up these parts of its viewport, so that nothing is drawn over the data.
 
     Parameters
@@ -162,9 +165,11 @@ class Margin:
         # The renderer holds the observer, and that the margin. VTK's stubs know no names of events.
         renderer.AddObserver("StartEvent", lambda caller, _: self.place(caller))  # type: ignore[arg-type]
 
-    def add(self, mesh: pv.PolyData, size: float) -> None:
-        """Add a key below the others."""
-        self._keys.append(MarginKey(mesh, size, self._ink))
+    def add(self, mesh: pv.PolyData, size: float, *, lying: bool) -> None:
+        """Add a key below the others; a bar lies below the data as long as it is the only key."""
+        self._keys.append(MarginKey(mesh, size, self._ink, lying=lying))
+        for key in self._keys:
+            key.lies = lying and len(self._keys) == 1
         for part in self._keys[-1].props:
             self._strip.AddViewProp(part)
         self._pixels = (0, 0)
@@ -180,8 +185,9 @@ class Margin:
         if (width, height) != self._pixels:
             self._pixels = (width, height)
             share_x, share_y = data_share(
-                (width, height), max(key.size for key in self._keys), titled=bool(title)
-            )
+                (width, height), max(key.size for key in self._keys), titled=bool(title),
+                lying=self._keys[0].lies,
+            )  # fmt: skip
             head = top - bool(title) * band_share((width, height)) * (top - bottom)
             split = left + share_x * (right - left), head - share_y * (top - bottom)
             renderer.SetViewport(left, split[1], split[0], head)
@@ -191,22 +197,41 @@ class Margin:
             self._band.SetViewport(left, head, right, top)
             self._band.SetDraw(bool(title))
             room = (strip[2] - strip[0]) * wide, (strip[3] - strip[1]) * high
-            if beside and len(self._keys) == 1 and self._keys[0].is_bar:
+            if self._keys[0].lies:
+                self._split = split[1]
+            elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
                 self._beside(room, min(width, height), _box_of(renderer, data=True)[[1, 3]])
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
+        if self._keys[0].lies:
+            self._below(renderer, min(width, height))
+
+    def _below(self, renderer: vtkRenderer, short: int) -> None:
+        """Put a bar below the data, in the ground that a map leaves there too."""
+        left, low, right, _ = _box_of(renderer, data=False)
+        wide, high = renderer.GetRenderWindow().GetSize()
+        gap = MARGIN * short
+        upper = self._split + max(low - gap, 0.0) / high if _is_map(renderer) else self._split
+        x, bottom, end, _ = self._strip.GetViewport()
+        self._strip.SetViewport(x, bottom, end, upper)
+        if _is_map(renderer):
+            left, _, right, _ = _box_of(renderer, data=True)
+        left, right = max(left, gap), min(right, (end - x) * wide - gap)
+        if right - left < LEAST_BAR * (end - x) * wide:
+            left, right = 0.2 * (end - x) * wide, 0.8 * (end - x) * wide
+        self._keys[0].lay((left, right), (upper - bottom) * high, LETTERS * short)
 
     def _entitle(self, renderer: vtkRenderer, title: str, size: tuple[int, int]) -> None:
         """Put the title into its band, or nearer to a map that leaves room below the band."""
         short = min(size)
         letters, gap = TITLE_SIZE * LETTERS * short, 2 * MARGIN * short
         upper = float(renderer.GetSize()[1])
-        if renderer.GetActiveCamera().GetParallelProjection():
+        if _is_map(renderer):
             # Above the corner of a map.
             left, upper = _box_of(renderer, data=False)[[0, 3]]
             gap = max(float(_box_of(renderer, data=True)[0]), left, MARGIN * short)
-        lowered = bool(renderer.GetSize()[1] - upper > 2.2 * letters)
+        lowered = bool(renderer.GetSize()[1] - upper > 1.9 * letters)
         room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
         scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
         lines = textwrap.wrap(title, max(int(room / scale), 1))
@@ -257,6 +282,11 @@ class Margin:
             place += box[axis] + gap
 
 
+def _is_map(renderer: vtkRenderer) -> bool:
+    """Return whether the projection is parallel, as that of maps."""
+    return bool(renderer.GetActiveCamera().GetParallelProjection())
+
+
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
     """Return left, low, right and top, in pixels of a renderer, of what it draws.
 
@@ -292,25 +322,25 @@ class MarginKey:
         Width of a disc, as a share of the shorter side of the picture.
     ink : (r, g, b)
         Colour of the words.
+    lying : bool
+        Whether it is a bar that lies, where there is no other key.
     """
 
-    def __init__(self, mesh: pv.PolyData, size: float, ink: Color) -> None:
-        self.size = size
+    def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
+        self.size, self.lies = size, lying
         self._mesh = mesh.copy()
         self._flat = np.asarray(mesh.points, dtype=np.float64)
         #: What stands above the data, and above the key: its unit, or all where there are several.
-        self.title, self._unit = parted(_first(mesh, TITLE))
+        self._title, self._unit = parted(_first(mesh, TITLE))
+        self._whole = written(_first(mesh, TITLE))
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
-        self._marks = _marks(mesh, words)
+        self._marks = _marks(mesh, words, MOST_LYING if lying else FEW)
         ends = mesh.field_data.get(RANGE)
         low, high = (0.0, 1.0) if ends is None else (float(end) for end in ends)
         self._zero = -low / ((high - low) or 1.0)
         #: Words of a disc, which stand below it.
         self._below = "" if self._marks else words[0]
-        if self._marks:
-            # A bar stands: its length runs upward.
-            self._flat = self._flat[:, [1, 0, 2]] * (1, 1, 1)
         self._lines: list[str] = []
         mapper, in_pixels = vtkPolyDataMapper2D(), vtkCoordinate()
         in_pixels.SetCoordinateSystemToViewport()
@@ -324,11 +354,12 @@ class MarginKey:
         self._heading = _text("", ink)
         self._heading.GetTextProperty().SetLineSpacing(1.3)
         self._labels = [_text(word, ink) for _, word in self._marks]
-        for label in self._labels:
-            style = label.GetTextProperty()
-            style.SetJustificationToLeft()
-            style.SetVerticalJustificationToCentered()
         self.props = [picture, self._heading, *self._labels]
+
+    @property
+    def title(self) -> str:
+        """Title above the data, with the unit where that has no place above the key."""
+        return self._whole if self.lies else self._title
 
     @property
     def is_bar(self) -> bool:
@@ -353,7 +384,7 @@ class MarginKey:
         """
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        head = self._unit if alone else f"{self.title} ({self._unit})" * bool(self.title)
+        head = self._unit if alone else f"{self._title} ({self._unit})" * bool(self._title)
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
@@ -385,15 +416,44 @@ class MarginKey:
         # The title stands above a bar, whose numbers stand at its right.
         low, left = y - box[1] / 2 + letters / 2, x - box[0] / 2
         bar = 2 * BAR_WIDE * self._half
-        flat = self._flat * (bar / np.ptp(self._flat[:, 0]), tall / 2, 0)
+        # A bar stands: its length runs upward.
+        flat = self._flat[:, [1, 0, 2]] * (bar / np.ptp(self._flat[:, 1]), tall / 2, 0)
         self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
         most = tall / (APART * letters) + 1
         shown = _thinned([share for share, _ in self._marks], self._zero, most)
         for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+            label.GetTextProperty().SetJustificationToLeft()
+            label.GetTextProperty().SetVerticalJustificationToCentered()
             label.SetVisibility(visible)
             label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
         self._heading.GetTextProperty().SetJustificationToLeft()
         self._heading.SetPosition(left, y + box[1] / 2 - words)
+
+    def lay(self, columns: tuple[float, float], upper: float, letters: float) -> None:
+        """Lay a bar between two columns, its numbers below it.
+
+        Parameters
+        ----------
+        columns : (float, float)
+            Left and right end of the bar.
+        upper : float
+            Row of its upper side.
+        letters : float
+            Height of letters.
+        """
+        (left, right), high = columns, BAR_HIGH * letters
+        self._heading.SetInput("")
+        flat = self._flat * ((right - left) / 2, high / np.ptp(self._flat[:, 1]), 0)
+        self._move(flat + np.array([(left + right) / 2, upper - high / 2, 0]))
+        widest = LETTER * letters * max(len(word) for _, word in self._marks)
+        most = (right - left) / (widest + letters) + 1
+        shown = _thinned([share for share, _ in self._marks], self._zero, most)
+        for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+            label.GetTextProperty().SetFontSize(max(round(letters), 8))
+            label.GetTextProperty().SetJustificationToCentered()
+            label.GetTextProperty().SetVerticalJustificationToTop()
+            label.SetVisibility(visible)
+            label.SetPosition(left + share * (right - left), upper - high - 0.3 * letters)
 
     def _move(self, places: Array) -> None:
         moved = vtkPoints()
@@ -407,7 +467,9 @@ def band_share(size: tuple[int, int]) -> float:
     return BAND * LETTERS * min(size) / size[1]
 
 
-def data_share(size: tuple[int, int], key: float, *, titled: bool = True) -> tuple[float, float]:
+def data_share(
+    size: tuple[int, int], key: float, *, titled: bool = True, lying: bool = False
+) -> tuple[float, float]:
     """Return the shares of the width and of the height of a picture that the margin leaves.
 
     Parameters
@@ -418,12 +480,16 @@ def data_share(size: tuple[int, int], key: float, *, titled: bool = True) -> tup
         Width of a key, as a share of the shorter side.
     titled : bool, default: True
         Whether there is a title above the data.
+    lying : bool, default: False
+        Whether a single bar lies below the data.
     """
     width, height = size
+    tall = 1 - titled * band_share(size)
+    if lying:
+        return 1.0, tall - (BAR_HIGH + 1.5) * LETTERS * min(size) / height
     strip = (key + 2 * MARGIN) * min(width, height)
     # Numbers of a bar need as much room as the key.
     strip = min(0.95 * strip, 0.5 * max(width, height))
-    tall = 1 - titled * band_share(size)
     return (1 - strip / width, tall) if width >= height else (1.0, tall - 1.7 * strip / height)
 
 
@@ -452,7 +518,7 @@ def _first(mesh: pv.PolyData, name: str) -> str:
     return str(mesh.field_data[name][0]) if name in mesh.field_data else ""
 
 
-def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
+def _marks(mesh: pv.PolyData, words: list[str], most: int) -> list[tuple[float, str]]:
     """Return the words along a bar with their shares of its height; none of a disc."""
     if len(words) == 1:
         return []
@@ -462,7 +528,7 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     if RANGE not in mesh.field_data:
         return [(0.0, words[0]), (1.0, words[-1])]
     low, high = (float(value) for value in mesh.field_data[RANGE])
-    ticks = even_numbers(low, high)
+    ticks = even_numbers(low, high, most)
     if LEVELS in mesh.field_data:
         levels = [float(level) for level in mesh.field_data[LEVELS]]
         ticks = list(zip(levels, numerals_of(levels), strict=True))

@@ -262,7 +262,9 @@ class Look:
             for key in keys:
                 if key.get("question") == "value":
                     # A bar has the colours of the map, in even light.
-                    steps.append(_key_step(plotter, key | {"scene": even_light(drawing.camera)}))
+                    even = key | {"scene": even_light(drawing.camera)}
+                    lying = {"lying": True} if wishes.wide else {}
+                    steps.append(_key_step(plotter, even | lying))
                 elif not near:
                     # The key of a lamp that stands somewhere differs from place to place.
                     steps.append(_key_step(plotter, key))
@@ -401,7 +403,9 @@ def decide(data: object, wishes: Wishes) -> Look:
             look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
-        return _decided(*_chosen(step, contents, wishes), notes)
+        rule, case = _chosen(step, contents, wishes)
+        wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
+        return _decided(rule, wide, notes)
     own = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
     if wishes.array is not None and not any(one.array for one in own):
         own[0] = wishes  # whose error says what is there
@@ -422,13 +426,32 @@ def decide(data: object, wishes: Wishes) -> Look:
     return replace(looks[0], reason=reason, others=(), wishes=wishes, drawing=drawing)
 
 
-def _decided(rule: Rule, case: Case, notes: Sequence[str]) -> Look:
-    """Return the look of one mesh: the first that a reader can read."""
-    look = _look_of(rule, case, rule.recipe(case), notes)
-    while (doubt := look.drawing.doubt) is not None and (why := _unread(look, doubt.figures)):
-        notes = [*notes, why]
-        look = _look_of(rule, case, doubt.instead(), notes)
-    return look
+def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> Look:
+    """Return the look of one mesh: the first that a reader can read.
+
+    Parameters
+    ----------
+    rule, case
+        What is drawn.
+    notes : sequence of str
+        What a reader should know.
+    unread : int
+        Number of drawings that are known to be unreadable.
+    """
+    drawing = rule.recipe(case)
+    for _ in range(unread):
+        assert drawing.doubt is not None
+        drawing = drawing.doubt.instead()
+    while True:
+        if case.wishes.wide and [key.get("question") for key in drawing.keys] != ["value"]:
+            # A disc has no room below a map.
+            narrow = replace(case, wishes=replace(case.wishes, wide=False))
+            return _decided(rule, narrow, notes, unread)
+        look = _look_of(rule, case, drawing, notes)
+        doubt = drawing.doubt
+        if doubt is None or not (why := _unread(look, doubt.figures)):
+            return look
+        notes, unread, drawing = [*notes, why], unread + 1, doubt.instead()
 
 
 def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> Look:

@@ -10,7 +10,6 @@ from vizlight import _check
 from vizlight.draw import isolines as iso
 from vizlight.draw import legends
 from vizlight.draw.cameras import MARGIN
-from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning
 
@@ -31,6 +30,8 @@ COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
 #: more are too dense; and their letters as a share of those of the frame.
 MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
+#: Least distance between isolines, in heights of their letters.
+SPARSE = 1.3
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -48,10 +49,7 @@ def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
 
 def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     """Return the height of letters in the unit of a map, by which they are as large as in keys."""
-    share = (1.0, 1.0)
-    if wishes.picture.get("key", True):
-        share = legends.data_share(wishes.size, KEY_SIZE)
-    room = np.array(wishes.size) * share / MARGIN
+    room = np.array(wishes.room) / MARGIN
     pixels = legends.LETTERS * min(wishes.size)
     sides: Array = np.asarray(mesh.bounds_size[:2], dtype=np.float64)
     if abs(up[0]) > abs(up[1]):
@@ -63,9 +61,15 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
 
 
 def isolines(
-    mesh: Step, array: Named, ends: tuple[float, float], letters: float, coasts: Step | None
-) -> tuple[Step, list[float]] | None:
-    """Return the step that makes the isolines of a map, and their levels as they are written.
+    mesh: Step,
+    array: Named,
+    ends: tuple[float, float],
+    letters: float,
+    coasts: Step | None,
+    *,
+    sparse: float = SPARSE,
+) -> tuple[Step, list[float], float] | None:
+    """Return the step that makes the isolines of a map, their levels as written, and their unit.
 
     None where the field is not smooth, as few lines tell.
 
@@ -81,6 +85,8 @@ def isolines(
         Height of letters of the frame, in the unit of the map.
     coasts : Step, optional
         Step of lines of which the numbers keep clear.
+    sparse : float
+        Least distance between lines, in heights of their letters.
     """
     if mesh.run().n_points > MOST_POINTS:
         return None
@@ -89,7 +95,8 @@ def isolines(
     shown: list[float] = []
     for most in LEVELS:
         levels = legends.even_levels(ends[0] / factor, ends[1] / factor, most)
-        if not iso.are_smooth(mesh.run(), array.name, [factor * level for level in levels], size):
+        places = [factor * level for level in levels]
+        if not iso.are_smooth(mesh.run(), array.name, places, size, sparse=sparse):
             break
         shown = levels
     if not shown:
@@ -99,7 +106,7 @@ def isolines(
         keywords["clear_of"] = coasts
     levels = [float(f"{factor * level:.12g}") for level in shown]
     name = "vizlight.cartography.isolines"
-    return Step("isolines", name, mesh, array.name, levels, **keywords), shown
+    return Step("isolines", name, mesh, array.name, levels, **keywords), shown, factor
 
 
 def shore() -> Step:

@@ -116,6 +116,8 @@ class Wishes:
         Largest error between points.
     frame : Step, optional
         Step of a camera that several meshes share.
+    wide : bool
+        Whether a map is so wide that its key lies below it.
     source : sequence of str
         File, and options of the command that shows it alike, which a page copies.
     """
@@ -133,6 +135,7 @@ class Wishes:
     surface: bool = True
     refine: float | None = None
     frame: Step | None = None
+    wide: bool = False
     source: Sequence[str] = ()
 
     @property
@@ -187,11 +190,19 @@ class Wishes:
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
-        share = data_share(self.size, KEY_SIZE) if self.picture.get("key", True) else (1.0, 1.0)
-        aspect = round(self.size[0] * share[0] / (self.size[1] * share[1]), 4)
+        width, height = self.room
+        aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
         step.note = eye.words if self.view is None else ""
         return step
+
+    @property
+    def room(self) -> tuple[float, float]:
+        """Width and height of the place for data in the picture, in pixels."""
+        share = (1.0, 1.0)
+        if self.picture.get("key", True):
+            share = data_share(self.size, KEY_SIZE, lying=self.wide)
+        return self.size[0] * share[0], self.size[1] * share[1]
 
     def fixed_camera(self) -> Step | None:
         """Return the step that sets a camera which was given, None where none was."""

@@ -53,6 +53,8 @@ MOST_BORDERS, SEAM = 0.3, 1e-6
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
 
+#: Width over height of a map from which a key takes less room below it, in that of the picture.
+WIDE = 1.08
 #: Questions whose pictures of maps have north up, whatever their shape is.
 NORTH_UP = ("relief", "sky")
 
@@ -241,11 +243,29 @@ class Case:
     @cached_property
     def frame(self) -> Step | None:
         """Step that makes what stands around a map, None for what is none or is seen at a slant."""
+        return map_parts.frame(self.data, self.wishes, self._up) if self._is_above else None
+
+    @property
+    def _is_above(self) -> bool:
+        """Whether a map fills the picture from above."""
         wishes = self.wishes
-        if self.contents.flat_axis != 2 or wishes.view is not None or wishes.frame is not None:
-            return None
-        up = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
-        return map_parts.frame(self.data, wishes, up)
+        return self.contents.flat_axis == 2 and wishes.view is None and wishes.frame is None
+
+    @property
+    def _up(self) -> tuple[float, float]:
+        """Direction on a map, east and north, that points up in the picture."""
+        x, y = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
+        return x, y
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether it is a map so wide that it becomes larger with its key below it."""
+        wide, tall = self.wishes.size
+        if not self._is_above or not self.wishes.picture.get("key", True) or wide < tall:
+            return False
+        x, y, _ = self.data.run().bounds_size
+        right, up = np.abs(self._up)[::-1], np.abs(self._up)
+        return bool(right @ (x, y) > WIDE * wide / tall * (up @ (x, y)))
 
     @cached_property
     def on_globe(self) -> bool:

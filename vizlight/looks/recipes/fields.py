@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.draw.legends import data_share
-from vizlight.draw.render import KEY_SIZE
 from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
@@ -205,9 +203,7 @@ def _head_width(case: Case, strokes: Step, camera: Step, between: tuple[float, f
 def pixel_of(case: Case, camera: Step) -> float:
     """Return the size of a pixel at the focus of a camera, in the unit of the mesh."""
     eye: pv.Camera = camera.run()
-    key = case.wishes.picture.get("key", True)
-    share = data_share(case.wishes.size, KEY_SIZE) if key else (1.0, 1.0)
-    return float(footprint(eye, np.array([eye.focal_point]), case.wishes.size[1] * share[1])[0])
+    return float(footprint(eye, np.array([eye.focal_point]), case.wishes.room[1])[0])
 
 
 def turn_of(mesh: pv.DataSet, name: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -27,8 +28,13 @@ BAND = 0.5
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
 UNDER_STROKES = "#9a4f1f"
-#: Colour of isolines and their numbers, which is seen on all colours of bands.
-INK = "#1a1a1a"
+#: Colour of isolines and their numbers, which is seen on all colours of bands, and on those of the
+#: ground, where lines are brown on maps.
+INK, INK_ON_RELIEF = "#1a1a1a", "#6f4f2f"
+#: Least distance between isolines of heights, in heights of their letters.
+SPARSE_ON_RELIEF = 0.6
+#: Most isolines between which colours change too.
+FEW_LINES = 9
 
 
 def furnished(case: Case, drawing: Drawing) -> Drawing:
@@ -54,38 +60,66 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
 
 
 def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step | None) -> Drawing:
-    """Return the drawing of a smooth field that nothing lights with isolines, in bands of colours.
+    """Return the drawing of a smooth field with isolines, in bands of colours if nothing lights it.
 
     Other drawings are returned as they are.
     """
-    array, given = case.array, case.wishes.colors.get("cmap")
-    is_field = array is not None and array.role == "values" and not array.of_cells
-    is_field = is_field and case.question == "none" and case.contents.dimension == 2
-    if case.frame is None or array is None or not is_field:
+    array, cmap = case.array, case.wishes.colors.get("cmap")
+    if case.frame is None or array is None or array.of_cells or case.contents.dimension != 2:
+        return drawing
+    is_relief = case.question == "relief" and case.wishes.light.get("lit", True)
+    if not is_relief and (case.question != "none" or array.role != "values"):
         return drawing
     size = case.frame.keywords["letters"]
     assert isinstance(size, float)
-    ends = case.wishes.colors.get("clim") or range_of(case.data.run(), array.name)
-    found = map_parts.isolines(case.data, array, ends, size, coasts)
-    if found is None:
+    clim = case.wishes.colors.get("clim")
+    ends = clim or range_of(case.data.run(), array.name)
+    # Lines of a relief are as fine as its ground.
+    sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
+    contoured = map_parts.isolines(case.data, array, ends, size, coasts, **sparse)
+    if contoured is None:
         return drawing
-    lines, shown = found
-    inks: Keywords = {"scalars": None, "color": INK}
-    thin = {"line_width": round(case.width / 1.5, 1), "halo": False}
+    lines, levels, factor = contoured
+    inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
+    thin = {"line_width": round(case.width / (2.4 if is_relief else 1.5), 1), "halo": False}
     own = [
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
         for name, keywords in (("lines", thin), ("numbers", {}))
         if lines.run()[name].n_points
     ]
     first, *others = drawing.layers
-    keys = list(drawing.keys)
-    if given is None or isinstance(given, str):
-        names = {} if given is None else {"cmap": given}
-        table = Step("", "vizlight.maps.bands", lines.arguments[2], ends, *names.values())
+    keys = [
+        key | {"title": f"{key['title']}{_every(key['title'], levels)}"} for key in drawing.keys
+    ]
+    if not is_relief and (cmap is None or isinstance(cmap, str)):
+        shown = ends[0] / factor, ends[1] / factor
+        edges = _classes(levels, shown, rounded=clim is None)
+        first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
+        table = Step("", "vizlight.maps.bands", inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
-        keys = [key | {"cmap": table, "levels": shown} for key in keys]
-    keys = [key | {"title": f"{key['title']}{_every(key['title'], shown)}"} for key in keys]
+        of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
+        keys = [key | of_bar for key in keys]
     return replace(drawing, layers=[first, *own, *others], keys=keys)
+
+
+def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: bool) -> list[float]:
+    """Return the values at which the classes of colours between isolines begin and end.
+
+    Parameters
+    ----------
+    levels : sequence of float
+        Levels of the isolines, in even steps; where they are few, classes end halfway too.
+    ends : (float, float)
+        Ends of the values.
+    rounded : bool
+        Whether the first and the last class are as wide as the others.
+    """
+    if len(levels) < 2:
+        return [ends[0], *levels, ends[1]]
+    step = (levels[1] - levels[0]) / (2 if len(levels) <= FEW_LINES else 1)
+    first, last = math.floor(ends[0] / step + 1e-9), math.ceil(ends[1] / step - 1e-9)
+    edges = [float(f"{i * step:.12g}") for i in range(first, last + 1)]
+    return edges if rounded else [ends[0], *edges[1:-1], ends[1]]
 
 
 def _without_limits(keywords: Keywords) -> Keywords:
