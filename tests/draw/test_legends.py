@@ -206,6 +206,7 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     assert np.ptp(red[:, 0]) < letters
     # A second key stands at the right, with the first.
     plotter.vizlight.add_key(presets.shape(), **bar)
+    plotter.render()
     seen = plotter.screenshot(return_img=True).astype(int)
     red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
     assert red[:, 1].min() > size[0] * legends.data_share(size, 0.15)[0]
