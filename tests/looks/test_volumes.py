@@ -46,3 +46,20 @@ def test_a_rough_isosurface_that_cannot_be_read_gives_way_to_slices(monkeypatch)
     assert vizlight.look(grid, "shape", array="T", size=(300, 200)).shown == "isosurface"
     smooth = vizlight.look(volume(), array="T", size=(300, 200))
     assert (smooth.shown, smooth.notes) == ("isosurface", ())
+
+
+def test_a_volume_stands_in_a_box_with_numbers_but_in_movies():
+    grid = volume()
+    grid["x"] = grid.points[:, 0]
+    for look in (vizlight.look(grid, array="T"), vizlight.look(volume(), "shape")):
+        paths = [layer.mesh.path for layer in look.drawing.layers]
+        assert paths[-2:] == [".outline", "render.box_axes"]
+        # The camera shows the numbers too.
+        eye = look.view
+        axes = look.drawing.layers[-1].mesh.run()
+        right = np.cross(eye.direction, eye.up)
+        depth = (axes.points - eye.position) @ eye.direction
+        across = np.abs((axes.points - eye.position) @ right) / depth
+        assert across.max() < np.tan(np.radians(eye.view_angle / 2)) * 1.4
+        turned = look.steps("turn.gif")[0]
+        assert not any("render.box_axes" in str(step.arguments) for step in turned)

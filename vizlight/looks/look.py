@@ -195,7 +195,7 @@ class Look:
                 expected = "a picture or a page of a map on which nothing moves"
                 remedy = "name a file that ends in .png, .svg or .html"
                 raise ValueError(message("path", expected, repr(str(path)), remedy))
-            shown = self if moving is None else replace(self, drawing=moving)
+            shown = replace(self, drawing=moving or drawing.of_turns)
             plotter, steps = shown._picture()
             way = "movie.orbit" if moving is None else "movie.travel"
             return [[*steps, Step("", way, plotter, path)]]

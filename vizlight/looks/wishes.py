@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight._words import message
 from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
-from vizlight.draw.legends import data_share
+from vizlight.draw.legends import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, records
@@ -46,6 +46,8 @@ VIEWS: dict[str, Vector] = {
 SUN = (315.0, 40.0)
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
+#: Height of letters of numbers around a box, in those of keys.
+SMALL = 0.85
 #: Bounding box that shows where a camera of n-space looks.
 BOX = (-1, 1, -1, 1, -1, 1)
 
@@ -171,8 +173,8 @@ class Wishes:
         view = Step("", "vizlight.View", direction=(*toward, *(0.0,) * (n - len(toward))))
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
-    def camera(self, mesh: object, eye: Eye) -> Step:
-        """Return the step that sets the camera on a mesh."""
+    def camera(self, mesh: object, eye: Eye, *, boxed: bool = False) -> Step:
+        """Return the step that sets the camera on a mesh, with room for numbers around a box."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
@@ -193,8 +195,16 @@ class Wishes:
         width, height = self.room
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
+        if boxed:
+            both = Step("", "pyvista.MultiBlock", [mesh, self.box_axes(mesh, step)])
+            step = Step("camera", "render.camera_on", both, toward, **keywords, aspect=aspect)
         step.note = eye.words if self.view is None else ""
         return step
+
+    def box_axes(self, box: object, camera: Step) -> Step:
+        """Return the step that makes the numbers along the edges of a box."""
+        size = round(SMALL * LETTERS * min(self.size), 1)
+        return Step("axes", "render.box_axes", box, camera, round(self.room[1], 1), size=size)
 
     @property
     def room(self) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
+from vizlight.draw.legends import ink_on
 from vizlight.files import FORMATS
 from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents, kinds_of
@@ -163,6 +164,12 @@ class Drawing:
         """Whether all that is drawn is a flat map, or another flat sheet seen face on."""
         return Contents(self.layers[0].mesh.run()).flat_axis is not None
 
+    @property
+    def of_turns(self) -> Drawing:
+        """Drawing for a movie of a turn: without words that face one eye."""
+        kept = [layer for layer in self.layers if layer.mesh.path != "render.box_axes"]
+        return dataclasses.replace(self, layers=kept)
+
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
         if self.kind is None:
@@ -220,16 +227,30 @@ class Case:
             return None
         return Step("", ".outline", self.surface)
 
-    @property
-    def edges(self) -> list[Layer]:
-        """Layers of the borders of the surface, and of its box."""
+    def edges(self, camera: Step) -> list[Layer]:
+        """Return the layers of the borders of the surface, and of its box."""
         layers = []
         if self.borders is not None:
             drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False}
             layers.append(Layer(self.borders, drawn | BESIDE, live=False))
-        if self.box is not None:
-            box: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
-            layers.append(Layer(self.box, box, live=False))
+        return layers if self.box is None else [*layers, *self.boxed(self.box, camera)]
+
+    def boxed(self, box: Step, camera: Step) -> list[Layer]:
+        """Return the layers of a box and of the numbers along its edges.
+
+        Parameters
+        ----------
+        box : Step
+            Step that makes the edges of the box.
+        camera : Step
+            Step of the camera, set by :meth:`camera` of what is in a box.
+        """
+        edges: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
+        layers = [Layer(box, edges, live=False)]
+        if self.wishes.frame is None:
+            axes = self.wishes.box_axes(box, camera)
+            ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
+            layers.append(Layer(axes, ink | BESIDE, live=False))
         return layers
 
     def eye(self, mesh: Step) -> Eye:
@@ -272,8 +293,18 @@ class Case:
         """Whether the mesh lies on the earth as a ball, and is alone in the picture."""
         return self.wishes.frame is None and globes.is_globe(self.contents.mesh)
 
-    def camera(self, mesh: Step, eye: Eye | None = None) -> Step:
-        """Return the step that sets the camera on a mesh, by the options or by what suits it."""
+    def camera(self, mesh: Step, eye: Eye | None = None, *, boxed: bool = False) -> Step:
+        """Return the step that sets the camera on a mesh, by the options or by what suits it.
+
+        Parameters
+        ----------
+        mesh : Step
+            Step of the mesh.
+        eye : Eye, optional
+            From where it is seen.
+        boxed : bool
+            Whether it is a box with numbers along its edges.
+        """
         eye = self.eye(mesh) if eye is None else eye
         if self.frame is not None:
             # There is room for what stands around the map.
@@ -282,8 +313,8 @@ class Case:
             # The ball is seen whole, wherever there are data.
             mesh = map_parts.ball()
         elif self.box is not None:
-            mesh = self.box
-        return self.wishes.camera(mesh, eye)
+            mesh, boxed = self.box, True
+        return self.wishes.camera(mesh, eye, boxed=boxed)
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""

@@ -58,7 +58,7 @@ SPEED = "vizlight.speed"
 SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
 #: Length of strokes in a volume, and length below which streamlines are left out, in these
 #: distances: many are cut short where the field is noise.
-LONG_IN_VOLUME, SHORTEST = 2.5, 4
+LONG_IN_VOLUME, SHORTEST = 5.0, 4
 #: Largest width of those without a sense, and the halo of all.
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
 #: Words of the key for the sense of strokes.
@@ -135,7 +135,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
         words = f"{other.name} in colours, lit along {array.name}"
         keys = [case.bar(other, case.wishes.colors)]
         return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
-    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges]
+    layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
@@ -153,7 +153,7 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     finite = _lengths(mesh.run(), array.name)
     colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=True)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges]
+    layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     bar = _bar(mesh, array.name, colors, "" if strokes is None else SENSE)
@@ -235,7 +235,8 @@ def flow(case: Case) -> Drawing:
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
-    camera = case.camera(on if keywords.get("confined") else mesh)
+    box = Step("box", ".outline", mesh)
+    camera = case.camera(box, case.eye(on if keywords.get("confined") else mesh), boxed=True)
     by_speed = case.wishes.question == "auto" and "surface" not in keywords
     by_speed = by_speed and not _is_even(mesh.run(), array.name)
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
@@ -265,7 +266,7 @@ def flow(case: Case) -> Drawing:
         notes += [
             f"lines shorter than {least}, four times their distance, are left out: {left_out}"
         ]
-    layers = [lines, _hull(mesh)]
+    layers = [lines, *_hull(mesh), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
@@ -338,12 +339,12 @@ def _left_out(lines: Step) -> int:
     return int(lines.run().field_data.get("left_out", [0])[0])
 
 
-def _hull(mesh: Step) -> Layer:
-    """Return the layer of what bounds a volume: the edges of a box, or a faint hull."""
+def _hull(mesh: Step) -> list[Layer]:
+    """Return the layer of a faint hull of a volume, none for a box."""
     if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
-        return Layer(Step("", ".outline", mesh), {"color": "gray", "line_width": 1}, live=False)
+        return []
     hull = Step("hull", ".extract_surface", mesh, algorithm="dataset_surface")
-    return Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)
+    return [Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)]
 
 
 def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | None:

@@ -79,7 +79,7 @@ def values(case: Case) -> Drawing:
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
     return Drawing(
-        [Layer(mesh, shown), *case.edges], camera, scene, lit,
+        [Layer(mesh, shown), *case.edges(camera)], camera, scene, lit,
         f"{array.name} in colours", keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
@@ -98,7 +98,7 @@ def surface(case: Case) -> Drawing:
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
-    layers = [Layer(mesh, drawn), *case.edges]
+    layers = [Layer(mesh, drawn), *case.edges(camera)]
     return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
 

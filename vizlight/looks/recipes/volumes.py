@@ -52,10 +52,12 @@ def isosurface(case: Case) -> Drawing:
     contents = Contents(mesh.run())
     wishes = replace(case.wishes, part=part)
     # The box tells where the isosurface is; one that is much larger would make it small.
+    box = Step("box", ".outline", volume)
     around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
     if around and wishes.view is None and wishes.frame is None:
         eye = eye_around(mesh.run())
-        wishes = replace(wishes, frame=wishes.camera(Step("", ".outline", volume), eye))
+        frame = wishes.camera(box, eye, boxed=not notes)
+        wishes = replace(wishes, frame=frame)
     words = f"isosurface {array.name} = {levels.number(level)}"
     second = _second(case, mesh.run())
     case = replace(case, data=mesh, contents=contents, wishes=wishes)
@@ -71,8 +73,7 @@ def isosurface(case: Case) -> Drawing:
         drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(whole)))
     if notes or not around:
         return drawing
-    box = Layer(Step("", ".outline", volume), {"color": "gray", "line_width": 1}, live=False)
-    return replace(drawing, layers=[*drawing.layers, box])
+    return replace(drawing, layers=[*drawing.layers, *whole.boxed(box, drawing.camera)])
 
 
 def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
@@ -98,13 +99,15 @@ def slices(case: Case, why: str = "") -> Drawing:
     mesh = Step("slices", ".slice_orthogonal", case.data)
     mesh = Step("joined", ".combine", mesh)
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
-    camera = case.camera(mesh)
+    box = Step("box", ".outline", mesh)
+    camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
     colors = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
-    return Drawing([Layer(mesh, shown)], camera, scene, lit, words, [case.bar(array, colors)])
+    layers = [Layer(mesh, shown), *case.boxed(box, camera)]
+    return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)])
 
 
 def _is_scan(case: Case, array: Named) -> bool:
