@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,6 +31,10 @@ def legacy(points, *cells, kind="POLYDATA"):
     rows = [" ".join(str(x) for x in point) for point in points]
     head = ("# vtk DataFile Version 3.0", "hostile", "ASCII", f"DATASET {kind}")
     return text(*head, f"POINTS {len(points)} double", *rows, *cells)
+
+
+#: What rasterio says of elevation models without a place, where it is there.
+NO_DEM = "not recognized as being in a supported file format" * bool(find_spec("rasterio"))
 
 
 def dem(columns, there):
@@ -124,7 +129,9 @@ CASES = {
     "faces.ply": Case(ply(faces=2**31), 2, "1 of 2147483648 rows of 'face'"),
     "past.ply": Case(ply(rows=("0 0 0", "1 0 0", "0 1 0", "3 0 1 9999")), 2, "file: expected"),
     "count.stl": Case(stl(2**32 - 1, 1), 2, DAMAGED),
-    "narrow.dem": Case(dem(5, 5), 2, "5' columns in the header, VTK reads 100 or more"),
+    "narrow.dem": Case(
+        dem(5, 5), 2, NO_DEM or "5' columns in the header, VTK reads 100 or more"
+    ),
     "no-axis.vtk": Case(
         text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET RECTILINEAR_GRID",
              "DIMENSIONS 2 2 2", "X_COORDINATES 2 double", "0 1"),
@@ -170,7 +177,7 @@ CASES = {
     ),
     "whole.vts": Case(structured("0 1 0 1 0 1"), 0, ""),
     "extent.vts": Case(structured("0 1 2147483647 1 0 1"), 2, "its pieces cover [0, 1,"),
-    "cut.dem": Case(dem(100, 60), 2, "its reader was ended by SIGSEGV"),
+    "cut.dem": Case(dem(100, 60), 2, NO_DEM or "its reader was ended by SIGSEGV"),
     "cut.stl": Case(stl(2, 1), 2, DAMAGED),
     "no-end.stl": Case(
         text("solid a" + " " * 80, "facet normal 0 0 1", "outer loop", "vertex 0 0 0",

@@ -395,3 +395,25 @@ def test_tracts_say_in_which_frame_they_are():
     bar = vizlight.look(mesh).drawing.keys[0]["cmap"].run()
     assert bar.annotations == {0.0: "left, right", 1.0: "back, front", 2.0: "down, up"}
     assert meaning.ways(pv.Line()) == ("x", "y", "z")
+
+
+def test_what_an_elevation_model_misses_is_nan(tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    from rasterio import shutil
+    from rasterio.transform import from_origin
+
+    rows = np.arange(600, dtype=np.int16).reshape(20, 30) + 100
+    rows[0, :4] = -32767
+    place = from_origin(500_000, 5_100_000, 30, 30)
+    kind = {"width": 30, "height": 20, "count": 1, "dtype": "int16", "nodata": -32767}
+    with rasterio.open(
+        tmp_path / "a.tif", "w", driver="GTiff", crs="EPSG:26710", transform=place, **kind
+    ) as file:
+        file.write(rows, 1)
+    shutil.copy(tmp_path / "a.tif", tmp_path / "a.dem", driver="USGSDEM")
+    mesh = vizlight.read(tmp_path / "a.dem")
+    heights = np.asarray(mesh["elevation"]).reshape(mesh.dimensions[1::-1])[-20:]
+    # Rows of the mesh run north; the format begins a profile one row lower.
+    assert np.isnan(heights[-1, :4]).all()
+    np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
+    assert str(mesh.field_data["unit"][0]) == "metre"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 import re
 import tempfile
 import threading
@@ -109,6 +109,9 @@ def read(
     if suffix == ".mesh" and geomview.is_mesh(path):
         return geomview.read_mesh(path)
     if suffix == ".dem":
+        if importlib.util.find_spec("rasterio") is not None:
+            # VTK's reader leaves out a row, and says nothing of what is missing.
+            return georeference.read(path)
         _refuse_narrow(path)
     if suffix == ".inp" and _head(path, _INP_HEAD).lstrip().startswith(b"*"):
         # PyVista takes it for the format of AVS.
