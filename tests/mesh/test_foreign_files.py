@@ -400,11 +400,10 @@ def test_tracts_say_in_which_frame_they_are():
 def test_what_an_elevation_model_misses_is_nan(tmp_path):
     rasterio = pytest.importorskip("rasterio")
     from rasterio import shutil
-    from rasterio.transform import from_origin
 
     rows = np.arange(600, dtype=np.int16).reshape(20, 30) + 100
     rows[0, :4] = -32767
-    place = from_origin(500_000, 5_100_000, 30, 30)
+    place = rasterio.Affine(30, 0, 500_000, 0, -30, 5_100_000)
     kind = {"width": 30, "height": 20, "count": 1, "dtype": "int16", "nodata": -32767}
     with rasterio.open(
         tmp_path / "a.tif", "w", driver="GTiff", crs="EPSG:26710", transform=place, **kind
