@@ -37,13 +37,14 @@ def paths(look):
 @pytest.mark.parametrize(
     ("mesh", "options", "parts"),
     [
-        (chart(60, 40), {}, ["coasts", *ISOLINES, "frame"]),
-        (chart(10, 8), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40), {}, ["graticule", "coasts", *ISOLINES, "frame"]),
+        (chart(60, 40, south=-20), {}, ["coasts", *ISOLINES, "frame"]),
+        (chart(10, 8), {}, ["graticule", *ISOLINES, "frame"]),
         (chart(60, 40, unit=""), {}, []),
         (chart(360, 180, -180, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(360, 180, 0, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
-        (chart(60, 40, name="elevation"), {}, ["frame"]),
+        (chart(60, 40, name="elevation"), {}, ["graticule", "frame"]),
         (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
         (chart(60, 40), {"view": "iso"}, ["coasts"]),
     ],
@@ -83,7 +84,7 @@ def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
     look = vizlight.look(chart(60, 40), size=SIZE)
     (key,) = look.drawing.keys
     table = look.drawing.layers[0].keywords["cmap"].run()
-    lines = look.drawing.layers[2].mesh.run()
+    lines = look.drawing.layers[3].mesh.run()
     assert set(np.unique(lines["level"])) <= set(key["levels"])
     step = key["levels"][1] - key["levels"][0]
     assert key["title"] == f"warmth; lines every {step:g}"
@@ -106,7 +107,7 @@ def test_pressure_of_air_is_read_in_hectopascals():
     low, high = mesh.get_data_range("air_pressure")
     np.testing.assert_allclose(key["clim"], (low / 100, high / 100))
     assert re.fullmatch(r"air_pressure \(hPa\); lines every \d hPa", key["title"])
-    levels = look.drawing.layers[2].mesh.arguments[0].arguments[2]
+    levels = look.drawing.layers[3].mesh.arguments[0].arguments[2]
     np.testing.assert_allclose(levels, 100 * np.array(key["levels"]))
 
 

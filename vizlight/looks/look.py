@@ -401,6 +401,7 @@ def decide(data: object, wishes: Wishes) -> Look:
             look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
+        step, contents = look_options.charted(step, contents, wishes)
         return _decided(*_chosen(step, contents, wishes), notes)
     own = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
     if wishes.array is not None and not any(one.array for one in own):

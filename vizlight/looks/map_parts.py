@@ -10,9 +10,10 @@ from vizlight import _check
 from vizlight.draw import isolines as iso
 from vizlight.draw import legends
 from vizlight.draw.cameras import MARGIN
+from vizlight.draw.map_frames import has_bar
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
-from vizlight.mesh import meaning
+from vizlight.mesh import georeference, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Room that a frame takes at the left and below its map, in heights of letters: that of 60°N, and
-#: of a line of words.
-ROOM = (3.2, 1.5)
+#: of a line of words; and that of a bar below them.
+ROOM, BAR = (3.2, 1.5), 1.6
 #: Least extent in degrees of a map with coasts, which are right to some 0.1 degrees.
 COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
@@ -46,6 +47,13 @@ def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
     return step if step.run().n_cells else None
 
 
+def graticule(frame: Step) -> Step | None:
+    """Return the step that makes the meridians and parallels within a frame, None without any."""
+    name = "vizlight.cartography.graticule"
+    step = Step("graticule", name, *frame.arguments, **frame.keywords)
+    return step if step.run().n_cells else None
+
+
 def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     """Return the height of letters in the unit of a map, by which they are as large as in keys."""
     share = (1.0, 1.0)
@@ -57,7 +65,8 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     if abs(up[0]) > abs(up[1]):
         sides = sides[::-1]
     # The data and the room of the frame are to fill the picture together.
-    scale = float(np.max(sides / (room - np.array(ROOM) * pixels)))
+    around = np.array([ROOM[0], ROOM[1] + BAR * has_bar(mesh)])
+    scale = float(np.max(sides / (room - around * pixels)))
     zoom = _check.positive("zoom", wishes.eye.get("zoom", 1.0))
     return float(f"{pixels * scale / zoom:.4g}")
 
@@ -116,7 +125,10 @@ def ball() -> Step:
 
 def coasts(mesh: Step) -> Step | None:
     """Return the step that makes the coasts of a map in degrees, None where they show nothing."""
-    if max(mesh.run().bounds_size[:2]) < COASTS:
+    degrees = max(mesh.run().bounds_size[:2])
+    if not georeference.has_degrees(mesh.run()):
+        degrees *= (meaning.metres(georeference.unit_of(mesh.run())) or 0.0) / georeference.METRES
+    if degrees < COASTS:
         return None
     step = Step("coasts", "vizlight.cartography.coasts", mesh)
     return step if step.run().n_cells else None
