@@ -39,7 +39,7 @@ def paths(look):
     [
         (chart(60, 40), {}, ["graticule", "coasts", *ISOLINES, "frame"]),
         (chart(60, 40, south=-20), {}, ["coasts", *ISOLINES, "frame"]),
-        (chart(10, 8), {}, ["graticule", *ISOLINES, "frame"]),
+        (chart(14, 8), {}, ["graticule", *ISOLINES, "frame"]),
         (chart(60, 40, unit=""), {}, []),
         (chart(360, 180, -180, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(360, 180, 0, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
@@ -109,6 +109,31 @@ def test_pressure_of_air_is_read_in_hectopascals():
     assert re.fullmatch(r"air_pressure \(hPa\); lines every \d hPa", key["title"])
     levels = look.drawing.layers[3].mesh.arguments[0].arguments[2]
     np.testing.assert_allclose(levels, 100 * np.array(key["levels"]))
+
+
+@pytest.mark.parametrize("standard", ["air_pressure_at_sea_level", "air_temperature"])
+def test_highs_and_lows_are_marked_on_maps_of_pressure_alone(standard):
+    mesh = chart(60, 40, name="p")
+    x, y, _ = np.asarray(mesh.points, dtype=float).T
+    mesh["p"] = 1e5 - 2e3 * np.exp(-(np.hypot(x - 10, y - 50) ** 2) / 60)
+    said = meaning.Meaning()
+    said.add_array("p", {"standard_name": standard, "units": "Pa"})
+    meaning.attach(mesh, said)
+    assert paths(vizlight.look(mesh, size=SIZE)).count("[]") == 2 + (standard != "air_temperature")
+
+
+def test_lines_that_are_held_are_those_that_a_script_makes():
+    step = vizlight.look(chart(60, 40), size=SIZE).drawing.layers[3].mesh.arguments[0]
+    again = type(step)("", step.path, *step.arguments, **step.keywords).run()
+    for name in ("lines", "numbers"):
+        np.testing.assert_array_equal(step.run()[name].points, again[name].points)
+
+
+def test_a_map_in_degrees_stays_so_where_planes_or_an_eye_are_in_degrees():
+    for options in ({"view": "above"}, {"clip": [((1, 0, 0), (10, 50, 0))]}):
+        mesh = vizlight.look(chart(60, 40), size=SIZE, **options).mesh
+        assert mesh.field_data["unit"][0] == "degree"
+    assert vizlight.look(chart(60, 40), size=SIZE).mesh.field_data["unit"][0] == "metre"
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.mp4"])

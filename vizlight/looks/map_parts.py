@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +33,10 @@ COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
 #: more are too dense; and their letters as a share of those of the frame.
 MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
+#: Standard names of arrays whose highs and lows are marked.
+WITH_EXTREMES = {
+    "air_pressure_at_sea_level", "air_pressure_at_mean_sea_level", "geopotential_height",
+}  # fmt: skip
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -95,20 +100,34 @@ def isolines(
         return None
     size = float(f"{SMALL * letters:.4g}")
     factor, _ = meaning.usual_unit(mesh.run(), array.name, max(map(abs, ends)))
-    shown: list[float] = []
-    for most in LEVELS:
-        levels = legends.even_levels(ends[0] / factor, ends[1] / factor, most)
-        if not iso.are_smooth(mesh.run(), array.name, [factor * level for level in levels], size):
-            break
-        shown = levels
-    if not shown:
+    choices = [
+        {float(f"{factor * level:.12g}"): level for level in levels}
+        for levels in (
+            legends.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
+        )
+    ]
+    pieces = iso.contoured(mesh.run(), array.name, np.array(sorted({*choices[0], *choices[1]})))
+    smooth = itertools.takewhile(
+        lambda levels: iso.are_smooth(mesh.run(), pieces, levels, size), choices
+    )
+    shown = next(reversed([*smooth]), None)
+    if shown is None:
         return None
-    keywords: Keywords = {"letters": size, "words": legends.numerals_of(shown)}
+    words = legends.numerals_of([*shown.values()])
+    keywords: Keywords = {"letters": size, "words": words}
     if coasts is not None:
         keywords["clear_of"] = coasts
-    levels = [float(f"{factor * level:.12g}") for level in shown]
+    standard = meaning.of(mesh.run()).arrays.get(array.name, {}).get("standard_name", "")
+    unit = factor if standard in WITH_EXTREMES else None
+    if unit is not None:
+        keywords["extremes"] = unit
     name = "vizlight.cartography.isolines"
-    return Step("isolines", name, mesh, array.name, levels, **keywords), shown
+    step = Step("isolines", name, mesh, array.name, [*shown], **keywords)
+    # Its lines are known from the choice of levels.
+    shore = None if coasts is None else coasts.run()
+    text_of = dict(zip(shown, words, strict=True))
+    step.hold(iso.labelled(mesh.run(), array.name, pieces, size, text_of, shore, unit))
+    return step, [*shown.values()]
 
 
 def shore() -> Step:

@@ -80,7 +80,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     thin = {"line_width": round(case.width / 1.5, 1), "halo": False}
     own = [
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
-        for name, keywords in (("lines", thin), ("numbers", {}))
+        for name, keywords in (("lines", thin), ("numbers", {}), ("extremes", {}))
         if lines.run()[name].n_points
     ]
     first, *others = drawing.layers
