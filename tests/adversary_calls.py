@@ -133,6 +133,11 @@ def europe():
     return pv.ImageData(dimensions=(6, 5, 1), spacing=(10, 8, 1), origin=(-10, 30, 0))
 
 
+def charted():
+    """Return a map in metres of a known projection."""
+    return vizlight.cartography.chart(vizlight.cartography.in_degrees(europe()))
+
+
 X, Y = np.linspace(0.0, 1.0, 7), np.linspace(0.0, 1.0, 6)
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -219,6 +224,8 @@ OWN = {
     "filters.key.key": {"scene": presets.shape(), "levels": [0.2, 0.4], "clim": (0.0, 1.0)},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
+    "map_frames.graticule": {"mesh": charted, "letters": 2e5},
+    "charts.chart": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
     "movie.travel": {"path": lambda: Path("movie.png"), "frames": 2, "plotter": with_strokes},
     "maps.heights": {"low": -10.0, "high": 250.0},
     "maps.bands": {"levels": [1.0, 2.0], "limits": (0.0, 3.0)},

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.draw.isolines import are_smooth, isolines
+from vizlight.draw.isolines import are_smooth, contoured, isolines
 
 
 def cone(count=41):
@@ -63,10 +63,10 @@ def test_missing_values_have_no_lines():
 def test_smooth_fields_and_noise():
     grid = cone(81)
     levels = [2.0, 6.0, 10.0, 14.0]
-    assert are_smooth(grid, "r", levels, 0.8, sparse=1.3)
+    assert are_smooth(grid, contoured(grid, "r", np.array(levels)), levels, 0.8, sparse=1.3)
     grid["r"] = grid["r"] + np.random.default_rng(1).normal(scale=3, size=grid.n_points)
-    assert not are_smooth(grid, "r", levels, 0.8, sparse=1.3)
-    assert not are_smooth(grid, "r", [1e6], 0.8, sparse=1.3)
+    assert not are_smooth(grid, contoured(grid, "r", np.array(levels)), levels, 0.8, sparse=1.3)
+    assert not are_smooth(grid, contoured(grid, "r", np.array([1e6])), [1e6], 0.8, sparse=1.3)
 
 
 def test_numbers_keep_clear_of_other_lines():
@@ -91,3 +91,45 @@ def test_long_lines_have_several_numbers_and_other_words():
 def test_an_array_that_is_missing():
     with pytest.raises(ValueError, match="name: expected the name of an array"):
         isolines(cone(), "q", [1.0], letters=1.0)
+
+
+def hills():
+    """Return a sheet of 40 x 40 with a high of 30 at (-10, 0) and a low of -20 at (9, 6)."""
+    grid = cone(81)
+    x, y, _ = np.asarray(grid.points, dtype=float).T
+    grid["h"] = 30 * np.exp(-(np.hypot(x + 10, y) ** 2) / 50)
+    grid["h"] -= 20 * np.exp(-(np.hypot(x - 9, y - 6) ** 2) / 40)
+    return grid
+
+
+def test_highs_and_lows_are_where_values_are_extreme_and_lines_closed():
+    grid = hills()
+    levels = [-15.0, -10.0, -5.0, 5.0, 10.0, 15.0, 20.0, 25.0]
+    made = isolines(grid, "h", levels, letters=0.6, extremes=0.1)
+    marks, lines = made["extremes"], made["lines"]
+    values = np.unique(marks["level"])
+    np.testing.assert_allclose(values, [grid["h"].min(), grid["h"].max()])
+    for value, place in zip(values, [(9, 6), (-10, 0)], strict=True):
+        corners = np.asarray(marks.points)[marks["level"] == value][:, :2]
+        np.testing.assert_allclose((corners.max(axis=0) + corners.min(axis=0)) / 2, place, atol=0.6)
+        # No line runs through the letter or the number.
+        inside = np.all(
+            (lines.points[:, :2] > corners.min(axis=0))
+            & (lines.points[:, :2] < corners.max(axis=0)),
+            axis=1,
+        )
+        assert not inside.any()
+    # 300 and -200 in tenths have three digits and a sign.
+    plain = isolines(grid, "h", levels, letters=0.6, extremes=1.0)["extremes"]
+    assert marks.n_points > plain.n_points
+    assert isolines(grid, "h", levels, letters=0.6)["extremes"].n_points == 0
+
+
+def test_extremes_at_a_side_or_without_a_closed_line_are_not_marked():
+    grid = hills()
+    assert isolines(grid, "h", [100.0], letters=0.6, extremes=1.0)["extremes"].n_points == 0
+    grid["h"] = np.asarray(grid.points, dtype=float)[:, 0]
+    made = isolines(grid, "h", [-10.0, 0.0, 10.0], letters=0.6, extremes=1.0)
+    assert made["extremes"].n_points == 0
+    with pytest.raises(ValueError, match="extremes: expected"):
+        isolines(grid, "h", [1.0], letters=0.6, extremes=0.0)

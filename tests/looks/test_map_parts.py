@@ -36,13 +36,14 @@ def paths(look):
 @pytest.mark.parametrize(
     ("mesh", "options", "parts"),
     [
-        (chart(60, 40), {}, ["coasts", *ISOLINES, "frame"]),
-        (chart(10, 8), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40), {}, ["graticule", "coasts", *ISOLINES, "frame"]),
+        (chart(60, 40, south=-20), {}, ["coasts", *ISOLINES, "frame"]),
+        (chart(14, 8), {}, ["graticule", *ISOLINES, "frame"]),
         (chart(60, 40, unit=""), {}, []),
         (chart(360, 180, -180, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(360, 180, 0, -90, unit=""), {}, ["coasts", *ISOLINES, "frame"]),
         (chart(60, 40, west=-160, south=-40), {}, [*ISOLINES, "frame"]),
-        (chart(60, 40, name="elevation"), {}, [*ISOLINES, "frame"]),
+        (chart(60, 40, name="elevation"), {}, ["graticule", *ISOLINES, "frame"]),
         (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
         (chart(60, 40), {"view": "iso"}, ["coasts"]),
     ],
@@ -82,7 +83,7 @@ def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
     look = vizlight.look(chart(60, 40), size=SIZE)
     (key,) = look.drawing.keys
     table = look.drawing.layers[0].keywords["cmap"].run()
-    lines = look.drawing.layers[2].mesh.run()
+    lines = look.drawing.layers[3].mesh.run()
     assert set(np.unique(lines["level"])) <= set(key["levels"])
     # Of few lines, classes end halfway between them too.
     step = 2 * (key["levels"][1] - key["levels"][0])
@@ -103,7 +104,7 @@ def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
         (chart(40, 40), {}, False),
         (chart(90, 40), {"key": False}, False),
         (chart(90, 40), {"view": "above"}, False),
-        (chart(90, 40, name="elevation"), {}, True),
+        (chart(90, 40, south=-20, name="elevation"), {}, True),
     ],
 )
 def test_the_bar_of_a_wide_map_lies_below_it(mesh, options, lies):
@@ -141,8 +142,33 @@ def test_pressure_of_air_is_read_in_hectopascals():
     assert key["clim"][0] <= low < key["clim"][0] + step
     assert key["clim"][1] - step < high <= key["clim"][1]
     assert re.fullmatch(r"air_pressure \(hPa\); lines every \d hPa", key["title"])
-    levels = look.drawing.layers[2].mesh.arguments[0].arguments[2]
+    levels = look.drawing.layers[3].mesh.arguments[0].arguments[2]
     assert set(np.divide(levels, 100)) <= set(key["levels"])
+
+
+@pytest.mark.parametrize("standard", ["air_pressure_at_sea_level", "air_temperature"])
+def test_highs_and_lows_are_marked_on_maps_of_pressure_alone(standard):
+    mesh = chart(60, 40, name="p")
+    x, y, _ = np.asarray(mesh.points, dtype=float).T
+    mesh["p"] = 1e5 - 2e3 * np.exp(-(np.hypot(x - 10, y - 50) ** 2) / 60)
+    said = meaning.Meaning()
+    said.add_array("p", {"standard_name": standard, "units": "Pa"})
+    meaning.attach(mesh, said)
+    assert paths(vizlight.look(mesh, size=SIZE)).count("[]") == 2 + (standard != "air_temperature")
+
+
+def test_lines_that_are_held_are_those_that_a_script_makes():
+    step = vizlight.look(chart(60, 40), size=SIZE).drawing.layers[3].mesh.arguments[0]
+    again = type(step)("", step.path, *step.arguments, **step.keywords).run()
+    for name in ("lines", "numbers"):
+        np.testing.assert_array_equal(step.run()[name].points, again[name].points)
+
+
+def test_a_map_in_degrees_stays_so_where_planes_or_an_eye_are_in_degrees():
+    for options in ({"view": "above"}, {"clip": [((1, 0, 0), (10, 50, 0))]}):
+        mesh = vizlight.look(chart(60, 40), size=SIZE, **options).mesh
+        assert mesh.field_data["unit"][0] == "degree"
+    assert vizlight.look(chart(60, 40), size=SIZE).mesh.field_data["unit"][0] == "metre"
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.mp4"])

@@ -1,13 +1,15 @@
-"""Isolines of a flat map with their numbers, each in a gap of its line."""
+"""Isolines of a flat map with their numbers, each in a gap of its line, and its highs and lows."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from matplotlib.path import Path
 from scipy.spatial import cKDTree
 
 from vizlight import _check, _words
@@ -16,9 +18,13 @@ from vizlight.vtk import letters as words_of
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
+    from typing import TypeAlias
 
     from vizlight._types import Array, Bools, Indices
+
+    #: Pieces of isolines, shape (N, 2) each, with their levels.
+    Pieces: TypeAlias = list[tuple[Array, float]]
 
 __all__ = ["isolines"]
 
@@ -37,6 +43,11 @@ AGAIN = 30.0
 #: Points across a number at which other lines are looked for, distance of these and step between
 #: the points of all lines, in heights of letters, and points that are looked at.
 ALONG, CLEAR, STEP, NEIGHBOURS = 5, 0.75, 0.4, 12
+#: Distance within which a high or a low is the only one, as a share of the larger side of a map;
+#: height of its letter and of its number, and room around each, in heights of letters.
+REACH, INITIAL, NUMBER, ROOM = 0.1, 1.7, 1.2, 0.15
+#: Neighbours of a point with which it is compared at first.
+AROUND = 9
 #: Height of digits in the size of a font, and name of the array with the level of a line.
 DIGIT, LEVEL = 0.73, "level"
 
@@ -50,11 +61,14 @@ def isolines(
     *,
     words: Sequence[str] | None = None,
     clear_of: pv.PolyData | None = None,
+    extremes: float | None = None,
 ) -> pv.MultiBlock:
     """Return lines of equal values on a flat map, with their numbers along them.
 
     Each line that has room has one number, in a gap of the line; its top is toward larger y. It is
-    where no other line is near, and where its own is straightest.
+    where no other line is near, and where its own is straightest. Highs and lows, if they are asked
+    for, are points within a closed line whose value is the largest or the least as far as a tenth
+    of the larger side of the map.
 
     Parameters
     ----------
@@ -70,18 +84,21 @@ def isolines(
         Numbers of the levels, such as those in another unit. Default: the levels.
     clear_of : pyvista.PolyData, optional
         Lines of which numbers keep clear, as far as there is room, such as coasts.
+    extremes : float, optional
+        Unit in which the values of highs and lows are written below their letters, H and L, in that
+        of the array: 100 for hPa of an array in Pa. Default: none are marked.
 
     Returns
     -------
     pyvista.MultiBlock
-        Blocks ``lines`` and ``numbers``, of polylines and of triangles, with the point array
-        ``level``.
+        Blocks ``lines``, ``numbers`` and ``extremes``, of polylines and of triangles, with the
+        point array ``level``, the value of the array.
 
     Raises
     ------
     TypeError, ValueError
         If the array is missing or has several components, a level is no finite number, or the
-        letters have no positive height.
+        letters or the unit are not positive.
 
     Examples
     --------
@@ -98,17 +115,47 @@ def isolines(
     if len(texts) != len(values):
         expected = f"a word for each of the {len(values)} levels"
         raise ValueError(_check.message("words", expected, len(texts)))
-    text_of = dict(zip(values.tolist(), texts, strict=True))
-    pieces, levels_of = _pieces(mesh, name, values)
-    is_near = _lines_apart(pieces, clear_of, letters)
+    unit = None if extremes is None else _check.positive("extremes", extremes)
+    pieces = contoured(mesh, name, values)
+    return labelled(
+        mesh, name, pieces, letters, dict(zip(values.tolist(), texts, strict=True)), clear_of, unit
+    )
+
+
+def labelled(
+    mesh: pv.DataSet,
+    name: str,
+    pieces: Pieces,
+    letters: float,
+    text_of: Mapping[float, str],
+    clear_of: pv.PolyData | None,
+    unit: float | None,
+) -> pv.MultiBlock:
+    """Return pieces of isolines with their numbers.
+
+    Parameters
+    ----------
+    mesh, name, letters, clear_of
+        As for :func:`isolines`.
+    pieces : list of (ndarray, float)
+        Pieces with their levels, of :func:`contoured`; those of other levels are left out.
+    text_of : mapping of float to str
+        Numbers of the levels.
+    unit : float, optional
+        Unit of the values of highs and lows.
+    """
+    pieces = [(piece, level) for piece, level in pieces if level in text_of]
+    marks = [] if unit is None else _extremes(mesh, name, pieces, letters, unit)
+    pieces = _without(pieces, [mark.box for mark in marks], letters)
+    is_near = _lines_apart([piece for piece, _ in pieces], clear_of, letters)
     drawn: list[tuple[Array, float]] = []
     numbers: list[tuple[Array, Indices, float]] = []
-    taken: list[tuple[Array, int]] = []
-    longest = sorted(range(len(pieces)), key=lambda at: -_length(pieces[at]))
-    left = [(number, pieces[number]) for number in longest]
+    taken: list[tuple[Array, int]] = [(mark.box.mean(axis=0), -1) for mark in marks]
+    longest = sorted(range(len(pieces)), key=lambda at: -_length(pieces[at][0]))
+    left = [(number, pieces[number][0]) for number in longest]
     # Parts of long lines join the end of the queue.
     for number, piece in left:
-        level = levels_of[number]
+        level = pieces[number][1]
         text = text_of[level]
         word, triangles = words_of.triangles(text)
         width = words_of.width(text)
@@ -131,7 +178,98 @@ def isolines(
         at = middle + flat[:, :1] * way + flat[:, 1:] * across
         numbers.append((at, triangles, level))
     height = float(mesh.bounds[5])
-    return pv.MultiBlock({"lines": _lines(drawn, height), "numbers": _numbers(numbers, height)})
+    words = [word for mark in marks for word in mark.words]
+    return pv.MultiBlock(
+        {
+            "lines": _lines(drawn, height),
+            "numbers": _numbers(numbers, height),
+            "extremes": _numbers(words, height),
+        }
+    )
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Letter of a high or a low with its number: triangles with a value, and corners of its box."""
+
+    words: list[tuple[Array, Indices, float]]
+    box: Array
+
+
+def _extremes(
+    mesh: pv.DataSet, name: str, pieces: Pieces, letters: float, unit: float
+) -> list[Mark]:
+    """Return the marks of highs and lows within closed isolines."""
+    mesh = records.averaged(mesh, name)
+    values = np.asarray(mesh.point_data[name], dtype=np.float64)
+    points = np.asarray(mesh.points, dtype=np.float64)[np.isfinite(values), :2]
+    values = values[np.isfinite(values)]
+    rings = [(Path(piece), level) for piece, level in pieces if np.allclose(piece[0], piece[-1])]
+    if not rings or len(points) < AROUND:
+        return []
+    tree, reach = cKDTree(points), REACH * float(np.ptp(points, axis=0).max())
+    marks: list[Mark] = []
+    for sign, letter in ((1.0, "H"), (-1.0, "L")):
+        for at in _peaks(tree, sign * values, reach):
+            value = float(values[at])
+            mark = _mark(points[at], letter, f"{value / unit:.0f}", value, letters)
+            room = np.prod(np.ptp(mark.box, axis=0))
+            is_inner = any(
+                sign * level < sign * value
+                and np.prod(np.ptp(ring.vertices, axis=0)) > room
+                and ring.contains_point(points[at])
+                for ring, level in rings
+            )
+            if is_inner and np.all((mark.box[0] > tree.mins) & (mark.box[1] < tree.maxes)):
+                marks.append(mark)
+    return marks
+
+
+def _peaks(tree: cKDTree, rows: Array, reach: float) -> list[int]:
+    """Return the points with the largest value within a distance, one of those with equal ones."""
+    _, near = tree.query(tree.data, AROUND)
+    found: list[int] = []
+    for at in np.flatnonzero(rows >= rows[near].max(axis=1)).tolist():
+        around = tree.query_ball_point(tree.data[at], reach)
+        if rows[at] >= rows[around].max() and not {*found} & {*around}:
+            found.append(at)
+    return found
+
+
+def _mark(place: Array, letter: str, number: str, value: float, letters: float) -> Mark:
+    """Return a letter above its number, with its place between them."""
+    words: list[tuple[Array, Indices, float]] = []
+    wide = 0.0
+    for word, size, y in (
+        (letter, INITIAL * letters, ROOM), (number, NUMBER * letters, -ROOM - NUMBER * DIGIT),
+    ):  # fmt: skip
+        corners, ids = words_of.triangles(word)
+        half = words_of.width(word) / 2
+        words.append((size * (corners - (half, 0.0)) + place + (0.0, y * letters), ids, value))
+        wide = max(wide, size * half)
+    low = np.array([wide + ROOM * letters, (2 * ROOM + NUMBER * DIGIT) * letters])
+    high = np.array([wide + ROOM * letters, (2 * ROOM + INITIAL * DIGIT) * letters])
+    return Mark(words, np.stack([place - low, place + high]))
+
+
+def _without(pieces: Pieces, boxes: list[Array], letters: float) -> Pieces:
+    """Return the parts of lines outside of some boxes."""
+    result: Pieces = []
+    for piece, level in pieces:
+        crossed = [
+            box for box in boxes
+            if np.all(piece.max(axis=0) > box[0]) and np.all(piece.min(axis=0) < box[1])
+        ]  # fmt: skip
+        if not crossed:
+            result.append((piece, level))
+            continue
+        fine = _dense(piece, STEP / 4 * letters)
+        inside = np.any([np.all((fine > a) & (fine < b), axis=1) for a, b in crossed], axis=0)
+        ends = np.flatnonzero(np.diff(np.concatenate([[True], inside, [True]]).astype(np.int8)))
+        parts = [fine[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
+        # What is left beside a mark tells nothing of the course of its line.
+        result += [(part, level) for part in parts if _length(part) > letters]
+    return result
 
 
 def _lines_apart(
@@ -191,8 +329,14 @@ def _numbers(words: list[tuple[Array, Indices, float]], height: float) -> pv.Pol
     return numbers
 
 
-def _pieces(mesh: pv.DataSet, name: str, levels: Array) -> tuple[list[Array], list[float]]:
-    """Return the connected pieces of isolines, and their levels."""
+def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
+    """Return the connected pieces of isolines, each with its level.
+
+    Parameters
+    ----------
+    mesh, name, levels
+        As for :func:`isolines`.
+    """
     if name not in (*mesh.point_data, *mesh.cell_data):
         there = [*mesh.point_data, *mesh.cell_data]
         expected = f"the name of an array, {_words.one_of(there)}"
@@ -205,31 +349,33 @@ def _pieces(mesh: pv.DataSet, name: str, levels: Array) -> tuple[list[Array], li
         )
     lines = mesh.contour(np.unique(levels).tolist(), scalars=name, compute_normals=False)
     if not lines.n_lines:
-        return [], []
+        return []
     lines = lines.strip(join=True, max_length=100_000)
     order, ends = connectivity(lines.GetLines())
     flat = np.asarray(lines.points, dtype=np.float64)[order, :2]
-    pieces = np.split(flat, ends[1:-1])
     # The points of a line have its level.
     at = np.asarray(lines.point_data[name], dtype=np.float64)[order[ends[:-1]]]
-    nearest = levels[np.abs(at[:, np.newaxis] - levels).argmin(axis=1)]
-    return list(pieces), [float(level) for level in nearest]
+    nearest = levels[np.abs(at[:, np.newaxis] - levels).argmin(axis=1)].tolist()
+    return list(zip(np.split(flat, ends[1:-1]), nearest, strict=True))
 
 
 def are_smooth(
-    mesh: pv.DataSet, name: str, levels: Sequence[float], letters: float, *, sparse: float
+    mesh: pv.DataSet, pieces: Pieces, levels: Collection[float], letters: float, *, sparse: float
 ) -> bool:
     """Return whether isolines are few, long and apart: a field is smooth in its picture.
 
     Parameters
     ----------
-    mesh, name, levels, letters
+    mesh, letters
         As for :func:`isolines`.
+    pieces : list of (ndarray, float)
+        Pieces of isolines with their levels, of :func:`contoured`.
+    levels : collection of float
+        Levels of which the pieces are looked at.
     sparse : float
         Least distance between lines, in heights of letters.
     """
-    pieces, _ = _pieces(mesh, name, np.asarray(levels, dtype=np.float64))
-    lengths = np.array([_length(piece) for piece in pieces])
+    lengths = np.array([_length(piece) for piece, level in pieces if level in levels])
     x, y, _ = mesh.bounds_size
     is_apart = x * y > sparse * letters * lengths.sum()
     return bool(is_apart and lengths[lengths > LONG * letters].sum() > SMOOTH * lengths.sum() > 0)

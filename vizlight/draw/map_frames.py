@@ -12,7 +12,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import georeference, meaning
+from vizlight.mesh import charts, georeference, meaning, polylines
 from vizlight.vtk import letters
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices
 
-__all__ = ["frame"]
+__all__ = ["frame", "graticule"]
 
 #: Width of lines, length of ticks, and distance of words from them, in heights of letters.
 LINE, TICK, GAP = 0.06, 0.35, 0.3
@@ -32,8 +32,15 @@ STEPS = (
 )  # fmt: skip
 #: Difference of a direction from an axis that is none.
 ALMOST = 1e-6
-#: Largest number of ticks along a side.
-MOST = 8
+#: Largest number of ticks along a side, and of meridians around a pole.
+MOST, MOST_AROUND = 8, 13
+#: Width in metres of a map on which lengths are alike everywhere, so that it has a bar.
+LIKE_LENGTHS = 2e6
+#: Least part of the direction away from a map that is to the left, or down, where a parallel, or a
+#: meridian, has its word.
+ASIDE = 0.5
+#: Points of a line of the graticule, and letters of the words on the map in those beside it.
+FINE, SMALL = 721, 0.75
 #: Largest length of a bar, as a share of the width of its map, and its height in letters.
 BAR, THICK = 0.25, 0.2
 
@@ -44,14 +51,17 @@ Part = tuple["Array", "Indices"]
 def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.0)) -> pv.PolyData:
     """Return what stands around a map: degrees with ticks, or a bar of a round length.
 
-    A map in degrees has a thin frame with ticks in round steps along its left and its lower side.
-    One in a unit of length has a bar below it. An arrow toward the north is below another map
-    whose north is not straight up. Nothing is on the data.
+    A map in degrees, and one in lengths whose projection is known, has a thin frame with round
+    degrees along its left and its lower side. One in lengths has a bar of a round length below it,
+    as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
+    toward the north is below a map in lengths whose north is not straight up. Nothing is on the
+    data but the words of parallels around a pole.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Map, x east and y north, whose field array ``unit`` says ``degree`` or a unit of length.
+        Map, x east and y north, whose field array ``unit`` says ``degree`` or a unit of length, and
+        ``projection`` or ``crs`` the projection.
     letters : float
         Height of letters in the unit of x and y.
     up : (float, float), default: (0.0, 1.0)
@@ -76,25 +86,22 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     >>> cartography.frame(europe, letters=1.5).n_cells > 100
     True
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
-    _check.coordinates("mesh", mesh.bounds)
-    letters = _check.positive("letters", letters)
-    x, y, _ = _check.unit("up", (*_check.vector("up", up, direction=True, n=2), 0.0))
-    turn = np.array([[y, -x], [x, y]])  # rows: right and up in the picture
-    is_degrees = georeference.has_degrees(mesh)
-    unit = (
-        str(mesh.field_data[georeference.UNIT][0]) if georeference.UNIT in mesh.field_data else ""
-    )
-    metres = None if is_degrees else meaning.metres(unit)
+    letters, turn = _checked(mesh, letters, up)
     box = _box(mesh, turn)
+    is_degrees, sheet = georeference.has_degrees(mesh), charts.sheet(mesh)
+    straight = np.abs(turn).max() > 1 - ALMOST
     parts: list[Part] = []
-    straight = max(abs(x), abs(y)) > 1 - ALMOST
     if is_degrees and straight:
         parts += _degrees(box, letters, np.rint(turn))
-    elif y <= 1 - ALMOST:
+    elif turn[1, 1] <= 1 - ALMOST:
         parts += _arrow(box, letters, turn)
-    if metres is not None:
+    if sheet is not None:
+        parts += _around(sheet, letters, turn)
+    metres = _bar_unit(mesh, is_measured=sheet is not None)
+    if metres and (straight or not is_degrees):
+        if parts:
+            # Below the words of degrees.
+            box[2] = min(points[:, 1].min() for points, _ in parts) - GAP * letters
         parts += _bar(box, letters, metres)
     corners = np.concatenate([np.empty((0, 2)), *(points for points, _ in parts)])
     starts = np.cumsum([0, *(len(points) for points, _ in parts)])
@@ -103,6 +110,81 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     flat = np.column_stack([corners @ turn, np.full(len(corners), mesh.bounds[5])])
     faces = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
     return pv.PolyData(flat, faces) if len(flat) else pv.PolyData()
+
+
+def graticule(
+    mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.0)
+) -> pv.PolyData:
+    """Return the meridians and parallels of a map in lengths whose projection is known, as lines.
+
+    They are those that have a word in :func:`frame` of the same letters.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Map, whose field array ``projection`` or ``crs`` tells its projection.
+    letters : float
+        Height of letters in the unit of x and y.
+    up : (float, float), default: (0.0, 1.0)
+        Direction on the map that points up in the picture.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Lines at the highest z of the map; empty where its projection is not known.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the letters have no positive height, or the direction no length.
+
+    Examples
+    --------
+    >>> import pyvista as pv
+    >>> from vizlight import cartography
+    >>> europe = pv.ImageData(dimensions=(51, 36, 1), origin=(-10, 35, 0))
+    >>> europe = cartography.chart(cartography.in_degrees(europe))
+    >>> cartography.graticule(europe, letters=150e3).n_lines
+    14
+    """
+    letters, _ = _checked(mesh, letters, up)
+    sheet = charts.sheet(mesh)
+    lines = [] if sheet is None else [line for line, _, _ in _graticule(sheet, letters)]
+    flat = np.concatenate([np.empty((0, 2)), *lines])
+    ends = np.cumsum([0, *map(len, lines)])
+    return polylines.polydata(np.column_stack([flat, np.full(len(flat), mesh.bounds[5])]), ends)
+
+
+def has_bar(mesh: pv.DataSet) -> bool:
+    """Return whether the frame of a map has a bar below its degrees.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    sheet = charts.sheet(mesh)
+    is_known = georeference.has_degrees(mesh) or sheet is not None
+    return is_known and _bar_unit(mesh, is_measured=sheet is not None) > 0
+
+
+def _checked(mesh: pv.DataSet, letters: float, up: Sequence[float]) -> tuple[float, Array]:
+    """Return the height of letters, and the rows right and up in the picture."""
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.coordinates("mesh", mesh.bounds)
+    letters = _check.positive("letters", letters)
+    x, y, _ = _check.unit("up", (*_check.vector("up", up, direction=True, n=2), 0.0))
+    return letters, np.array([[y, -x], [x, y]])
+
+
+def _bar_unit(mesh: pv.DataSet, *, is_measured: bool) -> float:
+    """Return the length of x in metres on a map that has a bar, 0 on others."""
+    metres = meaning.metres(georeference.unit_of(mesh)) or 0.0
+    if georeference.has_degrees(mesh):
+        metres = georeference.METRES * math.cos(math.radians(mesh.center[1]))
+    elif not is_measured:
+        return metres
+    return metres if max(mesh.bounds_size[:2]) * metres < LIKE_LENGTHS else 0.0
 
 
 def _box(mesh: pv.DataSet, turn: Array) -> Array:
@@ -134,6 +216,111 @@ def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
     return parts
 
 
+def _graticule(sheet: charts.Sheet, size: float) -> list[tuple[Array, str, bool]]:
+    """Return parts of parallels and meridians, their words, and whether they are meridians."""
+    west, east, south, north = sheet.extent
+    is_around = east - west > georeference.AROUND - ALMOST
+    # The height of letters in degrees where meridians are farthest apart.
+    degrees = size * sheet.metres / georeference.METRES
+    least = 0.0 if south <= 0 <= north else min(abs(south), abs(north))
+    wide = degrees / math.cos(math.radians(min(least, 80.0)))
+    meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)
+    parallels = [tick for tick in ticks(south, north, degrees, "NS") if abs(tick[0]) < 90]
+    # Not all meridians meet at a pole.
+    ends = [value for value, _ in parallels]
+    low = min(ends, default=south) if south == -90 else south - 1
+    high = max(ends, default=north) if north == 90 else north + 1
+    lines, names = [], []
+    for value, word in meridians[: len(meridians) - is_around]:
+        lat = np.clip(np.linspace(low, high, FINE), -90, 90)
+        lines.append(np.column_stack([np.full(FINE, value), lat]))
+        names.append((word, True))
+    for value, word in parallels:
+        lon = np.linspace(west, east, FINE) if is_around else np.linspace(west - 1, east + 1, FINE)
+        lines.append(np.column_stack([lon, np.full(FINE, value)]))
+        names.append((word, False))
+    return [
+        (piece, *name)
+        for line, name in zip(lines, names, strict=True)
+        for piece in sheet.pieces([line])
+    ]
+
+
+def _around(sheet: charts.Sheet, size: float, turn: Array) -> list[Part]:
+    """Return the outline of a map with the words of its graticule where this meets it."""
+    outline = sheet.outline @ turn.T
+    parts = [_border(outline, LINE * size)]
+    sides = np.roll(outline, -1, axis=0) - outline
+    away = np.column_stack([sides[:, 1], -sides[:, 0]])
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
+    lines = _graticule(sheet, size)
+    west, east, *_ = sheet.extent
+    is_around = east - west > georeference.AROUND - ALMOST
+    boxes: list[Array] = []
+    for piece, word, is_meridian in lines:
+        if is_around and not is_meridian:
+            if np.allclose(piece[0], piece[-1], rtol=0, atol=charts.EDGE * sheet.size):
+                parts.append(_inside(piece @ turn.T, word, SMALL * size))
+            continue
+        for end in piece[[0, -1]] @ turn.T:
+            near = np.flatnonzero(_apart(end, outline, sides) < 2 * charts.EDGE * sheet.size)
+            toward = away[near] @ ((0.0, -1.0) if is_meridian else (-1.0, 0.0))
+            if not len(near) or (toward.max() < ASIDE and not is_around):
+                continue
+            way = away[near[int(toward.argmax())]]
+            half = np.array([letters.width(word), DIGIT]) * size / 2
+            middle = end + way * ((TICK + GAP) * size + np.abs(way) @ half)
+            box = np.concatenate([middle - half - GAP * size, -middle - half - GAP * size])
+            if any(np.all(box + np.roll(other, 2) < 0) for other in boxes):
+                continue
+            boxes.append(box)
+            parts.append(_tick(end, way, size))
+            low = middle - (0.0, half[1])
+            parts.append(_word(word, low[0], low[1], size, align=0.5))
+    return parts
+
+
+def _inside(piece: Array, word: str, size: float) -> Part:
+    """Return the word of a parallel around a pole on its inner side, to the lower right."""
+    middle = piece.mean(axis=0)
+    x, y = piece[int(((piece - middle) @ (1.0, -2.0)).argmax())]
+    return _word(word, x, y + GAP * size, size, align=0.5)
+
+
+def _apart(place: Array, starts: Array, sides: Array) -> Array:
+    """Return the distances of a place from segments."""
+    lengths = np.maximum(np.einsum("ij,ij->i", sides, sides), np.finfo(float).tiny)
+    shares = np.clip(np.einsum("ij,ij->i", place - starts, sides) / lengths, 0, 1)
+    return np.asarray(np.linalg.norm(starts + shares[:, np.newaxis] * sides - place, axis=1))
+
+
+def _border(outline: Array, wide: float) -> Part:
+    """Return a band of a width outside of an outline that runs counter-clockwise."""
+    kept = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1) > 0
+    outline = outline[kept]
+    ahead = np.roll(outline, -1, axis=0) - outline
+    away = np.column_stack([ahead[:, 1], -ahead[:, 0]])
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    sums = away + np.roll(away, 1, axis=0)
+    # A corner goes on to where the bands of its sides meet, if it is not sharp.
+    miter = 2 / np.maximum(np.einsum("ij,ij->i", sums, sums), 1.0)
+    outer = outline + wide * sums * miter[:, np.newaxis]
+    count = len(outline)
+    at = np.arange(count)
+    ahead_of = (at + 1) % count
+    first = np.column_stack([at, at + count, ahead_of + count])
+    second = np.column_stack([at, ahead_of + count, ahead_of])
+    return np.concatenate([outline, outer]), np.concatenate([first, second])
+
+
+def _tick(end: Array, way: Array, size: float) -> Part:
+    """Return a tick from a place of the outline outward."""
+    across = LINE / 2 * size * np.array([way[1], -way[0]])
+    far = end + TICK * size * way
+    corners = np.array([end - across, far - across, far + across, end + across])
+    return corners, np.array([[0, 1, 2], [0, 2, 3]])
+
+
 def _along(low: float, high: float, size: float, way: Array) -> list[tuple[float, str]]:
     """Return the ticks along a side of the picture, which runs east, north, west or south."""
     sign = float(way.sum())
@@ -143,7 +330,9 @@ def _along(low: float, high: float, size: float, way: Array) -> list[tuple[float
     ]
 
 
-def ticks(low: float, high: float, size: float, signs: str) -> list[tuple[float, str]]:
+def ticks(
+    low: float, high: float, size: float, signs: str, most: int = MOST
+) -> list[tuple[float, str]]:
     """Return round places along a side of a map, and their words.
 
     Parameters
@@ -154,10 +343,12 @@ def ticks(low: float, high: float, size: float, signs: str) -> list[tuple[float,
         Height of letters in degrees.
     signs : {"EW", "NS"}
         Letters for degrees above and below 0.
+    most : int
+        Largest number of places.
     """
     for step in STEPS:
         first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
-        if last - first + 1 > MOST:
+        if last - first + 1 > most:
             continue
         places = [(i * step, _word_of(i * step, step, signs)) for i in range(first, last + 1)]
         widest = max((letters.width(word) for _, word in places), default=0.0)

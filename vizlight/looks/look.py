@@ -403,6 +403,7 @@ def decide(data: object, wishes: Wishes) -> Look:
             look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
+        step, contents = look_options.charted(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
         return _decided(rule, wide, notes)

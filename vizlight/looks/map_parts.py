@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,9 @@ from vizlight import _check
 from vizlight.draw import isolines as iso
 from vizlight.draw import legends
 from vizlight.draw.cameras import MARGIN
+from vizlight.draw.map_frames import has_bar
 from vizlight.looks.steps import Step
-from vizlight.mesh import meaning
+from vizlight.mesh import georeference, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,8 +25,8 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Room that a frame takes at the left and below its map, in heights of letters: that of 60°N, and
-#: of a line of words.
-ROOM = (3.2, 1.5)
+#: of a line of words; and that of a bar below them.
+ROOM, BAR = (3.2, 1.5), 1.6
 #: Least extent in degrees of a map with coasts, which are right to some 0.1 degrees.
 COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
@@ -32,6 +34,10 @@ COASTS = 20.0
 MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
 #: Least distance between isolines, in heights of their letters.
 SPARSE = 1.3
+#: Standard names of arrays whose highs and lows are marked.
+WITH_EXTREMES = {
+    "air_pressure_at_sea_level", "air_pressure_at_mean_sea_level", "geopotential_height",
+}  # fmt: skip
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -47,6 +53,13 @@ def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
     return step if step.run().n_cells else None
 
 
+def graticule(frame: Step) -> Step | None:
+    """Return the step that makes the meridians and parallels within a frame, None without any."""
+    name = "vizlight.cartography.graticule"
+    step = Step("graticule", name, *frame.arguments, **frame.keywords)
+    return step if step.run().n_cells else None
+
+
 def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     """Return the height of letters in the unit of a map, by which they are as large as in keys."""
     room = np.array(wishes.room) / MARGIN
@@ -55,7 +68,8 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     if abs(up[0]) > abs(up[1]):
         sides = sides[::-1]
     # The data and the room of the frame are to fill the picture together.
-    scale = float(np.max(sides / (room - np.array(ROOM) * pixels)))
+    around = np.array([ROOM[0], ROOM[1] + BAR * has_bar(mesh)])
+    scale = float(np.max(sides / (room - around * pixels)))
     zoom = _check.positive("zoom", wishes.eye.get("zoom", 1.0))
     return float(f"{pixels * scale / zoom:.4g}")
 
@@ -92,21 +106,34 @@ def isolines(
         return None
     size = float(f"{SMALL * letters:.4g}")
     factor, _ = meaning.usual_unit(mesh.run(), array.name, max(map(abs, ends)))
-    shown: list[float] = []
-    for most in LEVELS:
-        levels = legends.even_levels(ends[0] / factor, ends[1] / factor, most)
-        places = [factor * level for level in levels]
-        if not iso.are_smooth(mesh.run(), array.name, places, size, sparse=sparse):
-            break
-        shown = levels
-    if not shown:
+    choices = [
+        {float(f"{factor * level:.12g}"): level for level in levels}
+        for levels in (
+            legends.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
+        )
+    ]
+    pieces = iso.contoured(mesh.run(), array.name, np.array(sorted({*choices[0], *choices[1]})))
+    smooth = itertools.takewhile(
+        lambda levels: iso.are_smooth(mesh.run(), pieces, levels, size, sparse=sparse), choices
+    )
+    shown = next(reversed([*smooth]), None)
+    if shown is None:
         return None
-    keywords: Keywords = {"letters": size, "words": legends.numerals_of(shown)}
+    words = legends.numerals_of([*shown.values()])
+    keywords: Keywords = {"letters": size, "words": words}
     if coasts is not None:
         keywords["clear_of"] = coasts
-    levels = [float(f"{factor * level:.12g}") for level in shown]
+    standard = meaning.of(mesh.run()).arrays.get(array.name, {}).get("standard_name", "")
+    unit = factor if standard in WITH_EXTREMES else None
+    if unit is not None:
+        keywords["extremes"] = unit
     name = "vizlight.cartography.isolines"
-    return Step("isolines", name, mesh, array.name, levels, **keywords), shown, factor
+    step = Step("isolines", name, mesh, array.name, [*shown], **keywords)
+    # Its lines are known from the choice of levels.
+    shore = None if coasts is None else coasts.run()
+    text_of = dict(zip(shown, words, strict=True))
+    step.hold(iso.labelled(mesh.run(), array.name, pieces, size, text_of, shore, unit))
+    return step, [*shown.values()], factor
 
 
 def shore() -> Step:
@@ -123,7 +150,10 @@ def ball() -> Step:
 
 def coasts(mesh: Step) -> Step | None:
     """Return the step that makes the coasts of a map in degrees, None where they show nothing."""
-    if max(mesh.run().bounds_size[:2]) < COASTS:
+    degrees = max(mesh.run().bounds_size[:2])
+    if not georeference.has_degrees(mesh.run()):
+        degrees *= (meaning.metres(georeference.unit_of(mesh.run())) or 0.0) / georeference.METRES
+    if degrees < COASTS:
         return None
     step = Step("coasts", "vizlight.cartography.coasts", mesh)
     return step if step.run().n_cells else None

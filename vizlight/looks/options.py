@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
-from vizlight.mesh import georeference, meaning, series
+from vizlight.mesh import charts, georeference, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
@@ -148,6 +149,35 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     which = ("highest" if sea else "lowest") + " with data" * (at != order[0])
     taken.note = f"the {which} of {count} layers is shown, at {height:g} along z"
     return taken
+
+
+#: Parts of a map, and questions, for which it stays in degrees.
+IN_DEGREES = ("globe", "slice", "contour", "warp", "clip")
+RELIEFS = ("relief", "sky", "shadow")
+#: Most points of a map whose rows may bend.
+MOST_BENT = 4_000_000
+
+
+def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
+    """Return the step that draws a flat map in degrees on a projection that suits it, and contents.
+
+    What is no such map, is seen at a slant or is cut by planes in degrees stays as it is.
+    """
+    mesh = contents.mesh
+    is_sheet = contents.flat_axis == 2 and contents.dimension in (0, 2)
+    is_asked = wishes.view is not None or any(wishes.part.get(name) for name in IN_DEGREES)
+    if not is_sheet or is_asked or not georeference.has_degrees(mesh):
+        return step, contents
+    array = contents.named(wishes.array or "") or next(iter(contents.arrays), None)
+    is_relief = array is not None and array.role == "heights" and hasattr(mesh, "dimensions")
+    straight = is_relief or wishes.question in RELIEFS or mesh.n_points > MOST_BENT
+    text = charts.suited(mesh, straight=straight)
+    if not text:
+        return step, contents
+    chart = Step("chart", "vizlight.cartography.chart", step, *([text] if straight else []))
+    if charts.is_torn(chart.run()):
+        return step, contents
+    return chart, replace(contents, mesh=chart.run())
 
 
 def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:

@@ -17,6 +17,7 @@ from vizlight.mesh import (
     grib_groups,
     listed,
     meaning,
+    projections,
     series,
     staggered,
     unrolled,
@@ -374,6 +375,11 @@ class _Reader:
         ]
         if {"x", "y"} <= named.keys():
             self._set_unit(grid, axes, mapped=mapped)
+            kind = axes[0].kind
+            # Axes by number are those of a model's plane, if each point has a place of its own.
+            text = self._projection(kind) if mapped or kind == "length" else ""
+            if text and kind == axes[1].kind:
+                grid.field_data[georeference.PROJECTION if mapped else "crs"] = [text]
         if averaged:
             text = ", ".join(sorted(averaged))
             self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
@@ -674,25 +680,23 @@ class _Reader:
 
     def _unrotated(self, dims: Sequence[str]) -> tuple[Array, Array] | None:
         """Return longitudes and latitudes of a grid about a rotated pole, if its pole is named."""
-        poles = [
-            one.attrs
-            for one in self.file.variables.values()
-            if "grid_north_pole_latitude" in one.attrs
-        ]
-        if not poles:
+        plane = projections.of_text(self._projection())
+        if plane is None:
             return None
         x, y = (np.asarray(self._coordinate(dim).values, np.float64) for dim in dims[:2])
-        lon, lat = np.radians(np.meshgrid(x - poles[0].get("north_pole_grid_longitude", 0.0), y))
-        pole = np.radians(float(poles[0]["grid_north_pole_latitude"]))
-        meridian = float(poles[0].get("grid_north_pole_longitude", 180.0))
-        # On the unit sphere, with the pole of the grid turned about the axis through its side.
-        ahead = np.cos(pole) * np.sin(lat) - np.sin(pole) * np.cos(lat) * np.cos(lon)
-        aside = -np.cos(lat) * np.sin(lon)
-        up = np.sin(pole) * np.sin(lat) + np.cos(pole) * np.cos(lat) * np.cos(lon)
-        return (
-            np.degrees(np.arctan2(aside, ahead)) + meridian,
-            np.degrees(np.arcsin(np.clip(up, -1, 1))),
-        )
+        rotated = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        earth = plane.inverse(np.radians(rotated) * projections.RADIUS).reshape(len(y), len(x), 2)
+        return earth[..., 0], earth[..., 1]
+
+    def _projection(self, kind: str = "rotated") -> str:
+        """Return the text of the projection of a grid whose axes are of a kind, empty for none."""
+        tables = [self.file.attrs, *(one.attrs for one in self.file.variables.values())]
+        for attributes in tables:
+            is_rotated = "grid_north_pole_latitude" in attributes
+            is_named = is_rotated or "MAP_PROJ" in attributes or "grid_mapping_name" in attributes
+            if is_named and is_rotated == (kind == "rotated"):
+                return projections.of_attributes(attributes)
+        return ""
 
     def _axis(self, dim: str, places: object) -> _Axis:
         """Return the axis along a dimension."""

@@ -1,4 +1,4 @@
-"""Coasts of the earth on maps in degrees: Natural Earth's, at the scale of 1 to 110 million."""
+"""Coasts of the earth on maps: Natural Earth's, at the scale of 1 to 110 million."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, data
-from vizlight.mesh import georeference, polylines
+from vizlight.mesh import charts, georeference, globes, polylines
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ FARTHEST = 720.0
 
 
 def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
-    """Return the coasts within a map in degrees, as lines.
+    """Return the coasts within a map in degrees, or in lengths of a known projection, as lines.
 
     The lines are those of Natural Earth at 1:110 million, in the public domain: seas and the
     Caspian Sea, without lakes and without islands below some 2,000 square kilometres. They are
@@ -35,12 +35,13 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
     ----------
     bounds : pyvista.DataSet or (float, float, float, float)
         Map, whose highest z the lines get, or its west, east, south and north in degrees, with
-        longitudes that may go on beyond 180; z is then 0.
+        longitudes that may go on beyond 180; z is then 0. A map in lengths has a field array
+        ``projection`` or ``crs``.
 
     Returns
     -------
     pyvista.PolyData
-        Lines in degrees east and north; empty where there is no coast.
+        Lines in the coordinates of the map; empty where there is no coast.
 
     Raises
     ------
@@ -58,6 +59,8 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
     height = 0.0
     if isinstance(bounds, pv.DataSet):
         height = bounds.bounds[5] if bounds.n_points else 0.0
+        if (sheet := charts.sheet(bounds)) is not None:
+            return _lines(sheet.pieces(_every()), height, georeference.unit_of(bounds))
         bounds = bounds.bounds[:4]
     west, east, south, north = _sides(bounds)
     corner, size = np.array([west, south]), np.array([east - west, north - south])
@@ -73,11 +76,30 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
         goes_on &= np.all(inside[1:, 0] == inside[:-1, 1], axis=1)
         parts += np.split(inside, np.flatnonzero(~goes_on) + 1) if len(inside) else []
     lines = [np.concatenate([part[:1, 0], part[:, 1]]) for part in parts]
+    return _lines(lines, height, georeference.DEGREE)
+
+
+def _lines(lines: list[Array], height: float, unit: str) -> pv.PolyData:
+    """Return lines as a mesh."""
     ends: Indices = np.cumsum([0, *map(len, lines)])
     flat = np.concatenate([np.empty((0, 2)), *lines])
     shore = polylines.polydata(np.column_stack([flat, np.full(len(flat), height)]), ends)
-    shore.field_data[georeference.UNIT] = [georeference.DEGREE]
+    shore.field_data[georeference.UNIT] = [unit]
     return shore
+
+
+@cache
+def _every() -> list[Array]:
+    """Return all coasts in degrees, in steps of a degree at most."""
+    fine = globes.divided(_data())
+    ids, ends = connectivity(fine.GetLines())
+    return np.split(np.asarray(fine.points, dtype=np.float64)[ids, :2], ends[1:-1])
+
+
+def _data() -> pv.PolyData:
+    lines = data.load_example("coasts.vtp")
+    assert isinstance(lines, pv.PolyData)
+    return lines
 
 
 def _sides(bounds: Sequence[float]) -> Array:
@@ -95,8 +117,7 @@ def _sides(bounds: Sequence[float]) -> Array:
 @cache
 def _segments() -> tuple[Array, Bools]:
     """Return the ends of the segments of all coasts, (N, 2, 2), and whether each begins a line."""
-    lines = data.load_example("coasts.vtp")
-    assert isinstance(lines, pv.PolyData)
+    lines = _data()
     ids, ends = connectivity(lines.GetLines())
     places = np.asarray(lines.points, dtype=np.float64)[ids, :2]
     begins = np.zeros(len(ids), np.bool_)

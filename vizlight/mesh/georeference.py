@@ -20,14 +20,17 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "DEGREE", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees", "in_metres",
-    "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one", "seem_degrees",
-    "stretch",
+    "DEGREE", "PROJECTION", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees",
+    "in_metres", "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one",
+    "seem_degrees", "stretch", "unit_of",
 ]  # fmt: skip
 
 
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
+#: Field array with the text of a projection: of a map in degrees that in which its grid is
+#: straight, of one in metres that of its x and y.
+PROJECTION = "projection"
 #: Degrees around the earth.
 AROUND = 360.0
 #: Field array with the latitude of the centre of a map that was in degrees and is in metres.
@@ -53,7 +56,17 @@ def has_degrees(mesh: pv.DataSet) -> bool:
     ----------
     mesh : pyvista.DataSet
     """
-    return UNIT in mesh.field_data and mesh.field_data[UNIT][0] == DEGREE
+    return unit_of(mesh) == DEGREE
+
+
+def unit_of(mesh: pv.DataSet) -> str:
+    """Return the unit of the x and y of a mesh, empty where nothing is said of it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    return str(mesh.field_data[UNIT][0]) if UNIT in mesh.field_data else ""
 
 
 def in_metres(mesh: DataSetT) -> DataSetT:
@@ -173,7 +186,7 @@ def is_map(mesh: pv.DataSet) -> bool:
     ----------
     mesh : pyvista.DataSet
     """
-    return has_degrees(mesh) or LATITUDE in mesh.field_data
+    return has_degrees(mesh) or LATITUDE in mesh.field_data or PROJECTION in mesh.field_data
 
 
 def seem_degrees(grid: pv.DataSet, heights: str) -> bool:

@@ -69,7 +69,7 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
         raise ValueError(_check.message("mesh", expected, got))
     lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
-    flat = _surface(_closed(mesh)) if lines is None else _divided(lines)
+    flat = _surface(closed(mesh)) if lines is None else divided(lines)
     for names in meaning.components(flat):
         name = ",".join(names)
         if name not in flat.array_names and names[0] in flat.point_data:
@@ -116,8 +116,14 @@ def _turned(rows: Array, axes: Array) -> Array:
     return np.asarray(np.einsum("ij,ijk->ik", rows, axes).astype(rows.dtype))
 
 
-def _divided(lines: pv.PolyData) -> pv.PolyData:
-    """Return lines whose sides are at most a degree long."""
+def divided(lines: pv.PolyData) -> pv.PolyData:
+    """Return lines whose sides are at most a degree long.
+
+    Parameters
+    ----------
+    lines : pyvista.PolyData
+        Lines in degrees.
+    """
     ids, ends = connectivity(lines.GetLines())
     flat = np.asarray(lines.points, dtype=np.float64)[ids]
     parts: list[Array] = []
@@ -130,8 +136,14 @@ def _divided(lines: pv.PolyData) -> pv.PolyData:
     return polylines.polydata(np.concatenate([np.empty((0, 3)), *parts]), new_ends)
 
 
-def _closed(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a map whose last column is its first one, 360 degrees on, if it ends before that."""
+def closed(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a map whose last column is its first one, 360 degrees on, if it ends before that.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Map in degrees; one that is no grid of one layer is copied as it is.
+    """
     columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
     if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
         return mesh.copy(deep=False)

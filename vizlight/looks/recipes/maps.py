@@ -13,7 +13,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import georeference
+from vizlight.mesh import charts, georeference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,11 +28,13 @@ BAND = 0.5
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
 UNDER_STROKES = "#9a4f1f"
+#: Colour of meridians and parallels.
+GRATICULE = "#555555"
 #: Colour of isolines and their numbers, which is seen on all colours of bands, and on those of the
 #: ground, where lines are brown on maps.
 INK, INK_ON_RELIEF = "#1a1a1a", "#6f4f2f"
 #: Least distance between isolines of heights, in heights of their letters.
-SPARSE_ON_RELIEF = 0.6
+SPARSE_ON_RELIEF = 0.5
 #: Most isolines between which colours change too.
 FEW_LINES = 9
 
@@ -54,6 +56,10 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
             # Below strokes, and unlike them.
             lines |= {"color": UNDER_STROKES, "halo": False}
         layers.insert(1, Layer(coasts, {**beside, **lines}))
+    graticule = None if case.frame is None else map_parts.graticule(case.frame)
+    if graticule is not None:
+        thin = {"line_width": round(case.width / 2, 1), "halo": False, "opacity": 0.5}
+        layers.insert(1, Layer(graticule, {**beside, "color": GRATICULE, **thin}))
     if case.frame is not None:
         layers.append(Layer(case.frame, {**beside, "color": ink}))
     return replace(drawing, layers=layers)
@@ -84,7 +90,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     thin = {"line_width": round(case.width / (2.4 if is_relief else 1.5), 1), "halo": False}
     own = [
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
-        for name, keywords in (("lines", thin), ("numbers", {}))
+        for name, keywords in (("lines", thin), ("numbers", {}), ("extremes", {}))
         if lines.run()[name].n_points
     ]
     first, *others = drawing.layers
@@ -137,10 +143,13 @@ def _every(title: str, levels: Sequence[float]) -> str:
 
 
 def _has_coasts(case: Case) -> bool:
-    """Return whether the data are a flat map in degrees that shows no coast of its own: heights."""
+    """Return whether the data are a flat map of the earth that shows no coast of its own: heights.
+
+    Its projection, if it is not in degrees, is known.
+    """
     heights = case.array is not None and case.array.role == "heights"
     is_sheet = case.contents.flat_axis == 2 and case.wishes.frame is None
     mesh = case.contents.mesh
-    return (
-        is_sheet and not heights and georeference.has_degrees(mesh) and georeference.on_earth(mesh)
-    )
+    if not is_sheet or heights or not georeference.on_earth(mesh):
+        return False
+    return georeference.has_degrees(mesh) or charts.sheet(mesh) is not None

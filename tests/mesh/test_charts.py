@@ -1,0 +1,108 @@
+"""Maps in the plane of a projection: their sides, vectors, outlines, and lines that end on them."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import cartography
+from vizlight.mesh import charts, projections
+from vizlight.mesh.georeference import in_degrees
+
+AMERICA = (-135, -45, 15, 60)
+
+
+def sheet_of(west, east, south, north, step=1.0):
+    """Return a map in degrees with a wind to the east."""
+    columns, rows = round((east - west) / step) + 1, round((north - south) / step) + 1
+    grid = pv.ImageData(
+        dimensions=(columns, rows, 1), spacing=(step, step, 1), origin=(west, south, 0)
+    )
+    grid["u"], grid["v"] = np.full(grid.n_points, 3.0), np.full(grid.n_points, 4.0)
+    return in_degrees(grid)
+
+
+def test_a_cone_has_its_points_where_the_projection_says_and_its_winds_along_them():
+    mesh = sheet_of(*AMERICA)
+    flat = cartography.chart(mesh)
+    plane = projections.of_text(str(flat.field_data["projection"][0]))
+    places = np.asarray(mesh.points, dtype=float)[:, :2]
+    np.testing.assert_allclose(np.asarray(flat.points)[:, :2], plane.forward(places), atol=1)
+    # 3 east and 4 north for some seconds, on the sphere.
+    ahead = places + 1e-3 * np.stack(
+        [3 / np.cos(np.radians(places[:, 1])), 4 + 0 * places[:, 0]], 1
+    )
+    way = plane.forward(ahead) - plane.forward(places)
+    way *= 5 / np.linalg.norm(way, axis=1, keepdims=True)
+    np.testing.assert_allclose(np.asarray(flat["u,v"])[:, :2], way, atol=1e-3)
+    assert "u,v" not in mesh.point_data
+
+
+def test_a_small_map_stays_an_image_with_the_shape_of_the_place():
+    flat = cartography.chart(sheet_of(6, 9, 59, 61, 0.1))
+    assert isinstance(flat, pv.ImageData)
+    x, y, _ = flat.bounds_size
+    assert x / y == pytest.approx(1.5 * np.cos(np.radians(60)), rel=1e-6)
+
+
+def test_the_outline_of_a_map_around_a_pole_is_its_ring():
+    flat = cartography.chart(sheet_of(-180, 179, 60, 90))
+    outline = charts.sheet(flat).outline
+    radii = np.linalg.norm(outline, axis=1)
+    assert len(outline) == 360
+    np.testing.assert_allclose(radii, radii[0], rtol=1e-9)
+    assert charts.sheet(flat).extent == pytest.approx((-180, 180, 60, 90), abs=0.6)
+
+
+def test_the_extent_of_a_map_is_that_in_degrees():
+    assert charts.sheet(cartography.chart(sheet_of(*AMERICA))).extent == pytest.approx(
+        AMERICA, abs=0.05
+    )
+
+
+def test_lines_end_on_the_outline_and_come_back():
+    sheet = charts.sheet(cartography.chart(sheet_of(*AMERICA)))
+    lon = np.linspace(-200, 20, 441)
+    (line,) = sheet.pieces([np.column_stack([lon, np.full_like(lon, 40.0)])])
+    ends = sheet.plane.inverse(line[[0, -1]])
+    np.testing.assert_allclose(ends, [(-135, 40), (-45, 40)], atol=0.2)
+    # Over the outline and back: two parts.
+    lat = np.concatenate([np.linspace(20, 70, 60), np.linspace(70, 20, 60)])
+    lon = np.repeat([-100.0, -80.0], 60)
+    assert len(sheet.pieces([np.column_stack([lon, lat])])) == 2
+    assert sheet.pieces([]) == []
+
+
+def test_coasts_of_a_chart_are_those_of_the_map_in_degrees():
+    mesh = sheet_of(*AMERICA)
+    flat = cartography.chart(mesh)
+    plane = charts.sheet(flat).plane
+    both = []
+    for shore in (cartography.coasts(flat), cartography.coasts(mesh)):
+        points = np.asarray(shore.points, dtype=float)[:, :2]
+        both.append(points if shore.field_data["unit"][0] == "metre" else plane.forward(points))
+    ours, others = both
+    far = [np.linalg.norm(ours - place, axis=1).min() for place in others[::9]]
+    assert np.max(far) < 120e3
+    assert np.median(far) < 1e3
+
+
+@pytest.mark.parametrize(
+    ("mesh", "projection", "message"),
+    [
+        (pv.Plane(), None, "mesh: expected a map in degrees"),
+        (sheet_of(90, 110, -8, 8), None, "projection: expected keywords of PROJ"),
+        (sheet_of(*AMERICA), "+proj=nothing", "projection: expected keywords of PROJ"),
+    ],
+)
+def test_what_has_no_chart(mesh, projection, message):
+    with pytest.raises(ValueError, match=message):
+        cartography.chart(mesh, projection)
+    with pytest.raises(TypeError, match="mesh: expected a mesh"):
+        cartography.chart(3)
+
+
+def test_what_is_no_sheet():
+    assert charts.sheet(sheet_of(*AMERICA)) is None
+    metres = pv.Plane()
+    metres.field_data["unit"] = ["metre"]
+    assert charts.sheet(metres) is None
