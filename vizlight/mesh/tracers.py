@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
 from vizlight.geometry.lines import even, evenness, fur, tracing
-from vizlight.geometry.lines.simplices import Places, Simplices
+from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, Tracing, trace
 from vizlight.mesh import polylines
 from vizlight.model import kernels, line_fields
@@ -120,7 +120,7 @@ class CellTracer:
         array = np.asarray(self.mesh.point_data[name])
         return array if self.sheets == 1 else np.concatenate([array, array])
 
-    def located(self, points: Array) -> Places:
+    def located(self, points: Array) -> CellPlaces:
         """Return places: the closest on a surface; in a volume only those inside.
 
         On two sheets there are two for each point, one after the other.
@@ -136,16 +136,16 @@ class CellTracer:
         on = cell[inside] + sheet * (len(self.cells.cells) // self.sheets)
         return self.cells.locate(on, points[inside])
 
-    def random(self, count: int, seed: int) -> Places:
+    def random(self, count: int, seed: int) -> CellPlaces:
         """Return random places, uniform in area or volume."""
         if self.cells.k == 3:
             return self.cells.random(count, np.random.default_rng(seed))
         # On a surface one place in each of equal areas along a Hilbert curve, as for roots of fur.
         face, weights = fur.seeds(self.cells.points, self.cells.cells, count, seed=seed)
-        return Places(face, weights.astype(np.float64))
+        return CellPlaces(face, weights.astype(np.float64))
 
     def traced(
-        self, seeds: Places, how: Tracing, wanted: int | None, report: Callable[[int], None]
+        self, seeds: CellPlaces, how: Tracing, wanted: int | None, report: Callable[[int], None]
     ) -> Curves:
         """Return curves through seeds; where some fail others are drawn until ``wanted`` are there.
 
@@ -173,7 +173,7 @@ class CellTracer:
 
     def even(
         self,
-        seeds: Places | None,
+        seeds: CellPlaces | None,
         how: Tracing,
         spacing: float,
         report: Callable[[int], None],
@@ -182,7 +182,7 @@ class CellTracer:
 
         Parameters
         ----------
-        seeds : Places, optional
+        seeds : CellPlaces, optional
         how : Tracing
         spacing : float
             Distance between curves.
