@@ -315,7 +315,7 @@ def _ratios(
         for i, disc in enumerate(discs):
             column = np.zeros(count)
             for lamp in disc:
-                column += shadow.of(lamp, lambda now, done=done: report(done + now))  # type: ignore[misc]
+                column += shadow.ratios(lamp, lambda now, done=done: report(done + now))  # type: ignore[misc]
                 done += count
                 report(done)
             t[:, i] = column / len(disc)

@@ -123,11 +123,11 @@ class CellTracer:
     def located(self, points: Array) -> CellPlaces:
         """Return places: the closest on a surface; in a volume only those inside.
 
-        On two sheets there are two for each point, one after the other.
+        On two sheets each point has two places, one after the other.
         """
         if isinstance(self.mesh, pv.PolyData):
-            found: Foreign = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
-            cell, points = np.atleast_1d(found[0]), np.atleast_2d(found[1])
+            closest: Foreign = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+            cell, points = np.atleast_1d(closest[0]), np.atleast_2d(closest[1])
         else:
             cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]
         inside = np.repeat(np.flatnonzero(cell >= 0), self.sheets)
@@ -147,7 +147,7 @@ class CellTracer:
     def traced(
         self, seeds: CellPlaces, how: Tracing, wanted: int | None, report: Callable[[int], None]
     ) -> Curves:
-        """Return curves through seeds; where some fail others are drawn until ``wanted`` are there.
+        """Return curves through seeds; where some fail others are drawn, up to ``wanted`` curves.
 
         ``report`` takes the share that is done, out of 100.
         """
@@ -178,7 +178,7 @@ class CellTracer:
         spacing: float,
         report: Callable[[int], None],
     ) -> tuple[Curves, dict[str, float]]:
-        """Return evenly spaced curves, and how even they are; ``report`` as for traced.
+        """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced.
 
         Parameters
         ----------
