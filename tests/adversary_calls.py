@@ -451,7 +451,7 @@ MARKED = {
     "geometry.nspace.projection.perspective": ("^result$", "where a point is not finite"),
     "geometry.nspace.projection.push_forward": ("^result$", "Not finite where points or vectors"),
     "geometry.nspace.projection.turn": ("^result$", "Not finite where a number is not"),
-    "shading.engine.depth_range": (r"^\[[01]\]$", "(inf, -inf) if there is no point"),
+    "shading.engine.depth_range": (r"^\[[01]\]$", "(inf, -inf) without points"),
     "geometry.relief.depth_map.depth_map": ("^result$", "NaN where no triangle covers the node"),
     "geometry.relief.shadowing.inside_length": (
         "^result$", "infinity where a ray never leaves the solid; NaN",

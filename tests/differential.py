@@ -273,7 +273,7 @@ def by_numpy(plan, inputs, output):
     shade_block(plan, slice(0, inputs.rows), inputs, output)
 
 
-class Interpreted(loops.Program):
+class Interpreted(loops.LoopProgram):
     """A program whose text runs as Python, point by point: a check of the text."""
 
     @property

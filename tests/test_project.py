@@ -3,6 +3,7 @@
 import ast
 import re
 import sys
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -49,6 +50,16 @@ REASONS = {
     "uv": "command: installs the lowest versions",
     "tomli": "read above on Python 3.10 only",
 }
+#: Names of locals and parameters that tell how a value came about, not what it is, and the largest
+#: share of them in the package, in per cent.
+ORIGINS = {"found", "own", "given", "made", "one", "told", "known", "asked"}
+MOST_ORIGINS = 2.0
+#: Largest number of words that make a reader stumble, per 10,000 words of docstrings.
+STUMBLES = {"what": 32, "whose": 12, "there": 11}
+#: Names that stand for more than one class.
+HOMONYMS = {
+    "Eye", "Look", "Part", "Places", "Shader", "Shape", "Shown", "Stroke", "Topology", "_Reader",
+}  # fmt: skip
 #: Extras whose packages the files of a folder may import, besides the dependencies.
 ALLOWED = {
     "vizlight": ["fast", "formats", "maps", "movie", "rays", "scale", "solids", "tracts", "test"],
@@ -71,22 +82,28 @@ def modules(packages):
     return {m for p in packages for m in MODULES.get(p, {p.replace("-", "_")})}
 
 
-def third_party(text):
-    """Return the modules of other packages that a file imports."""
-    found = set()
-    for node in ast.walk(ast.parse(text)):
+@cache
+def nodes_of(folder):
+    """Return all nodes of the syntax tree of each file of a folder."""
+    paths = (ROOT / folder).rglob("*.py")
+    return {path: [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))] for path in paths}
+
+
+def third_party(nodes):
+    """Return the modules of other packages that the nodes of a file import."""
+    modules = set()
+    for node in nodes:
         if isinstance(node, ast.Import):
-            found |= {alias.name.partition(".")[0] for alias in node.names}
+            modules |= {alias.name.partition(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            found.add(node.module.partition(".")[0])
-    return found - sys.stdlib_module_names - {"vizlight"}
+            modules.add(node.module.partition(".")[0])
+    return modules - sys.stdlib_module_names - {"vizlight"}
 
 
 @cache
 def imported(folder):
     """Return the modules that each file of a folder imports."""
-    paths = (ROOT / folder).rglob("*.py")
-    return {path: third_party(path.read_text(encoding="utf-8")) for path in paths}
+    return {path: third_party(nodes) for path, nodes in nodes_of(folder).items()}
 
 
 @pytest.mark.parametrize("folder", ALLOWED)
@@ -111,7 +128,7 @@ def test_what_is_imported_is_declared(folder):
     ],
 )
 def test_an_undeclared_import_is_found(text, found):
-    assert third_party(text) == found
+    assert third_party(ast.walk(ast.parse(text))) == found
 
 
 def test_what_is_declared_is_used():
@@ -151,3 +168,49 @@ def test_every_licence_is_in_the_folder_of_the_data():
     assert len(files) == 7
     readme = (ROOT / "datasets" / "README.md").read_text(encoding="utf-8")
     assert all(f"`{path.name}`" in readme for path in files)
+
+
+def local_names(function):
+    """Return the names that a function binds, without those of functions inside of it."""
+    names = {node.arg for node in ast.walk(function.args) if isinstance(node, ast.arg)}
+    left = [*function.body] if isinstance(function.body, list) else [function.body]
+    while left:
+        node = left.pop()
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        if not isinstance(node, (*FUNCTIONS, ast.ClassDef)):
+            left += ast.iter_child_nodes(node)
+    return names
+
+
+FUNCTIONS = ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda
+
+
+@pytest.fixture(scope="module")
+def nodes():
+    """Return all nodes of the syntax trees of the package."""
+    return [node for nodes in nodes_of("vizlight").values() for node in nodes]
+
+
+def test_a_local_is_of_its_own_function():
+    outer = ast.parse("def f(a, *b):\n    c = [d for d in a]\n    def g(e): h = e").body[0]
+    assert local_names(outer) == {"a", "b", "c", "d"}
+
+
+def test_names_say_what_a_value_is(nodes):
+    names = [name for node in nodes if isinstance(node, FUNCTIONS) for name in local_names(node)]
+    assert 100 * sum(name in ORIGINS for name in names) <= MOST_ORIGINS * len(names)
+
+
+def test_docstrings_are_read_once(nodes):
+    kinds = ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Module
+    texts = [ast.get_docstring(node) or "" for node in nodes if isinstance(node, kinds)]
+    words = re.findall(r"[a-z']+", " ".join(texts).lower())
+    count = Counter(words)
+    shares = {word: 10_000 * count[word] / len(words) for word in STUMBLES}
+    assert {word: share for word, share in shares.items() if share > STUMBLES[word]} == {}
+
+
+def test_a_class_name_stands_for_one_thing(nodes):
+    names = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
+    assert {name for name, count in names.items() if count > 1} <= HOMONYMS

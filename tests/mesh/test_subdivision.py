@@ -6,12 +6,12 @@ import pyvista as pv
 from vectors import areas
 
 from vizlight.mesh import subdivision
-from vizlight.mesh.subdivision import Cells
+from vizlight.mesh.subdivision import SplitCells
 
 
 def split_at_random(points, cells, random, rounds=6):
     """Return cells whose edges are split at random, and the points of the result."""
-    parts, fresh = Cells(points, cells), np.arange(len(cells))
+    parts, fresh = SplitCells(points, cells), np.arange(len(cells))
     for _ in range(rounds):
         codes = np.unique(parts.edges(fresh)[0])
         chosen = np.sort(random.choice(codes, max(len(codes) // 4, 1), replace=False))
@@ -76,7 +76,7 @@ def test_shares_are_those_of_the_corners_of_a_cell(random):
 def test_lines_that_share_points_and_segments(random):
     points = random.standard_normal((6, 3))
     mesh = pv.PolyData(points, lines=[4, 0, 1, 2, 3, 3, 4, 1, 2, 1, 5, 2, 3, 0])
-    parts = Cells(points, subdivision.simplices(mesh))
+    parts = SplitCells(points, subdivision.simplices(mesh))
     assert parts.parents.tolist() == [[0, 1], [1, 2], [2, 3], [4, 1], [1, 2], [3, 0]]
     for _ in range(3):
         codes = np.unique(parts.edges(np.arange(len(parts.corners)))[0])

@@ -6,9 +6,9 @@ Elsewhere they are the oracle's: see ``shading/test_compiled.py``.
 import numpy as np
 
 from vizlight.model import formulas
-from vizlight.model.manifolds import Arrays, Surface
+from vizlight.model.manifolds import ArrayAlgebra, Surface
 
-W = Arrays(np.dtype(float))
+W = ArrayAlgebra(np.dtype(float))
 
 
 def test_highlights_of_a_surface():

@@ -18,7 +18,7 @@ import traces
 
 from vizlight import Scene, View, pieces
 from vizlight.files import FileError
-from vizlight.pieces.workers import LOST, Work, repeated
+from vizlight.pieces.workers import LOST, RetryingMap, repeated
 
 PLAIN = Scene(view=View(direction=(0, 0, 1)))
 #: A scheduler and a worker in one process, which prints the address.
@@ -133,7 +133,7 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     work = pieces.Processes(1)
     one = pieces.sources.pieces_of(slabs(tmp_path), 64.0)[0]
     with pytest.raises(pieces.PieceError, match=r"piece slices \[0:19\]: workers ended while"):
-        Work(work, 0, False).each(always_killed, [(one,)], "light")
+        RetryingMap(work, 0, False).each(always_killed, [(one,)], "light")
     assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
 
 

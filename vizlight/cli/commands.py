@@ -15,16 +15,16 @@ from cyclopts import Parameter
 import vizlight
 from vizlight._words import message
 from vizlight.cli import scenes
-from vizlight.cli.job import Job
+from vizlight.cli.job import Command
 from vizlight.cli.options import (
     GROUPS,
     Color,
     Common,
+    FilePart,
     Flag,
     Output,
-    Part,
     Pieces,
-    Shape,
+    SurfacePart,
     Target,
     fraction,
     keywords,
@@ -46,7 +46,7 @@ HTML = ".html"
 
 @takes("streamlines", "Streamlines", example="flow.vtu --tangents V --model cylinder --diffuse 0.8")
 def streamlines(
-    files: list[Path], /, *, part: Part, how: object, common: Common, color: Color
+    files: list[Path], /, *, part: FilePart, how: object, common: Common, color: Color
 ) -> int:
     """Trace streamlines of a vector field, free or on a surface, and light them.
 
@@ -58,10 +58,10 @@ def streamlines(
     files
         Mesh with vectors; of several each is lit by itself.
     """
-    given = keywords(how)
-    if given.get("line_field") and "," in given.get("tangents", ""):
-        given["tangents"] = tuple(given["tangents"].split(","))
-    return _shown("flow", "streamlines", files, part, given, common, color)
+    light_options = keywords(how)
+    if light_options.get("line_field") and "," in light_options.get("tangents", ""):
+        light_options["tangents"] = tuple(light_options["tangents"].split(","))
+    return _shown("flow", "streamlines", files, part, light_options, common, color)
 
 
 # Heights are exaggerated, and lit, as they are shown.
@@ -75,7 +75,7 @@ def relief(
     files: list[Path],
     /,
     *,
-    shape: Shape,
+    shape: SurfacePart,
     how: object,
     lit: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
     common: Common,
@@ -90,12 +90,12 @@ def relief(
     lit
         Show the light with its shadow; otherwise the cos-theta shadow t alone.
     """
-    given = keywords(how) | ({} if lit else {"lit": False})
-    return _shown("relief", "relief", files, shape, given, common, color)
+    light_options = keywords(how) | ({} if lit else {"lit": False})
+    return _shown("relief", "relief", files, shape, light_options, common, color)
 
 
 @takes("sky", "Sky", example="terrain.dem --error 0.01 -o sky.png", up="sky_up")
-def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+def sky(files: list[Path], /, *, shape: SurfacePart, how: object, common: Common) -> int:
     """Find the share of a uniform sky that each point sees.
 
     Parameters
@@ -107,7 +107,7 @@ def sky(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
 
 
 @takes("fur", "Fur", example="bunny.ply --absorption 0.7 --fibres 200000")
-def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+def fur(files: list[Path], /, *, shape: SurfacePart, how: object, common: Common) -> int:
     """Cover a surface with fibres, and light them and the skin below.
 
     Parameters
@@ -126,7 +126,7 @@ def fur(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> i
 @takes(
     "isoluminance", "Contours", example="part.stl --levels 8 --specular 0", without=("tolerance",)
 )
-def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common) -> int:
+def contours(files: list[Path], /, *, shape: SurfacePart, how: object, common: Common) -> int:
     """Find the contours of equal luminance of a surface, and the bands between them.
 
     Parameters
@@ -141,7 +141,7 @@ def contours(files: list[Path], /, *, shape: Shape, how: object, common: Common)
 def project(files: list[Path], /, *, how: object, common: Common) -> int:
     """Turn, cut and project a mesh of n-space to 3-space, lit before or after.
 
-    Lights and eye have 3 numbers, or n before the projection; what they lack is 0. The light is
+    Lights and eye have 3 numbers, or n before the projection; missing ones are 0. The light is
     computed for an eye at infinity.
 
     Parameters
@@ -149,24 +149,24 @@ def project(files: list[Path], /, *, how: object, common: Common) -> int:
     files
         Mesh with positions and tangents in n-space; of several each is lit by itself.
     """
-    return _shown("projection", "projected", files, Part(), keywords(how), common)
+    return _shown("projection", "projected", files, FilePart(), keywords(how), common)
 
 
 def _shown(
     question: str,
     stem: str,
     files: Sequence[Path],
-    part: Part,
-    given: Keywords,
+    part: FilePart,
+    light_options: Keywords,
     common: Common,
     color: Color | None = None,
     material: Mapping[str, float] | None = None,
 ) -> int:
     """Show files by the question of a command; return the exit code."""
     wishes = scenes.wishes_of(
-        common, part, color, question=question, light=given, material=material
+        common, part, color, question=question, light=light_options, material=material
     )
-    return Job(wishes, common.out, stem, part).carry_out(files)
+    return Command(wishes, common.out, stem, part).carry_out(files)
 
 
 # Places in n-space need lights and an eye in n-space, which scripts have.
@@ -203,19 +203,19 @@ def light(
     refine
         Largest error between points, such as 1/255: cells are split where it is more.
     """
-    given = keywords(how)
+    light_options = keywords(how)
     if indices := _indices(common.out, pieces):
         if legibility:
             raise ValueError(message("--legibility", "one mesh, lit as a whole", "pieces"))
         if refine:
             remedy = "refine their union, so that split edges match"
             raise ValueError(message("--refine", "one mesh", "pieces", remedy))
-        return _light_pieces(files, indices, target, given, common, color, pieces)
-    wishes = scenes.wishes_of(common, target, color, light=given)
+        return _light_pieces(files, indices, target, light_options, common, color, pieces)
+    wishes = scenes.wishes_of(common, target, color, light=light_options)
     wishes = replace(wishes, refine=_refinement(refine))
-    tell = functools.partial(_explain, given) if explain else None
+    tell = functools.partial(_explain, light_options) if explain else None
     recipe = words(target, how)
-    job = Job(wishes, common.out, "lit", target, tell, legibility, recipe)
+    job = Command(wishes, common.out, "lit", target, tell, legibility, recipe)
     return job.carry_out(files)
 
 
@@ -248,7 +248,7 @@ def view(
     color: Color,
     browser: Annotated[bool, Parameter(group=GROUPS["Output"])] = True,
 ) -> int:
-    """Show a file as the command light does, in a page whose light follows the reader's eye.
+    """Show a file as the command light does, in a page with light that follows the reader's eye.
 
     Parameters
     ----------
@@ -272,7 +272,7 @@ def view(
     try:
         wishes = scenes.wishes_of(common, target, color, light=keywords(how))
         out = replace(common.out, output=pages)
-        code = Job(wishes, out, "view", target, recipe=words(target, how)).carry_out([file])
+        code = Command(wishes, out, "view", target, recipe=words(target, how)).carry_out([file])
         if folder is not None:
             pages[0].chmod(0o600)
     finally:
@@ -284,7 +284,7 @@ def view(
     return code
 
 
-def _explain(given: Keywords, look: Look) -> str:
+def _explain(light_options: Keywords, look: Look) -> str:
     """Return the plan by which a mesh was lit, in words."""
     from vizlight.filters.lighting import part_of
     from vizlight.mesh.blocks import all_blocks
@@ -295,7 +295,7 @@ def _explain(given: Keywords, look: Look) -> str:
     name = str(look.drawing.lit.keywords.get("name", look.drawing.name))
     record = vizlight.provenance(lit, name)
     scene = vizlight.Scene.from_dict(record["scene"])
-    options = LightOptions(**(given | record.get("options", {})))
+    options = LightOptions(**(light_options | record.get("options", {})))
     inputs = part_of(next(all_blocks(lit)), "", scene, options).inputs
     layout = inputs.layout._replace(dimmed=bool(options.bundle))
     return decide(scene, layout, options, record["precision"]).explain()
@@ -303,33 +303,33 @@ def _explain(given: Keywords, look: Look) -> str:
 
 def _indices(out: Output, pieces: Pieces) -> list[Path]:
     """Return the outputs that are indices of pieces, which options of pieces need."""
-    asked = [f"--{name}" for name, value in vars(pieces).items() if value is not None]
-    found = [path for path in out.output or () if path.suffix.lower().startswith(".pv")]
-    if found or asked:
+    flags = [f"--{name}" for name, value in vars(pieces).items() if value is not None]
+    indices = [path for path in out.output or () if path.suffix.lower().startswith(".pv")]
+    if indices or flags:
         from vizlight.pieces.sources import INDEX
 
-        found = [path for path in found if path.suffix.lower() in INDEX.values()]
-        if not found and asked:
+        indices = [path for path in indices if path.suffix.lower() in INDEX.values()]
+        if not indices and flags:
             endings = ", ".join(INDEX.values())
-            expected = f"an output that ends in {endings}, of pieces, beside {asked[0]}"
+            expected = f"an output that ends in {endings}, of pieces, beside {flags[0]}"
             got = ", ".join(str(path) for path in out.output or ()) or "none"
             raise ValueError(message("output", expected, got))
-    return found
+    return indices
 
 
 def _light_pieces(
     files: Sequence[Path],
     indices: Sequence[Path],
     target: Target,
-    given: Keywords,
+    light_options: Keywords,
     common: Common,
     color: Color,
     pieces: Pieces,
 ) -> int:
     """Light files as pieces of one mesh, or print the script that does; return the exit code."""
     out = common.out
-    wishes = scenes.wishes_of(common, target, color, light=given)
-    # The key of a light belongs to what is shown of the whole.
+    wishes = scenes.wishes_of(common, target, color, light=light_options)
+    # The key of a light belongs to the picture of the whole.
     wishes = replace(wishes, picture={**wishes.picture, "key": False})
     for part, names in (
         (target, "time times overlay at nodata clip threshold slice warp"),
@@ -349,8 +349,8 @@ def _light_pieces(
         expected = "one index of pieces"
         raise ValueError(message("output", expected, ", ".join(map(str, indices))))
     if indices[0].suffix == ".pvtp":
-        given = {"feature_angle": "auto"} | given
-    what = scenes.known(contour=target.contour, level=target.level, slab=pieces.slab)
+        light_options = {"feature_angle": "auto"} | light_options
+    what = scenes.given_options(contour=target.contour, level=target.level, slab=pieces.slab)
     from vizlight.looks.framing import ISOMETRIC
     from vizlight.shading.results import part_name
 
@@ -362,12 +362,12 @@ def _light_pieces(
         camera.path = "vizlight.pieces.camera_on"
         camera.keywords |= what | runs | shown
     scene = wishes.scene(common.lights.question or "plain", camera)
-    more = {"out": indices[0], **runs, **given}
+    more = {"out": indices[0], **runs, **light_options}
     lit = wishes.step("lit", "pieces.light", list(files), scene, **what, **more)
-    name = str(given.get("name", "luminance"))
+    name = str(light_options.get("name", "luminance"))
     scalars = part_name(name, "rgb") if scene.run().colored else name
     panel = Step("", "render.Panel", Step("whole", "vizlight.read", indices[0]), scalars)
-    drawing = scenes.known(
+    drawing = scenes.given_options(
         background=out.background,
         line_width=None if out.line_width == 1 else out.line_width,
         backend=out.backend,
@@ -377,18 +377,18 @@ def _light_pieces(
     if out.script:
         say(source([[lit, *drawn]]))
         return OK
-    made = lit.run()
-    none = f", {made.empty} empty" if made.empty else ""
-    say(f"{made.points} points lit in {len(made.files)} pieces{none}")
-    low, high = made.ranges[name]
+    result = lit.run()
+    none = f", {result.empty} empty" if result.empty else ""
+    say(f"{result.points} points lit in {len(result.files)} pieces{none}")
+    low, high = result.ranges[name]
     if high > 1:
         complain(f"{name} is from {low:.3g} to {high:.3g}; above 1 it is white in a picture")
-    say(f"mesh     {made.path}")
+    say(f"mesh     {result.path}")
     return max((draw(step.run) for step in drawn), default=OK)
 
 
 def _runs(pieces: Pieces) -> dict[str, Step]:
-    """Return what the pieces are lit by: this process, processes, or a cluster."""
+    """Return the options of the workers: this process, processes, or a cluster."""
     if pieces.workers is not None:
         from vizlight import _check
 

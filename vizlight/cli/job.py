@@ -1,4 +1,4 @@
-"""What a command does with each file: look, compute, write and draw, or print a script."""
+"""The run of a command on each file: look, compute, write and draw, or print a script."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from vizlight.looks.steps import Step, in_order, source, written
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight.cli.options import Output, Part
+    from vizlight.cli.options import FilePart, Output
     from vizlight.looks.look import Look
     from vizlight.looks.wishes import Wishes
 
-#: Words before the path of what a step writes, where it is no mesh.
+#: Words before the path that a step writes, for anything but a mesh.
 SAID = {
     "render.save": "picture", "movie.orbit": "movie", "movie.travel": "movie",
     ".vizlight.save_graphic": "picture", "vizlight.live_html": "page",
@@ -33,23 +33,23 @@ SAID = {
 
 
 @dataclass(frozen=True)
-class Job:
-    """One command: the options of its looks, and what is written of each.
+class Command:
+    """One command: the options of its looks, and its output.
 
     Parameters
     ----------
     wishes : Wishes
         Options of the look.
     out : Output
-        What is written.
+        Options of the output.
     stem : str
         End of the names of files that have none.
-    part : Part
-        What is taken of each file.
+    part : FilePart
+        Part of each file that is taken.
     tell : callable, optional
-        Function that returns what a reader should know of a look, or an empty text.
+        Function that returns the notes on a look, or an empty text.
     read : bool
-        Whether to print what a reader can read back.
+        Whether to print the legibility of the picture.
     recipe : sequence of str
         Options of a command that lights a file alike, which a page copies.
     """
@@ -57,7 +57,7 @@ class Job:
     wishes: Wishes
     out: Output
     stem: str
-    part: Part
+    part: FilePart
     tell: Callable[[Look], str] | None = None
     read: bool = False
     recipe: Sequence[str] | None = None
@@ -65,7 +65,7 @@ class Job:
     def carry_out(self, paths: Sequence[Path]) -> int:
         """Show each file, or print the script that does; return the exit code.
 
-        Several files make one picture where one file is named for it. Otherwise an error in one of
+        Several files make one picture if the output names one file. Otherwise an error in one of
         them is reported, and the others are still done. A file whose steps are taken one by one
         counts as several.
         """
@@ -114,8 +114,8 @@ class Job:
         if time is not None:
             part["time"] = time
         only = len(paths) == 1
-        made = [] if self.recipe is None or not only else [str(paths[0]), *self.recipe]
-        wishes = replace(self.wishes, part=part, source=made)
+        source_words = [] if self.recipe is None or not only else [str(paths[0]), *self.recipe]
+        wishes = replace(self.wishes, part=part, source=source_words)
         return decide(paths[0] if only else list(paths), wishes)
 
     def _run(self, look: Look, outputs: Sequence[Sequence[Step]]) -> int:
@@ -139,7 +139,7 @@ class Job:
             kind = SAID.get(steps[-1].path, "mesh")
             # A page is written without a library that draws too.
             codes.append(draw(functools.partial(written, steps), kind))
-        # Last, so that an error is all that is said of what could not be done.
+        # Last, so that an error is the only word on a step that failed.
         say(f"shown    {look.summary}")
         for note in dict.fromkeys(look.notes):
             say(f"note     {note}")
@@ -152,7 +152,7 @@ class Job:
         from vizlight.mesh.blocks import all_blocks
 
         step = look.drawing.lit
-        # What is read and cut comes before, so that the time is the light's alone.
+        # Reading and cutting come before, so that the time is the light's alone.
         for value in step.parts():
             if isinstance(value, Step):
                 value.run()
@@ -195,7 +195,7 @@ def _check_output(out: Output, *, several: bool) -> None:
 
 
 def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list[list[Step]]:
-    """Return the steps that write each file; no input is among what they write."""
+    """Return the steps that write each file; they write over no input."""
     import pyvista as pv
 
     from vizlight import files

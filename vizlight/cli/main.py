@@ -63,7 +63,7 @@ def _with_command(words: list[str]) -> list[str]:
 
 
 def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
-    # The error of reading says what VTK said.
+    # The error of reading repeats VTK's words.
     if category.__name__ != "VTKExecutionWarning":
         complain(message)
 
@@ -93,7 +93,7 @@ def demo(
     size
         Width and height of the picture in pixels.
     backend
-        What draws: egl (the default) or osmesa.
+        Library that draws: egl (the default) or osmesa.
     """
     from rich.table import Table
 
@@ -101,15 +101,15 @@ def demo(
 
     pixels = options.pixels(size)
     files.make_folder("out", out)
-    made = demo.light_winds()
-    mesh = files.write_mesh(made.globe, out / "flow.vtp")
+    winds = demo.light_winds()
+    mesh = files.write_mesh(winds.globe, out / "flow.vtp")
     table = Table(title="The winds of July, lit by their direction")
     for heading in ("light", "points", "terms", "time, ms", "error", "within 10°", "by the key"):
         table.add_column(heading, justify="left" if heading in ("light", "terms") else "right")
-    for lamp, terms, milliseconds, error, read in made.rows:
+    for lamp, terms, milliseconds, error, read in winds.rows:
         by_key = "unreadable" if read.unreadable else f"{read.median:.1f}°"
         table.add_row(
-            lamp, f"{made.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
+            lamp, f"{winds.globe.n_points}", terms, f"{milliseconds:.2f}", f"{error:.1e}",
             f"{read.within_10:.0%}", by_key,
         )  # fmt: skip
     shown = console()
@@ -117,10 +117,10 @@ def demo(
     shown.print("Error: the largest of float32 luminance against plain NumPy in float64.")
     shown.print("Within 10°: share of the picture where the direction is read by the key.")
     shown.print("By the key: median error of a reader who matches hues; 45° is chance. The plan:")
-    shown.print(made.plan, highlight=False)
+    shown.print(winds.plan, highlight=False)
     shown.print(f"mesh     {mesh}", highlight=False)
     picture = functools.partial(
-        demo.save_picture, made, out / "flow.png", size=pixels, backend=backend
+        demo.save_picture, winds, out / "flow.png", size=pixels, backend=backend
     )
     return draw(picture)
 
@@ -130,7 +130,7 @@ app.register_install_completion_command(help="Install shell completion.")
 
 @app.command
 def doctor() -> int:
-    """Say what is installed, what draws here, what is missing and how to get it."""
+    """Print the installed packages, the library that draws, and how to get missing ones."""
     from rich.table import Table
 
     from vizlight import doctor
@@ -138,8 +138,8 @@ def doctor() -> int:
 
     table = Table("part", "found", title="vizlight doctor")
     table.columns[1].overflow = "fold"
-    for part, found in doctor.findings():
-        table.add_row(part, found)
+    for part, finding in doctor.findings():
+        table.add_row(part, finding)
     console().print(table)
     try:
         render.choose_backend()
@@ -153,7 +153,7 @@ def doctor() -> int:
 def paraview() -> int:
     """Print the paths of the plugin for ParaView and of its scripts, and how to start ParaView.
 
-    PYTHONPATH is the folder of the plugin, whose sitecustomize.py lets ParaView's Python find
+    PYTHONPATH is the folder of the plugin; its sitecustomize.py lets ParaView's Python find
     vizlight alone.
     """
     folder = Path(__file__).resolve().parents[1] / "vtk" / "paraview"

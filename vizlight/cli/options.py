@@ -1,6 +1,6 @@
-"""Options of the command line: groups of them, how their text is read, and those of a filter.
+"""Options of the command line: their groups, the readers of their text, and those of a filter.
 
-Those of a filter are made of what its source declares. The source is read without an import: a
+Those of a filter follow the signature in its source. The source is read without an import: a
 filter loads PyVista, which takes longer than the help of a command.
 """
 
@@ -50,7 +50,7 @@ GROUPS = {
 
 @Parameter(name="*", group=GROUPS["What is lit"])
 @dataclass(frozen=True, kw_only=True)
-class Part:
+class FilePart:
     """Part of a file.
 
     Parameters
@@ -70,7 +70,7 @@ class Part:
     threshold
         Range NAME:LOW:HIGH of an array that is kept; an end may be empty.
     contour
-        Point array whose isosurface is taken.
+        Point array of the isosurface that is taken.
     level
         Value of the isosurface. Default: the middle of the range.
     """
@@ -87,13 +87,13 @@ class Part:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shape(Part):
+class SurfacePart(FilePart):
     """Surface of a file.
 
     Parameters
     ----------
     slice
-        Plane NORMAL:OFFSET whose section is taken.
+        Plane NORMAL:OFFSET of the section that is taken.
     warp
         Point array by which points are moved: heights, or vectors.
     exaggeration
@@ -109,8 +109,8 @@ class Shape(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Target(Shape):
-    """What of a file is lit.
+class Target(SurfacePart):
+    """Lit part of a file.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class Finish:
 
 @Parameter(name="*", group=GROUPS["Camera"])
 @dataclass(frozen=True, kw_only=True)
-class Eye:
+class CameraOptions:
     """Camera.
 
     Parameters
@@ -205,7 +205,7 @@ class Eye:
 @Parameter(name="*", group=GROUPS["Output"])
 @dataclass(frozen=True, kw_only=True)
 class Output:
-    """Files and what is printed.
+    """Files and printed text.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ class Color:
     Parameters
     ----------
     array
-        Array that is shown, by what it holds: values, heights, vectors, or U,V for components.
+        Array that is shown, by its contents: values, heights, vectors, or U,V for components.
     scalars
         Array that colours the picture, times the light; or direction, for lines.
     cmap
@@ -273,7 +273,7 @@ class Pieces:
     workers
         Number of processes. Default: 1, this one.
     scheduler
-        Address of a scheduler of Dask, whose workers light the pieces.
+        Address of a scheduler of Dask with the workers that light the pieces.
     slab
         Largest size in MB of a slab of a structured grid. Default: 64.
     """
@@ -290,7 +290,7 @@ class Common:
 
     lights: Lights = Lights()
     finish: Finish = Finish()
-    eye: Eye = Eye()
+    eye: CameraOptions = CameraOptions()
     out: Output = Output()
 
 
@@ -312,7 +312,7 @@ _AXES = {
 
 
 def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
-    """Return a vector x,y,z, with zeros for what it lacks of n components.
+    """Return a vector x,y,z, with zeros for missing components up to n.
 
     A direction is not zero, and may be the name of an axis; one toward a light may be
     azimuth,altitude in degrees.
@@ -353,12 +353,12 @@ def interval(name: str, text: str) -> tuple[str, float, float]:
     """Return the name of an array and the ends of a range, infinite where one is empty."""
     # From the right, as the name of an array may have colons of its own.
     array, *ends = text.rsplit(":", 2)
-    found = [
+    bounds = [
         numbers(end, (1,)) if end else (empty,)
         for end, empty in zip(ends, (-math.inf, math.inf), strict=False)
     ]
-    if len(found) == 2 and all(found):
-        low, high = found[0][0], found[1][0]
+    if len(bounds) == 2 and all(bounds):
+        low, high = bounds[0][0], bounds[1][0]
         if low <= high and any(ends):
             return array, low, high
     expected = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
@@ -417,7 +417,7 @@ ROOT = Path(__file__).parents[1]
 #: Types that text can be read as, by their names in annotations, beside those that are choices. A
 #: filter's option that has none of them is left to scripts.
 TYPES: Mapping[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
-#: Keywords of filters that are not options of what they make.
+#: Keywords of filters that are not options of their results.
 NOT_OPTIONS = ("scene", "inplace", "progress_bar")
 #: Number of letters of a description that is shortened.
 SHORTEST, LENGTH = 10, 64
@@ -433,14 +433,14 @@ def _levels(name: str, text: str) -> object:
 
 def _rotations(name: str, texts: list[str]) -> object:
     """Return turns PLANE:ANGLE as pairs."""
-    found = []
+    turns = []
     for text in texts:
         turned, colon, angle = text.partition(":")
         if not colon:
             expected = "PLANE:ANGLE with the angle in radians, such as xw:0.3"
             raise ValueError(message(f"--{name}", expected, repr(text)))
-        found.append((turned, fraction(name, angle)))
-    return found
+        turns.append((turned, fraction(name, angle)))
+    return turns
 
 
 def _name_or_vector(_: str, text: str) -> object:
@@ -501,31 +501,31 @@ READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
 
 def keywords(how: Foreign) -> Keywords:
     """Return the options of a filter that differ from their defaults, by the filter's names."""
-    found: Keywords = {}
-    for one in fields(how):
-        value, name = getattr(how, one.name), one.metadata["name"]
+    values: Keywords = {}
+    for option in fields(how):
+        value, name = getattr(how, option.name), option.metadata["name"]
         # In Python 1, 1.0 and True are equal, but not the same option.
-        if value != one.default or type(value) is not type(one.default):
+        if value != option.default or type(value) is not type(option.default):
             _, read, _ = READ.get(name, (None, None, None))
-            found[name] = read(one.name.replace("_", "-"), value) if read else value
-    return found
+            values[name] = read(option.name.replace("_", "-"), value) if read else value
+    return values
 
 
 def words(*parts: Foreign) -> list[str]:
     """Return the words of a command that give options of dataclasses the values that they have."""
-    found = []
+    texts = []
     for part in parts:
-        for one in fields(part):
-            value, flag = getattr(part, one.name), one.name.replace("_", "-")
-            if value == one.default or value is None:
+        for option in fields(part):
+            value, flag = getattr(part, option.name), option.name.replace("_", "-")
+            if value == option.default or value is None:
                 continue
             if isinstance(value, bool):
-                found.append(f"--{flag}" if value else f"--no-{flag}")
+                texts.append(f"--{flag}" if value else f"--no-{flag}")
                 continue
             # A value that begins with a minus is one word with its option.
             rows = value if isinstance(value, list | tuple) else [value]
-            found += [f"--{flag}={row}" for row in rows]
-    return found
+            texts += [f"--{flag}={row}" for row in rows]
+    return texts
 
 
 def takes(
@@ -536,7 +536,7 @@ def takes(
     Parameters
     ----------
     filter_ : str
-        Name of a public filter, whose signature and documentation list its options.
+        Name of a public filter; its signature and documentation list the options.
     group : str
         Heading of the filter's options in the help.
     example : str
@@ -552,16 +552,16 @@ def takes(
         return command
 
     def add(command: Callable[..., int]) -> None:
-        own = arguments_of(filter_, without=without, renamed=renamed)
-        Parameter(name="*", group=Group(group, sort_key=1))(own)
+        arguments = arguments_of(filter_, without=without, renamed=renamed)
+        Parameter(name="*", group=Group(group, sort_key=1))(arguments)
         # Cyclopts reads the annotations, and this class was made just now.
-        command.__annotations__["how"] = own
+        command.__annotations__["how"] = arguments
         types, signature = get_type_hints(command), inspect.signature(command)
         # A group without a given option has its defaults.
         command.__kwdefaults__ = {
-            name: types[name]() if one.default is one.empty else one.default
-            for name, one in signature.parameters.items()
-            if one.kind is one.KEYWORD_ONLY
+            name: types[name]() if parameter.default is parameter.empty else parameter.default
+            for name, parameter in signature.parameters.items()
+            if parameter.kind is parameter.KEYWORD_ONLY
         }
         name = command.__name__
         app.command(
@@ -573,7 +573,7 @@ def takes(
     return decorate
 
 
-#: What adds each command to the app that is not there yet: options take time to find.
+#: Functions that add the commands that are not in the app yet: options take time to find.
 _LATER: dict[str, Callable[[], None]] = {}
 
 
@@ -590,7 +590,7 @@ def arguments_of(
     """Return a class of the options of a filter, each with the first clause on it; see takes."""
     module = f"vizlight.filters.{filter_}"
     node, texts = _function(module, filter_)
-    made: list[tuple[str, object, object]] = []
+    options: list[tuple[str, object, object]] = []
     for argument, value in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True):
         name = argument.arg
         text_type = _type(name, argument.annotation, module)
@@ -604,9 +604,9 @@ def arguments_of(
             show_default=bool(default) and not isinstance(default, bool),
             allow_leading_hyphen=name in READ,
         )
-        own = field(default=default, metadata={"name": name})
-        made.append(((renamed or {}).get(name, name), Annotated[text_type, shown], own))
-    kind = make_dataclass("Arguments", made, frozen=True, kw_only=True)
+        entry = field(default=default, metadata={"name": name})
+        options.append(((renamed or {}).get(name, name), Annotated[text_type, shown], entry))
+    kind = make_dataclass("Arguments", options, frozen=True, kw_only=True)
     # Cyclopts looks for descriptions in the source of the module of a class; this one has none.
     kind.__module__ = __package__ or __name__
     return kind
@@ -614,32 +614,32 @@ def arguments_of(
 
 @functools.cache
 def _names(module: str) -> dict[str, Meaning]:
-    """Return what the names of a module stand for, none for a module of another package."""
+    """Return the meanings of the names of a module, none for a module of another package."""
     path = ROOT.joinpath(*module.split(".")[1:])
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    found: dict[str, Meaning] = {}
+    meanings: dict[str, Meaning] = {}
     if not (module.startswith("vizlight.") and path.is_file()):
-        return found
+        return meanings
     body = ast.parse(path.read_text(encoding="utf-8")).body
-    # What stands below ``if`` is for types alone.
+    # Names below ``if`` are for types alone.
     for node in (
         *body,
-        *(one for outer in body if isinstance(outer, ast.If) for one in outer.body),
+        *(inner for outer in body if isinstance(outer, ast.If) for inner in outer.body),
     ):
         if isinstance(node, ast.FunctionDef):
-            found.setdefault(node.name, node)
+            meanings.setdefault(node.name, node)
         elif isinstance(node, ast.Assign):
-            found.setdefault(ast.unparse(node.targets[0]), node.value)
+            meanings.setdefault(ast.unparse(node.targets[0]), node.value)
         elif isinstance(node, ast.ImportFrom):
             for alias in node.names:
-                found.setdefault(alias.asname or alias.name, (str(node.module), alias.name))
-    return found
+                meanings.setdefault(alias.asname or alias.name, (str(node.module), alias.name))
+    return meanings
 
 
 def _find(module: str, name: str) -> ast.AST | None:
-    """Return what a name of a module, which may import it from another, stands for."""
-    found = _names(module).get(name)
-    return _find(*found) if isinstance(found, tuple) else found
+    """Return the meaning of a name of a module, which may import it from another."""
+    meaning = _names(module).get(name)
+    return _find(*meaning) if isinstance(meaning, tuple) else meaning
 
 
 def _function(module: str, name: str) -> tuple[ast.FunctionDef, dict[str, str]]:
@@ -654,7 +654,7 @@ def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
     if name in READ:
         return READ[name][0]
     names = ast.unparse(annotation).split(" | ") if annotation else []
-    parts = [TYPES.get(one) or _choices(one, module) for one in names]
+    parts = [TYPES.get(word) or _choices(word, module) for word in names]
     parts = [part for part in parts if part is not None]
     if bool in parts:
         # A flag; the name of an array in its place is left to scripts.
@@ -664,14 +664,14 @@ def _type(name: str, annotation: ast.expr | None, module: str) -> object | None:
 
 def _choices(name: str, module: str) -> object | None:
     """Return the type ``Literal`` that a name in an annotation stands for, or None."""
-    found = _find(module, name)
-    if isinstance(found, ast.Subscript) and ast.unparse(found.value) == "Literal":
-        return Literal[ast.literal_eval(found.slice)]
+    meaning = _find(module, name)
+    if isinstance(meaning, ast.Subscript) and ast.unparse(meaning.value) == "Literal":
+        return Literal[ast.literal_eval(meaning.slice)]
     return None
 
 
 def _text(name: str, texts: Mapping[str, str]) -> str:
-    """Return the description of an option; one that refers to another function is taken there."""
+    """Return the description of an option; one that refers to another function is taken from it."""
     if name in READ:
         return READ[name][2]
     names = [*texts]
@@ -691,13 +691,13 @@ def first_clause(text: str) -> str:
     """Return the first sentence, or as much of it as fits a line and ends where a clause does."""
     sentence = re.split(r"(?<=\S[.;])\s(?=[A-Z0-9\"])", text)[0].rstrip(".")
     ends = []
-    for found in re.finditer(
+    for match in re.finditer(
         r"[:;] |, (?=which|such|see|or its|before|in )| \((?=[A-Z])", sentence
     ):
-        before = sentence[: found.start()]
+        before = sentence[: match.start()]
         # No clause ends within brackets.
         if all(before.count(a) == before.count(b) for a, b in ("()", "{}", "[]")):
-            ends.append(found.start())
+            ends.append(match.start())
     ends = [end for end in ends if end >= SHORTEST]
     short = [end for end in ends if end <= LENGTH]
     if len(sentence) > LENGTH and ends:

@@ -1,4 +1,4 @@
-"""What the command line prints and draws, and its exit codes."""
+"""Text and pictures of the command line, and its exit codes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _put(stream: TextIO | None, text: str) -> None:
         stream.write(text)
         stream.flush()
     except OSError:
-        # What is left in the buffer must not fail once more when the process ends.
+        # The rest in the buffer must not fail once more when the process ends.
         with Path(os.devnull).open("wb") as nothing:
             os.dup2(nothing.fileno(), stream.fileno())
 
@@ -51,12 +51,12 @@ def one_line(error: object) -> str:
     return re.sub(rf"(?<![\w.(])([a-z]+(?:_[a-z]+)*)={value}(?=[ ,;.)]|$)", _option, text)
 
 
-def _option(found: re.Match[str]) -> str:
-    if re.search(r"\w\([^()]*$", found.string[: found.start()]):
+def _option(match: re.Match[str]) -> str:
+    if re.search(r"\w\([^()]*$", match.string[: match.start()]):
         # A call of Python stays what it is.
-        return found[0]
-    value = (found[2] if found.re.groups > 1 else "") or ""
-    return f"--{found[1].replace('_', '-')} {shlex.quote(value.strip(chr(39)))}".removesuffix(" ''")
+        return match[0]
+    value = (match[2] if match.re.groups > 1 else "") or ""
+    return f"--{match[1].replace('_', '-')} {shlex.quote(value.strip(chr(39)))}".removesuffix(" ''")
 
 
 def complain(text: object) -> None:
@@ -78,9 +78,9 @@ def draw(write: Callable[[], Path], kind: str = "picture") -> int:
 
 
 def console() -> Console:
-    """Return a console as wide as the terminal, or ``WIDTH`` wide where there is no terminal."""
+    """Return a console as wide as the terminal, or ``WIDTH`` wide without a terminal."""
     from rich.console import Console
 
     # Brackets in the text, as in an extra of a package, are not markup.
-    own = Console(markup=False)
-    return own if own.is_terminal else Console(width=WIDTH, markup=False)
+    terminal = Console(markup=False)
+    return terminal if terminal.is_terminal else Console(width=WIDTH, markup=False)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import vizlight
 from vizlight._words import message
 from vizlight.cli import options
-from vizlight.cli.options import Shape
+from vizlight.cli.options import SurfacePart
 from vizlight.looks.steps import Step
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import pyvista as pv
 
     from vizlight._types import Foreign, Keywords, Vector
-    from vizlight.cli.options import Color, Common, Finish, Lights, Part
+    from vizlight.cli.options import Color, Common, FilePart, Finish, Lights
     from vizlight.looks.wishes import SceneMaker, Wishes
     from vizlight.scene import Scene
 
@@ -29,14 +29,14 @@ HUES = ("direction", "heading", "shape")
 
 def wishes_of(
     common: Common,
-    part: Part | None = None,
+    part: FilePart | None = None,
     color: Color | None = None,
     *,
     question: str = "auto",
     light: Mapping[str, object] | None = None,
     material: Mapping[str, float] | None = None,
 ) -> Wishes:
-    """Return the options of a look that a command has; what needs no mesh is checked.
+    """Return the options of the look of a command; those that need no mesh are checked.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def wishes_of(
     if part is not None:
         check_part(part)
     _check_lights(lights)
-    picture: Keywords = known(
+    picture: Keywords = given_options(
         background=out.background,
         line_width=None if out.line_width == 1 else out.line_width,
         backend=out.backend,
@@ -70,7 +70,7 @@ def wishes_of(
     array = None
     if color is not None:
         array = color.array
-        picture |= known(scalars=color.scalars, cmap=color.cmap)
+        picture |= given_options(scalars=color.scalars, cmap=color.cmap)
         if lights.question in HUES and color.scalars is not None:
             expected = "no --scalars beside it, whose hues would hide the hues of the light"
             raise ValueError(
@@ -81,7 +81,7 @@ def wishes_of(
 
             color_table([], cmap=color.cmap)
     scene = None if lights.scene is None else _scene_of(lights.scene)
-    seen = known(
+    seen = given_options(
         up=None if eye.up is None else options.vector("up", eye.up),
         parallel=eye.parallel or None,
         zoom=None if eye.zoom == 1 else eye.zoom,
@@ -104,10 +104,10 @@ def wishes_of(
     )
 
 
-def check_part(part: Part) -> None:
+def check_part(part: FilePart) -> None:
     """Check the options of a part that need no mesh."""
     together = [("level", part.level, "contour", part.contour)]
-    if isinstance(part, Shape) and part.slice is not None and part.contour is not None:
+    if isinstance(part, SurfacePart) and part.slice is not None and part.contour is not None:
         raise ValueError(message("--slice", "no --contour beside it", "both"))
     for option, value, needs, other in together:
         if value is not None and other is None:
@@ -121,21 +121,21 @@ def _check_lights(lights: Lights) -> None:
             raise ValueError(message("--for", "lights of its own", got, "leave one out"))
 
 
-def _part_of(part: Part) -> Keywords:
-    """Return what is taken of the data, its texts read."""
-    taken = known(
+def _part_of(part: FilePart) -> Keywords:
+    """Return the options of the part of the data, with their texts read."""
+    taken = given_options(
         time=part.time, overlay=part.overlay, nodata=part.nodata, contour=part.contour,
         level=part.level,
     )  # fmt: skip
     if part.at:
         taken["at"] = dict(options.place("at", text) for text in part.at)
-    if isinstance(part, Shape):
-        taken |= known(warp=part.warp, exaggeration=part.exaggeration, globe=part.globe)
+    if isinstance(part, SurfacePart):
+        taken |= given_options(warp=part.warp, exaggeration=part.exaggeration, globe=part.globe)
     if part.threshold:
         taken["threshold"] = [options.interval("threshold", text) for text in part.threshold]
     if part.clip:
         taken["clip"] = [_plane("clip", text) for text in part.clip]
-    if isinstance(part, Shape) and part.slice is not None:
+    if isinstance(part, SurfacePart) and part.slice is not None:
         taken["slice"] = _plane("slice", part.slice)
     return taken
 
@@ -148,7 +148,7 @@ def _plane(option: str, text: str) -> tuple[Vector, Vector]:
     return normal, tuple(offset * component / length for component in normal)
 
 
-def times(file: Path, part: Part) -> list[float | str | None]:
+def times(file: Path, part: FilePart) -> list[float | str | None]:
     """Return the times of the steps of a file that are lit one by one.
 
     Raises
@@ -177,7 +177,7 @@ def times(file: Path, part: Part) -> list[float | str | None]:
     return [*chosen]
 
 
-def known(**values: object) -> Keywords:
+def given_options(**values: object) -> Keywords:
     """Return the options that are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
@@ -196,7 +196,7 @@ def _scene_maker(
     """
     from vizlight.looks.wishes import plain_scene
 
-    changes = known(**vars(finish))
+    changes = given_options(**vars(finish))
     explicit = bool(lights.light or lights.light_position or lights.headlight)
     named = filtered and lights.question is not None
     if base is None and not (changes or explicit or material or lights.depth_cue or named):
@@ -208,7 +208,7 @@ def _scene_maker(
         if base is not None:
             content = Step("", ".read_text", Step("", "pathlib.Path", lights.scene))
             scene = Step("scene", "vizlight.Scene.from_dict", Step("", "json.loads", content))
-            fresh = known(**vars(base.material)) if changes else {}
+            fresh = given_options(**vars(base.material)) if changes else {}
             keep_view = base.view is not None
         else:
             # Lamps that are named light a plain material, not that of a preset.
@@ -216,7 +216,7 @@ def _scene_maker(
             scene = plain_scene(lights.question or plain, view, camera, n)
             keep_view = True
             if changes and not fresh:
-                fresh = known(**vars(scene.run().material))
+                fresh = given_options(**vars(scene.run().material))
         values: Keywords = {}
         if explicit:
             values["lights"] = _lights(lights, n)
@@ -224,7 +224,7 @@ def _scene_maker(
             values["material"] = Step("", "vizlight.Material", **(fresh | changes))
         if not keep_view:
             values["view"] = view
-        values |= known(depth_cue=cue)
+        values |= given_options(depth_cue=cue)
         if not values:
             return scene
         if scene.path == "vizlight.Scene":

@@ -32,8 +32,8 @@ def bas_relief(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        Surface, closed or open, or a mesh whose outer surface is taken; a level grid is raised by
-        its active scalars. Not changed.
+        Surface, closed or open; of another mesh the outer surface is taken; a level grid is raised
+        by its active scalars. Not changed.
     direction : vector of 3 components, default: (0, 0, 1)
         Direction toward the eye, which is at infinity.
     up : vector of 3 components, optional

@@ -42,7 +42,7 @@ LONGEST = 1e30
 
 @dataclass(frozen=True, kw_only=True)
 class FurOptions(Options):
-    """How fur grows and is lit.
+    """Options of fur and its light.
 
     The fields are keywords of :func:`vizlight.fur`.
     """
@@ -258,8 +258,8 @@ def fur(
         sides = np.asarray(skin.point_data[NORMALS])
         shares = in_medium(lines, medium, None), in_medium(skin, medium, sides)
         hairs, below = (
-            dataclasses.replace(own, occlusion=share)
-            for own, share in zip((hairs, below), shares, strict=True)
+            dataclasses.replace(inputs, occlusion=share)
+            for inputs, share in zip((hairs, below), shares, strict=True)
         )
     # A depth cue spans the skin.
     scene = lighting.fit_depth_cue(scene, [below.points])
@@ -268,7 +268,7 @@ def fur(
     parts = [(hairs, light), (below, light.for_surface())]
     del hairs, below
     results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
-    # What the light was computed from is freed before the cells of the lines are made.
+    # The inputs of the light are freed before the cells of the lines are made.
     parts.clear()
     if any(coat.origin):
         # The engine lit points less the origin; the mesh has them where its surface is.
@@ -281,9 +281,9 @@ def fur(
 
 
 class _Coat:
-    """What fibres are made from: point arrays of a triangulated surface, in float32.
+    """Point arrays of a triangulated surface, in float32, from which fibres are made.
 
-    Points are less ``origin``, which is not 0 where the surface is far from there.
+    Points are less ``origin``, which is not 0 for a surface far from the origin of space.
     """
 
     def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
@@ -306,13 +306,13 @@ class _Coat:
         self.normals = np.asarray(skin.point_data[NORMALS], dtype=np.float32)
         self.vectors: Array | None = None
         if options.tangents is not None:
-            given = vectors_of(surface, "tangents", options.tangents, 3)
-            lost = len(given) - int(np.count_nonzero(np.all(np.isfinite(given), axis=1)))
+            vectors = vectors_of(surface, "tangents", options.tangents, 3)
+            lost = len(vectors) - int(np.count_nonzero(np.all(np.isfinite(vectors), axis=1)))
             if lost:
                 what = "the vectors are not finite: fibres there follow the normals"
-                _check.warn(f"{lost} of {len(given)} of {what}")
+                _check.warn(f"{lost} of {len(vectors)} of {what}")
             # Of length 1, so that long vectors do not prevail where they are interpolated.
-            self.vectors = kernels.unit_rows(given).astype(np.float32)
+            self.vectors = kernels.unit_rows(vectors).astype(np.float32)
         self.toward = _toward(surface, options.toward)
         self.length: Array | float = (
             LENGTH * size if options.length is None else _lengths(surface, options.length)
@@ -320,7 +320,7 @@ class _Coat:
         # The unit of the heights of fur, in which light is lost.
         mean = float(np.mean(self.length)) if np.size(self.length) else 0.0
         self.unit = mean if options.density is None and mean > 0 else 1.0
-        # All that is interpolated stands in one table, so that it is looked up once.
+        # All interpolated values stand in one table, so that they are looked up once.
         with np.errstate(invalid="ignore"):
             # The origin goes before the numbers are rounded to float32, which far away has few
             # digits.
@@ -337,7 +337,7 @@ class _Coat:
         self._cuts = np.cumsum([part.shape[1] for part in parts])[:-1]
 
     def fibres(self) -> tuple[ShadingInputs, int]:
-        """Grow all fibres; return what they are lit by, and the number of those reversed."""
+        """Grow all fibres; return the inputs of their light, and the number of those reversed."""
         options = self.options
         count, m = options.fibres, options.segments + 1
         # Straight fibres have one tangent each.
@@ -373,7 +373,8 @@ class _Coat:
                     normals[at] = normal.T
                 if heights is not None:
                     height = self._heights(offsets, normal)
-                    # Fur above a point is what the highest point of its fibre is higher by.
+                    # Fur above a point is its distance from the height of the highest point of its
+                    # fibre.
                     np.subtract(height.max(axis=0), height, out=heights[at].T)
                 reversed_ += inside
             return reversed_
@@ -381,7 +382,7 @@ class _Coat:
         # Threads share blocks of seeds, each with a generator of its own: the fur does not depend
         # on their number.
         inside = sum(_pool.run(work, _pool.blocks(count, geometry.SEED_BLOCK)))
-        made = ShadingInputs(
+        inputs = ShadingInputs(
             points=points.reshape(-1, 3),
             tangents=tangents.reshape(-1, 3),
             normals=normals,
@@ -392,21 +393,21 @@ class _Coat:
             repeat=m,
             origin=self.origin,
         )
-        return made, inside
+        return inputs, inside
 
     def _grown(
         self, face: Indices, weights: Array, phase: Array | None
     ) -> tuple[Array, Array, Array, Array, int]:
         """Return roots, normals, directions, points less roots, and the number reversed."""
         corners = self.faces.take(face, axis=0)
-        found: Array = self._table.take(corners[:, 0], axis=0)
+        rows: Array = self._table.take(corners[:, 0], axis=0)
         # Barycentric weights of the roots, corner after corner of their triangles.
-        found *= weights[:, :1]
+        rows *= weights[:, :1]
         for i in (1, 2):
             corner = self._table.take(corners[:, i], axis=0)
             corner *= weights[:, i : i + 1]
-            found += corner
-        columns = iter(np.split(np.ascontiguousarray(found.T), self._cuts))
+            rows += corner
+        columns = iter(np.split(np.ascontiguousarray(rows.T), self._cuts))
         # Between corners the mean of unit normals is shorter than 1.
         root, normal = next(columns), kernels.unit(next(columns))[0]
         way, inside = self._ways(normal, None if self.vectors is None else next(columns))
@@ -423,7 +424,7 @@ class _Coat:
         way, size = kernels.unit(vector)
         # A fibre without a direction of its own, as at a vector of 0, stands along the normal.
         way = np.where(size > 0, way, normal)
-        # What would grow into the surface is turned over, and counted for the warning.
+        # Fibres that would grow into the surface are reversed, and counted for the warning.
         inside = kernels.dot(way, normal) < 0
         way[:, inside] *= -1
         return way, int(np.count_nonzero(inside))

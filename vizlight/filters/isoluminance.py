@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class ContourOptions(Options):
-    """Which contours are drawn, and how the surface is lit.
+    """Options of contours and of the light of the surface.
 
     The fields are keywords of :func:`vizlight.isoluminance`.
     """
@@ -156,18 +156,24 @@ def isoluminance(
     taken, with the result, is at most three times that of mesh and result, and some 20 MB.
     Source: Isoluminance.
     """
-    asked = ContourOptions.of(locals())
+    options = ContourOptions.of(locals())
     start = time.perf_counter()
     # The many places that are lit on the way are no result, and no report counts them.
     with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
-        made, bands, light = _make(mesh, scene, asked, lambda share: show(int(100 * share)))
+        result, bands, light = _make(mesh, scene, options, lambda share: show(int(100 * share)))
         show(100)
     seconds = time.perf_counter() - start
     if report.is_open():
         # With tangents the luminance is interpolated, and its middles have no light of their own to
         # compare.
-        _note(bands, light, seconds, 1024 * made.actual_memory_size, sampled=asked.tangents is None)
-    return made
+        _note(
+            bands,
+            light,
+            seconds,
+            1024 * result.actual_memory_size,
+            sampled=options.tangents is None,
+        )
+    return result
 
 
 def _make(
@@ -187,16 +193,16 @@ def _make(
                         option, "None for a solid, which has its own", "an array", "leave it out"
                     )
                 )
-        found = _of_solid(mesh, light)
-        rgb = _rgb(found, light) if scene.colored else None
-        return _blocks(found, options.name, light.record(), rgb, patches=True), found, light
-    given: object = mesh
-    if not isinstance(given, pv.DataSet | pv.MultiBlock):
+        bands = _of_solid(mesh, light)
+        rgb = _rgb(bands, light) if scene.colored else None
+        return _blocks(bands, options.name, light.record(), rgb, patches=True), bands, light
+    data: object = mesh
+    if not isinstance(data, pv.DataSet | pv.MultiBlock):
         remedy = "combine solids from vizlight.Sphere, Frustum and Block"
         raise TypeError(
             _check.message("mesh", "a PyVista mesh or a solid", type(mesh).__name__, remedy)
         )
-    blocks.check(given)
+    blocks.check(data)
     if not any(block.n_points for block in blocks.all_blocks(mesh)):
         return _of_mesh(pv.PolyData(), light)
     # Blocks are joined, so that all have the same contours.
@@ -221,9 +227,9 @@ class _Light:
 
     def lit(self, points: Array, normals: Array) -> Shading:
         """Return the light of points with normals."""
-        asked = self.options
+        options = self.options
         self.last = engine.shade(
-            points, None, self.scene, normals=normals, model=asked.model, precision="float64"
+            points, None, self.scene, normals=normals, model=options.model, precision="float64"
         )
         return self.last
 
@@ -235,13 +241,13 @@ class _Light:
 
 
 def _of_solid(solid: Solid, light: _Light) -> Bands:
-    """Return the bands of a solid, in closed form if there is one."""
-    scene, asked = light.scene, light.options
+    """Return the bands of a solid, in closed form if possible."""
+    scene, options = light.scene, light.options
     low = scene.material.ambient * scene.ambient_intensity
     # With ambient and diffuse light alone there are closed forms, and the ambient term is the
     # least.
     dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
-    found: Bands | Laminae | None = None
+    closed_form: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
         # A light that follows the view has a fixed direction or position only in that view.
@@ -249,30 +255,30 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
         source: Keywords = {
             "direction": lamp.direction, "position": lamp.position, "ambient": low,
             "diffuse": scene.material.diffuse * lamp.intensity,
-            "attenuation": lamp.attenuation, "levels": asked.levels,
+            "attenuation": lamp.attenuation, "levels": options.levels,
         }  # fmt: skip
         if isinstance(solid, Sphere):
-            found = closed.sphere(solid.center, solid.radius, **source)
+            closed_form = closed.sphere(solid.center, solid.radius, **source)
         # A frustum has a closed form for parallel light alone.
         if isinstance(solid, Frustum) and lamp.direction is not None:
-            found = closed.truncus(
+            closed_form = closed.truncus(
                 solid.center, solid.axis, solid.radii, height=solid.height, **source
             )
-    if isinstance(found, banding.Bands):
-        return found
+    if isinstance(closed_form, banding.Bands):
+        return closed_form
     # Without a closed form the bands are refined on triangles of the exact surfaces.
-    light.shape = tessellation.tessellate(solid, tolerance=asked.tolerance)
+    light.shape = tessellation.tessellate(solid, tolerance=options.tolerance)
     return refinement.draw(
-        light.shape, light, asked.levels, low=low if dull else None, progress=light.progress
+        light.shape, light, options.levels, low=low if dull else None, progress=light.progress
     )
 
 
 def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
     """Return bands and contours of a mesh."""
     scene, options, levels = light.scene, light.options, light.options.levels
-    asked = options.light
+    light_options = options.light
     angle = options.feature_angle
-    if angle is not None and normals.are_computed(mesh, asked) and mesh.n_points:
+    if angle is not None and normals.are_computed(mesh, light_options) and mesh.n_points:
         # Points are split below, and only arrays that the mesh carries go with them.
         if not isinstance(options.tangents, str | None):
             expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
@@ -283,14 +289,14 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     # The surface of another mesh numbers its points anew: arrays without a name are taken there
     # too.
     if ids is not None:
-        asked = dataclasses.replace(
-            asked,
-            normals=_on_surface(mesh, "normals", asked.normals, ids),
-            tangents=_on_surface(mesh, "tangents", asked.tangents, ids),
+        light_options = dataclasses.replace(
+            light_options,
+            normals=_on_surface(mesh, "normals", light_options.normals, ids),
+            tangents=_on_surface(mesh, "tangents", light_options.tangents, ids),
         )
-    inputs = lighting.part_of(surface, "", scene, asked).inputs
-    # This light says which points can be lit, and with tangents it is itself what is cut.
-    (lit,), fitted = lighting.light([(inputs, asked)], scene, progress_bar=False)
+    inputs = lighting.part_of(surface, "", scene, light_options).inputs
+    # This light says which points can be lit; with tangents it is itself cut into bands.
+    (lit,), fitted = lighting.light([(inputs, light_options)], scene, progress_bar=False)
     invalid = int(np.count_nonzero(~lit.valid[used]))
     if invalid:
         _check.warn(unlit(invalid, len(used)))
@@ -305,7 +311,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         carried = {}
         bands = banding.none(spacing.steps(levels, 0.0, 0.0))
     elif options.tangents is None:
-        unit, shown = _normals(surface, asked, inputs, scene, warn=angle is None)
+        unit, shown = _normals(surface, light_options, inputs, scene, warn=angle is None)
         del inputs
         valid = lit.valid
         # Points whose normal was turned to the eye.
@@ -324,7 +330,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
             valid = np.tile(valid, 2)
             triangles = triangles + len(unit) * other[:, np.newaxis]
         rows = np.concatenate(columns, axis=1, dtype=np.float64)
-        # What is in ``rows`` is not kept twice, since the notes bound the memory.
+        # The contents of ``rows`` are not kept twice, since the notes bound the memory.
         del unit, shown, averted, columns
         lit_facets = refinement.LitTriangles(rows, triangles, light, valid)
         del rows, triangles
@@ -348,31 +354,31 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
     record = of_light(lit, "isoluminance", fitted, options)
     if scene.colored and options.tangents is None:
         rgb = _rgb(bands, light)
-    made = _blocks(bands, options.name, record, rgb, patches=False)
-    bands_block = made["bands"]
+    out = _blocks(bands, options.name, record, rgb, patches=False)
+    bands_block = out["bands"]
     assert isinstance(bands_block, pv.PolyData)
     # The carried values are the last columns of the points.
     last = bands.points.shape[1]
     for name, column in reversed(carried.items()):
         last -= column.shape[1]
-        found = bands.points[:, last : last + column.shape[1]]
+        interpolated = bands.points[:, last : last + column.shape[1]]
         kind = surface.point_data[name].dtype
-        shape = (len(found), *surface.point_data[name].shape[1:])
-        bands_block.point_data[name] = np.ascontiguousarray(found.reshape(shape), dtype=kind)
+        shape = (len(interpolated), *surface.point_data[name].shape[1:])
+        bands_block.point_data[name] = np.ascontiguousarray(interpolated.reshape(shape), dtype=kind)
     # PyVista would draw an active array of the points in place of the bands.
     bands_block.point_data.active_scalars_name = None
-    return made, bands, light
+    return out, bands, light
 
 
 def _normals(
-    surface: pv.PolyData, asked: LightOptions, inputs: ShadingInputs, scene: Scene, *, warn: bool
+    surface: pv.PolyData, options: LightOptions, inputs: ShadingInputs, scene: Scene, *, warn: bool
 ) -> tuple[Array, Array]:
     """Return unit normals of a surface, and normals on the sides that are lit."""
-    found = normals.normals_of(surface, asked.normals, 3, normals.onlooker(scene), warn=warn)
+    vectors = normals.normals_of(surface, options.normals, 3, normals.onlooker(scene), warn=warn)
     assert inputs.normals is not None
     # The inputs have the normals on the side that the eye sees.
-    shown = np.asarray(inputs.normals[0 : len(found)], dtype=np.float64)
-    return kernels.unit_rows(np.asarray(found, dtype=np.float64)), shown
+    shown = np.asarray(inputs.normals[0 : len(vectors)], dtype=np.float64)
+    return kernels.unit_rows(np.asarray(vectors, dtype=np.float64)), shown
 
 
 def _on_surface(
@@ -413,8 +419,8 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
     """Record for the report the difference of bands from the light at their centres."""
     none: Array = np.empty((0, 3))
     places, normals = _middles(bands, light) if sampled and len(bands.values) else (none, none)
-    asked = light.options
-    terms = engine.plan(light.scene, normals=True, model=asked.model).terms
+    options = light.options
+    terms = engine.plan(light.scene, normals=True, model=options.model).terms
     report.note_bands(
         bands.values,
         len(bands.points),
@@ -425,12 +431,12 @@ def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bo
         seconds,
         size,
         bands.error,
-        model=asked.model,
+        model=options.model,
     )
 
 
 def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:
-    """Return the centres of polygons, on the exact surface if known, and unit normals there."""
+    """Return the centres of polygons, on the exact surface if known, and their unit normals."""
     middle, shape = bands.middles(), light.shape
     # The middle of a flat polygon is not on a curved surface: place and normal are taken from that.
     if shape is not None:

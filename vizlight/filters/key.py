@@ -1,4 +1,4 @@
-"""The key of a light: what its hues and its lightness mean, to be drawn beside the picture."""
+"""The key of a light: the meaning of its hues and its lightness, to be drawn beside a picture."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ RANGE, LEVELS, NAMES = "range", "levels", "names"
 #: Names of the field arrays that say that a bar is logarithmic, and whether values lie below and
 #: above its ends.
 SCALE, BEYOND = "logarithmic", "beyond"
-#: Name of the field array with what the whole key is about.
+#: Name of the field array with the title of the key.
 TITLE = "title"
 #: Words beside the key of each question: below it, or at the two ends of a bar.
 TEXTS: dict[str, tuple[str, ...]] = {
@@ -75,13 +75,13 @@ def key(
     Parameters
     ----------
     scene : Scene or str
-        Scene whose lights are all at infinity, as it lights the data, or a question of a preset.
+        Scene that lights the data, all its lights at infinity, or a question of a preset.
     question : {"direction", "slope", "heading", "shape", "value"}, optional
-        What the key tells. ``"direction"``: a disc of tangents that run from its centre.
+        Content of the key. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
         ``"value"``: a bar of the colours of data, below in the least light and above in full.
-        Default: the question of the preset whose light the scene has, otherwise ``"shape"``.
+        Default: the question of the preset with the light of the scene, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
     conditioned : bool, default: False
@@ -95,7 +95,7 @@ def key(
         Values within ``clim`` that ascend, at which the colours of the map have steps and numbers
         stand. Default: some round numbers.
     title : str, optional
-        What the values are, or what the light shows, with a unit in parentheses at its end. It
+        Name of the values, or of what the light shows, with a unit in parentheses at its end. It
         stands above the data, and the unit above a bar.
 
     Returns
@@ -120,7 +120,7 @@ def key(
     import pyvista as pv
 
     scene = required_scene(scene)
-    asked = question_of(scene) if question is None else question
+    topic = question_of(scene) if question is None else question
     steps: list[float] = []
     values = _check.coordinates("levels", levels).ravel()
     if len(values):
@@ -131,41 +131,41 @@ def key(
         steps = [(float(value) - low) / (high - low) for value in values]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
-    is_bar = asked in ("slope", "value")
-    x, y, faces = _bar(steps) if is_bar else _disc(HOLE * (asked == "direction"))
-    made = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
-    made[RGB] = colors_of(
-        scene, x, y, question=asked, exponent=exponent, conditioned=conditioned, cmap=cmap
+    is_bar = topic in ("slope", "value")
+    x, y, faces = _bar(steps) if is_bar else _disc(HOLE * (topic == "direction"))
+    mesh = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
+    mesh[RGB] = colors_of(
+        scene, x, y, question=topic, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
-    words = list(TEXTS[asked])
-    if asked == "value":
+    words = list(TEXTS[topic])
+    if topic == "value":
         if clim is None and isinstance(cmap, pv.LookupTable):
             clim = cmap.scalar_range
         names = _names_of(cmap)
         if names:
-            _put_words(made, NAMES, names)
+            _put_words(mesh, NAMES, names)
         if isinstance(cmap, pv.LookupTable):
             beyond = (cmap.GetUseBelowRangeColor(), cmap.GetUseAboveRangeColor())
-            made.field_data[SCALE], made.field_data[BEYOND] = [cmap.log_scale], beyond
+            mesh.field_data[SCALE], mesh.field_data[BEYOND] = [cmap.log_scale], beyond
         if clim is not None:
             ends = _check.limits("clim", clim)
-            made.field_data[RANGE] = ends
+            mesh.field_data[RANGE] = ends
             words = numerals(ends)
         if len(values):
-            made.field_data[LEVELS] = values
-    _put_words(made, WORDS, words)
+            mesh.field_data[LEVELS] = values
+    _put_words(mesh, WORDS, words)
     if title:
-        _put_words(made, TITLE, [_check.text("title", title)])
-    return made
+        _put_words(mesh, TITLE, [_check.text("title", title)])
+    return mesh
 
 
-def _put_words(made: pv.PolyData, name: str, words: Sequence[str]) -> None:
+def _put_words(mesh: pv.PolyData, name: str, words: Sequence[str]) -> None:
     """Attach words in any letters, where PyVista takes those of ASCII alone."""
     array = vtkStringArray()
     array.SetName(name)
     for word in words:
         array.InsertNextValue(word)
-    made.GetFieldData().AddArray(array)
+    mesh.GetFieldData().AddArray(array)
 
 
 def _names_of(cmap: ColorMap) -> list[str]:
@@ -189,7 +189,7 @@ def _annotated(cmap: ColorMap) -> list[tuple[float, str]]:
 
 
 def question_of(scene: Scene) -> Question:
-    """Return the question whose preset has the light of a scene, ``"shape"`` if there is none.
+    """Return the question of the preset with the light of a scene, ``"shape"`` for other light.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def question_of(scene: Scene) -> Question:
 
 
 def preset_of(scene: Scene) -> Question | None:
-    """Return the question whose preset has the light of a scene, None if there is none.
+    """Return the question of the preset with the light of a scene, None for other light.
 
     Parameters
     ----------
@@ -227,14 +227,14 @@ def preset_of(scene: Scene) -> Question | None:
     material = scene.material
     for name in get_args(Question):
         preset = PRESETS[name]()
-        own = preset.material
+        preset_material = preset.material
         # Without a highlight its colour and its power are of no account.
-        alike = (own.ambient, own.diffuse, own.specular) == (
+        alike = (preset_material.ambient, preset_material.diffuse, preset_material.specular) == (
             material.ambient, material.diffuse, material.specular,
         )  # fmt: skip
         if preset.lights == scene.lights and alike:
-            found: Question = name
-            return found
+            question: Question = name
+            return question
     return None
 
 

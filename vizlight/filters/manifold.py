@@ -88,7 +88,7 @@ def manifold(
     >>> mesh["position"].shape, mesh["frame"].shape
     ((256, 4), (256, 8))
     """
-    asked = ProjectOptions.of(locals()).changed()
+    options = ProjectOptions.of(locals()).changed()
     if callable(shape):
         expected, got = "a vizlight.geometry.manifolds.Manifold", "a function"
         remedy = "sample it by manifolds.parametric(function, domain, n)"
@@ -105,4 +105,4 @@ def manifold(
     mesh.point_data[POSITION] = shape.points
     # Rows of a frame stand one behind the other, since an array of VTK has one axis of components.
     mesh.point_data[FRAME] = shape.frame.reshape(count, shape.k * n)
-    return project(mesh, scene=scene, progress_bar=progress_bar, **asked)
+    return project(mesh, scene=scene, progress_bar=progress_bar, **options)

@@ -40,7 +40,7 @@ TIMES = "Time"
 
 @dataclass(frozen=True, kw_only=True)
 class PathlineOptions(LightOptions):
-    """How particles are carried, and the lines that they draw are lit.
+    """Options of particles that are carried, and of the light of their lines.
 
     The fields are keywords of :func:`vizlight.pathlines`.
     """
@@ -106,8 +106,8 @@ def pathlines(
     scene : Scene or str, optional
         Scene, the same at each step, by default ``Scene()``.
     kind : {"pathlines", "streaklines"}
-        Lines: the way of each particle that leaves its seed at the first time; or where the
-        particles are now that have left a seed one after the other, like smoke.
+        Kind of lines: the way of each particle that leaves its seed at the first time; or, like
+        smoke, the present places of particles that have left a seed one after the other.
     times : array_like, shape (S,), optional
         Times of a sequence of meshes, rising. Default: their field array ``TimeValue``.
     tangents : str, optional
@@ -134,10 +134,10 @@ def pathlines(
     ------
     pyvista.PolyData
         Lines of the second step, of the third and so on, with the point arrays ``luminance``, the
-        vectors that carry the particle, and ``Time``: when the particle was there, on pathlines,
-        or when it left its seed, on streaklines. Pathlines are lit by the vectors (``Tangents``),
-        streaklines by their own tangents. The field array ``TimeValue`` is the time of the step.
-        :func:`vizlight.draw.movie.save` makes a movie of them.
+        vectors that carry the particle, and ``Time``: when the particle was at the point, on
+        pathlines, or when it left its seed, on streaklines. Pathlines are lit by the vectors
+        (``Tangents``), streaklines by their own tangents. The field array ``TimeValue`` is the time
+        of the step. :func:`vizlight.draw.movie.save` makes a movie of them.
 
     Raises
     ------
@@ -172,27 +172,27 @@ def pathlines(
     >>> len(frames), "luminance" in frames[-1].point_data
     (4, True)
     """
-    asked = PathlineOptions.of(locals())
+    options = PathlineOptions.of(locals())
     scene = as_scene(scene)
     # Steps of a netCDF file are read with their meaning.
     if isinstance(series, str | Path) and Path(series).suffix.lower() in cf_grids.SUFFIXES:
         series = cf_grids.Steps(Path(series))
-    steps = Series(series, asked.times)
+    steps = Series(series, options.times)
     first = steps.mesh(0)
-    named = asked.tangents
+    named = options.tangents
     if named is None:
         named = first.point_data.active_vectors_name or meaning.only_vectors(first)
     if named is None:
         expected = "the name of a point array of 3 components"
         raise ValueError(_check.message("tangents", expected, None))
-    seeds = _seeds(first, steps.vectors(0, named), asked)
-    asked = dataclasses.replace(asked, tangents=named)
+    seeds = _seeds(first, steps.vectors(0, named), options)
+    options = dataclasses.replace(options, tangents=named)
 
     # A generator of its own: arguments are checked at the call, and not when the first frame is
     # asked for.
     def lit() -> Iterator[pv.PolyData]:
         with _progress.progress("carry", len(steps.times) - 1, show=progress_bar) as report:
-            for lines, light in _lines(steps, seeds, asked, report):
+            for lines, light in _lines(steps, seeds, options, report):
                 yield light_mesh(lines, scene, light, inplace=True)
 
     return lit()
@@ -200,31 +200,31 @@ def pathlines(
 
 def _seeds(mesh: pv.DataSet, vectors: Array, options: PathlineOptions) -> Array:
     """Return the points at which particles start."""
-    given = options.seeds
-    if isinstance(given, pv.DataSet):
-        return np.asarray(given.points, dtype=np.float64)
-    array = _check.floats("seeds", given).astype(np.float64)
+    seeds = options.seeds
+    if isinstance(seeds, pv.DataSet):
+        return np.asarray(seeds.points, dtype=np.float64)
+    array = _check.floats("seeds", seeds).astype(np.float64)
     if array.ndim:
         places: Array = _check.vectors("seeds", array, n=3)
         if places.ndim != 2 or not np.all(np.isfinite(places)):
             expected = "finite points of shape (M, 3)"
-            raise ValueError(_check.message("seeds", expected, _check.describe(given)))
+            raise ValueError(_check.message("seeds", expected, _check.describe(seeds)))
         return places
-    count = _check.integer("seeds", given, low=1)
+    count = _check.integer("seeds", seeds, low=1)
     moving = np.flatnonzero(np.any(vectors != 0, axis=1))
     if not len(moving):
         name = repr(options.tangents)
         raise ValueError(_check.message("seeds", "points at which the vectors are not zero", name))
     random = np.random.default_rng(options.seed)
     chosen = np.sort(random.choice(moving, min(count, len(moving)), replace=False))
-    found: Array = np.asarray(mesh.points, dtype=np.float64)[chosen]
-    return found
+    starts: Array = np.asarray(mesh.points, dtype=np.float64)[chosen]
+    return starts
 
 
 def _lines(
     steps: Series, seeds: Array, options: PathlineOptions, report: Callable[[int], None]
 ) -> Iterator[tuple[pv.PolyData, LightOptions]]:
-    """Yield the lines of each step, and how they are lit."""
+    """Yield the lines of each step, and the options of their light."""
     name, streaks = str(options.tangents), options.kind == "streaklines"
     # A pathline follows one particle, whose velocity is the tangent; a streak joins several
     # particles.
@@ -251,7 +251,7 @@ def _lines(
             # The last time of the step is the given one, to the bit.
             time = float(times[i]) if j + 1 == count else start + share * duration
             if streaks:
-                # What has left the mesh stays as a gap in the streak.
+                # Particles that have left the mesh stay as a gap in the streak.
                 rows = Rows(moved.reshape(-1, *seeds.shape), rows.vectors, rows.times).thinned(MOST)
                 # Vectors of a streak are looked up once, when it has arrived at the end of the
                 # step.

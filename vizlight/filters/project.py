@@ -1,4 +1,4 @@
-"""Turn, cut and project what a mesh carries in n-space, and light it before or after."""
+"""Turn, cut and project the n-space arrays of a mesh, and light it before or after."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LIGHT_ALONE = {field.name for field in dataclasses.fields(LightOptions)} - {"pos
 
 @dataclass(frozen=True, kw_only=True)
 class ProjectOptions(LightOptions):
-    """How a mesh is turned, cut, projected and lit.
+    """Options of turning, cutting, projecting and lighting a mesh.
 
     The fields are keywords of :func:`vizlight.project`.
     """
@@ -119,9 +119,9 @@ def project(
         A matrix of SO(n), ``("xw", angle)`` with the angle in radians, or a list of these, the
         first done first; see :func:`vizlight.geometry.nspace.projection.rotation`.
     hyperplane : (normal, offset), optional
-        Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh: what is left
-        is a (k - 1)-manifold. Point arrays of numbers are interpolated, the frame as the space
-        that it spans, whatever its basis at each point, and cut down to the directions within.
+        Hyperplane ``{x : x . normal / |normal| = offset}`` that cuts the turned mesh to a (k -
+        1)-manifold. Point arrays of numbers are interpolated, the frame as the space that it spans,
+        whatever its basis at each point, and cut down to the directions within.
     distance : float, optional
         Distance of the eye on the last axis from the origin, in the unit of the mesh: a
         perspective projection on the hyperplane across it. Default: orthographic, the first three
@@ -129,8 +129,7 @@ def project(
     positions : str, default: "position"
         Name of the point array of n components with the places of the points in n-space.
     frame : str or None, default: "frame"
-        Name of the point array of k n components, the tangents, row after row. None: there is
-        none.
+        Name of the point array of k n components, the tangents, row after row. None: no frame.
     turned : str or sequence of str, optional
         Names of further point arrays of m n components, vectors in n-space that turn with the
         mesh.
@@ -153,19 +152,19 @@ def project(
     pyvista.DataSet or pyvista.MultiBlock
         A mesh with points in 3-space, ``position`` and ``frame`` turned, and for k < 3 the point
         array ``projected_frame``: the derivative of the projection applied to the frame,
-        orthonormalised; for each array V of ``turned`` its image ``projected_V``, of the length
-        that it comes to. What was done is kept as field data, ``provenance(mesh, "projection")``;
-        ``luminance_provenance`` makes the light again from the mesh that was given.
-        It shares no memory with ``mesh``: arrays that nothing is done to are copies.
+        orthonormalised; for each array V of ``turned`` its image ``projected_V``, with the length
+        of the image. The steps are kept as field data, ``provenance(mesh, "projection")``; from
+        ``luminance_provenance`` the light can be made again from the original mesh. The result
+        shares no memory with ``mesh``: unchanged arrays are copies.
 
     Raises
     ------
     TypeError
         If an argument is of the wrong type.
     ValueError
-        If an array is missing or has the wrong number of components, the rotation is none, points
-        cannot be projected, or there is no light for what is left: points have no tangents, and
-        a 3-manifold fills 3-space.
+        If an array is missing or has the wrong number of components, the rotation is invalid,
+        points cannot be projected, or the result cannot be lit: points without tangents, or a
+        3-manifold that fills 3-space.
 
     Warns
     -----
@@ -175,57 +174,57 @@ def project(
     Notes
     -----
     Where the projection flattens the tangent space (at a silhouette) ``projected_frame`` has rows
-    of zero past its rank, which is what is left of unit tangents beyond rounding (see
-    :func:`vizlight.geometry.nspace.projection.push_frame`). Light after the projection is computed
-    there for the limit of the tangent spaces along the surface, from points around, with an error
-    of second order in their distance. Where there is none (a pinch point, or points around that
-    have lost their rank too) it is the ambient one, and ``luminance_valid`` marks the points; light
-    before the projection knows of no silhouette.
-    A frame on a cut is a mean of those at the points around, of second order in their distance,
-    and zero where one of them lacks tangents.
-    Error bounds: :func:`vizlight.geometry.nspace.projection.turn` and ``perspective``. Work is done
-    in float64, block by block; arrays keep their type. Source: Banks, section 3.
+    of zero past its rank, the number of unit tangents that survive beyond rounding (see
+    :func:`vizlight.geometry.nspace.projection.push_frame`). At such points, light after the
+    projection is computed for the limit of the tangent spaces along the surface, from points
+    around, with an error of second order in their distance. Points without a limit (a pinch point,
+    or one among points that have lost their rank too) have ambient light alone, and
+    ``luminance_valid`` marks the points; light before the projection knows of no silhouette. A
+    frame on a cut is a mean of those at the points around, of second order in their distance, and
+    zero where one of them lacks tangents. Error bounds:
+    :func:`vizlight.geometry.nspace.projection.turn` and ``perspective``. Work is done in float64,
+    block by block; arrays keep their type. Source: Banks, section 3.
     """
-    asked = ProjectOptions.of(locals())
+    options = ProjectOptions.of(locals())
     blocks.check(mesh)
     scene = optional_scene(scene)
     if scene is None:
         # Without a scene nothing is lit, and an option of the light would be ignored in silence.
-        for option in asked.changed():
+        for option in options.changed():
             if option in LIGHT_ALONE:
                 expected = "an option of project, or scene= beside an option of illuminate"
                 raise TypeError(_check.message(option, expected, "neither"))
     job = Turning(
-        rotation=asked.rotation,
-        hyperplane=asked.hyperplane,
-        distance=asked.distance,
-        positions=asked.positions or POSITION,
-        frame=asked.frame,
-        turned=tuple(asked.turned or ()),
-        cut=asked.cut,
+        rotation=options.rotation,
+        hyperplane=options.hyperplane,
+        distance=options.distance,
+        positions=options.positions or POSITION,
+        frame=options.frame,
+        turned=tuple(options.turned or ()),
+        cut=options.cut,
     )
 
     def lit(shown: pv.DataSet | pv.MultiBlock, when: LightWhen) -> pv.DataSet | pv.MultiBlock:
-        if scene is None or asked.light != when:
+        if scene is None or options.light != when:
             return shown
         prefix, positions = ("", job.positions) if when == "before" else (PROJECTED, None)
-        _check_tangents(shown, job, asked, prefix)
+        _check_tangents(shown, job, options, prefix)
         _check_space(shown, scene, when, job.positions)
-        frame = None if asked.frame is None else f"{prefix}{asked.frame}"
-        if when == "before" or frame is None or asked.tangents is not None:
-            return light_mesh(shown, scene, asked.by(frame, positions))
+        frame = None if options.frame is None else f"{prefix}{options.frame}"
+        if when == "before" or frame is None or options.tangents is not None:
+            return light_mesh(shown, scene, options.by(frame, positions))
         # Folds are lit by the limit of the tangents, which the result does not keep.
         named = list(blocks.all_blocks(shown))
-        found = [np.asarray(block.point_data[frame]) for block in named]
+        projected_frames = [np.asarray(block.point_data[frame]) for block in named]
         for block in named:
             limit = continued(block, frame)
             if limit is not None:
                 records.attach_rows(block, frame, limit)
-        made = light_mesh(shown, scene, asked.by(frame, positions))
+        lit_mesh = light_mesh(shown, scene, options.by(frame, positions))
         # The frame of the result is the projected one, which loses rank at the folds.
-        for block, rows in zip(blocks.all_blocks(made), found, strict=True):
+        for block, rows in zip(blocks.all_blocks(lit_mesh), projected_frames, strict=True):
             records.attach_rows(block, frame, rows)
-        return made
+        return lit_mesh
 
     # Each point counts twice: when it is turned and when it is projected.
     total = 2 * sum(block.n_points for block in blocks.all_blocks(mesh))
@@ -237,9 +236,11 @@ def project(
         out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
             for block in blocks.all_blocks(out):
-                told = records.provenance(block, asked.name)["options"].items()
-                own = {key: value for key, value in told if key not in asked.DECIDED}
-                records.amend(block, asked.name, "project", own, _own(asked))
+                record_options = records.provenance(block, options.name)["options"].items()
+                light_options = {
+                    key: value for key, value in record_options if key not in options.DECIDED
+                }
+                records.amend(block, options.name, "project", light_options, _own(options))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "
@@ -256,7 +257,7 @@ def _own(options: ProjectOptions) -> Record:
 def _each(
     mesh: pv.DataSet | pv.MultiBlock, work: Callable[[pv.DataSet], pv.DataSet], path: str = ""
 ) -> pv.DataSet | pv.MultiBlock:
-    """Return a mesh with work done on it, or on each block; an error says which block it is."""
+    """Apply a function to a mesh, or to each block; an error names the block."""
     if not isinstance(mesh, pv.MultiBlock):
         try:
             return work(mesh)
@@ -290,7 +291,7 @@ def _check_space(
 def _check_tangents(
     mesh: pv.DataSet | pv.MultiBlock, job: Turning, options: ProjectOptions, prefix: str
 ) -> None:
-    """Check that there are tangents to light by; where there are none, say why."""
+    """Check that the mesh has tangents to light by; the error says why it has none."""
     if options.tangents is not None:
         return
     if job.frame is None:

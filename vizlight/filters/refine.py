@@ -30,7 +30,7 @@ FINEST = 1e-5
 
 @dataclass(frozen=True, kw_only=True)
 class RefineOptions(LightOptions):
-    """How far a mesh is refined, and how it is lit.
+    """Options of refinement and light.
 
     The fields are keywords of :func:`vizlight.refine`.
     """
@@ -83,9 +83,8 @@ def refine(
     scene : Scene or str, optional
         Lights, material and view for which the mesh is refined, by default ``Scene()``.
     error : float, default: 1/255
-        Difference, in luminance and in each channel of a colour, of the light that is interpolated
-        between the points from the light there, that all but a small share of the places keep;
-        1e-5 or more.
+        Largest difference, in luminance and in each channel of a colour, between the interpolated
+        and the exact light of a place, for all but a small share of the places; 1e-5 or more.
     max_points : int, optional
         Largest number of points of each mesh. Default: one million, or twice those that it has.
     tangents, positions, normals, facing, feature_angle, conditioned, line_field, bundle, occlusion
@@ -133,8 +132,8 @@ def refine(
     less than 3 times that allowed. It is more at these places: where light jumps, as where a
     surface with a rim turns to the eye, up to 0.4 at 0.2 % of an isosurface; where tangents vanish
     between opposite ones, up to 0.7 at 0.5 % of a triangle; in slivers narrower than 1/4096 of the
-    diagonal, which are not split, 10 times that allowed. Where 0.5 % of the places or fewer are off
-    there is no warning.
+    diagonal, which are not split, 10 times that allowed. No warning is given where 0.5 % of the
+    places or fewer are off.
 
     The error holds for the view and the lights of the scene alone.
 
@@ -147,7 +146,7 @@ def refine(
     >>> bool(fine.n_points > ball.n_points), bool(fine["luminance_error"][0] <= 1 / 255)
     (True, True)
     """
-    asked = RefineOptions.of(locals())
+    options = RefineOptions.of(locals())
     scene = as_scene(scene)
     # Of cells that fill space the outer surface is lit.
     faces = [
@@ -156,26 +155,28 @@ def refine(
     ]
     whole = blocks.like(mesh, iter(faces))
     # New points see the sky of the refined mesh.
-    early = dataclasses.replace(asked, occlusion=None)
+    early = dataclasses.replace(options, occlusion=None)
     taken, parts = parts_of(whole, scene, early)
-    # The cue spans the points that there are: new ones lie between them.
+    # The cue spans the present points: new ones lie between them.
     fitted = lighting.fit_depth_cue(scene, [part.inputs.points for part in parts])
     # Each mesh is refined alone.
-    made = [
-        refining.refined(own, path, part, fitted, asked.error, asked.max_points)
-        for own, part, (_, path) in zip(taken, parts, blocks.named_blocks(whole), strict=True)
+    results = [
+        refining.refined(surface, path, part, fitted, options.error, options.max_points)
+        for surface, part, (_, path) in zip(taken, parts, blocks.named_blocks(whole), strict=True)
     ]
-    refining.warn_of_rest(made, asked.error)
-    fine = with_sky([one.mesh for one in made], asked.occlusion)
+    refining.warn_of_rest(results, options.error)
+    fine = with_sky([result.mesh for result in results], options.occlusion)
     parts = [
-        one.part._replace(
-            inputs=dataclasses.replace(one.part.inputs, occlusion=share_of(own, asked.occlusion))
+        result.part._replace(
+            inputs=dataclasses.replace(
+                result.part.inputs, occlusion=share_of(surface, options.occlusion)
+            )
         )
-        for own, one in zip(fine, made, strict=True)
+        for surface, result in zip(fine, results, strict=True)
     ]
-    lit = light_parts(whole, fine, parts, scene, asked, progress_bar=progress_bar)
-    for block, one in zip(blocks.all_blocks(lit), made, strict=True):
-        left = [one.left.error, one.left.share]
-        block.field_data[f"{asked.name}{refining.LEFT}"] = left
-        records.amend(block, asked.name, "refine", plain(asked))
+    lit = light_parts(whole, fine, parts, scene, options, progress_bar=progress_bar)
+    for block, result in zip(blocks.all_blocks(lit), results, strict=True):
+        left = [result.left.error, result.left.share]
+        block.field_data[f"{options.name}{refining.LEFT}"] = left
+        records.amend(block, options.name, "refine", plain(options))
     return lit

@@ -87,52 +87,52 @@ def relief_day(
     options = locals()
     if isinstance(mesh, pv.MultiBlock):
         del options["mesh"]
-        return blocks.each(mesh, lambda one: relief_day(one, **options))
-    asked = ReliefOptions.of(options)
-    own: dict[str, ArrayLike | None] = {
+        return blocks.each(mesh, lambda block: relief_day(block, **options))
+    shadow_options = ReliefOptions.of(options)
+    hour_options: dict[str, ArrayLike | None] = {
         "latitude": latitude,
         "day": day,
         "hours": hours,
         "directions": directions,
     }
     if sun is not None:
-        if any(value is not None for value in own.values()):
+        if any(value is not None for value in hour_options.values()):
             expected = "sun alone, without directions, latitude, day and hours"
             raise ValueError(_check.message("sun", expected, "both"))
-        directions = own["directions"] = _from_angles(sun)
+        directions = hour_options["directions"] = _from_angles(sun)
     toward = _directions(latitude, day, hours, directions)
     # A sun below the horizon lights nothing: its hours keep a column of 0.
     up = [way for way in toward if way[2] > 0]
     if not up:
-        given = "hours" if directions is None else "directions"
-        raise ValueError(_check.message(given, "the sun above the horizon", "night"))
+        argument = "hours" if directions is None else "directions"
+        raise ValueError(_check.message(argument, "the sun above the horizon", "night"))
     # Each hour with sun is one light of the scene; only t is asked for, in which a highlight has no
     # part.
     scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
-    found = relief_shadow(
+    shadowed = relief_shadow(
         mesh,
         scene,
         progress_bar=progress_bar,
-        **asked.changed() | {"components": True},
+        **shadow_options.changed() | {"components": True},
     )
-    name = asked.name
+    name = shadow_options.name
     mean = f"{name}_mean"
-    records.refuse_overwriting([(found, "")], name, [mean])
-    t = np.zeros((found.n_points, len(toward)))
+    records.refuse_overwriting([(shadowed, "")], name, [mean])
+    t = np.zeros((shadowed.n_points, len(toward)))
     for seen, hour in enumerate(np.flatnonzero(toward[:, 2] > 0)):
-        t[:, hour] = found.point_data[f"{name}_{seen}"]
+        t[:, hour] = shadowed.point_data[f"{name}_{seen}"]
     arrays: dict[str, Raw] = {name: t, mean: t.mean(axis=1)}
-    if name + VALID in found.point_data:
-        arrays[name + VALID] = np.asarray(found.point_data[name + VALID])
-    record = records.provenance(found, name)
+    if name + VALID in shadowed.point_data:
+        arrays[name + VALID] = np.asarray(shadowed.point_data[name + VALID])
+    record = records.provenance(shadowed, name)
     record["filter"] = "relief_day"
     # The record is a call of this filter, which has none of these options.
     for other in ("lit", "components", "occlusion"):
         del record["options"][other]
-    record["options"] |= plain(own)
-    records.attach(found, name, arrays, record)
-    records.activate(found, mean)
-    return found
+    record["options"] |= plain(hour_options)
+    records.attach(shadowed, name, arrays, record)
+    records.activate(shadowed, mean)
+    return shadowed
 
 
 def _from_angles(sun: ArrayLike) -> Array:

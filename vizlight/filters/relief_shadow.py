@@ -52,7 +52,7 @@ SMEARED, LONG, WIDE = 0.3, 0.2, 4.0
 
 @dataclass(frozen=True, kw_only=True)
 class ReliefOptions(CasterOptions):
-    """How cos-theta shadows are made.
+    """Options of cos-theta shadows.
 
     The fields are keywords of :func:`vizlight.relief_shadow`.
     """
@@ -111,8 +111,8 @@ def relief_shadow(
         is taken. Of a MultiBlock each block by itself. Not changed, unless ``inplace``. Lengths of
         a map in degrees are in metres from its centre.
     scene : Scene or str, optional
-        Scene whose lights cast the shadows, at infinity or near, in the unit of the mesh, by
-        default ``Scene()``.
+        Scene with the lights that cast the shadows, at infinity or near, in the unit of the mesh,
+        by default ``Scene()``.
     sun : (azimuth, altitude), optional
         Angles toward the sun in degrees, in place of the lights of the scene: azimuth clockwise
         from north, the y axis, and altitude above the horizon.
@@ -147,7 +147,7 @@ def relief_shadow(
     raster : float, optional
         Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
         above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a
-        cell of it; what it does not cover has the height of the nearest covered node.
+        cell of it; nodes that it does not cover have the height of the nearest covered one.
     thickness : float, optional
         Thickness of the shell, measured against the normals, that stands for an open surface.
     feature_angle : float or "auto", optional
@@ -191,13 +191,15 @@ def relief_shadow(
     >>> round(float(vizlight.relief_shadow(flat, sun=(315, 30))["t"][7]), 9)
     0.5
     """
-    asked = ReliefOptions.of(locals())
+    options = ReliefOptions.of(locals())
     inplace = _check.boolean("inplace", inplace)
     if isinstance(mesh, pv.MultiBlock):
-        given: Keywords = asked.changed()
-        given |= {"sun": sun, "progress_bar": progress_bar}
-        found = blocks.each(mesh, lambda one: relief_shadow(one, scene, inplace=inplace, **given))
-        return mesh if inplace else found
+        keywords: Keywords = options.changed()
+        keywords |= {"sun": sun, "progress_bar": progress_bar}
+        shadowed = blocks.each(
+            mesh, lambda block: relief_shadow(block, scene, inplace=inplace, **keywords)
+        )
+        return mesh if inplace else shadowed
     if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
         mesh = blocks.surface(mesh, "mesh")
     check_whole(mesh, "mesh")
@@ -211,49 +213,51 @@ def relief_shadow(
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
     # A raster is sampled from above, and does not need the points of edges apart.
-    own = mesh if asked.raster is not None else split_where_computed(mesh, asked.feature_angle)
-    # What is sampled from above has its sky above alone.
+    surface = (
+        mesh if options.raster is not None else split_where_computed(mesh, options.feature_angle)
+    )
+    # A raster, sampled from above, has its sky above alone.
     (sunlit,) = with_sky(
-        [own], asked.occlusion, elevation=asked.elevation, factor=asked.exaggeration,
-        up=None if asked.raster is None else ABOVE,
+        [surface], options.occlusion, elevation=options.elevation, factor=options.exaggeration,
+        up=None if options.raster is None else ABOVE,
     )  # fmt: skip
-    shadow = caster(own, scene, asked)
-    if asked.elevation is None and (isinstance(own, Grid) or asked.raster is not None):
+    shadow = caster(surface, scene, options)
+    if options.elevation is None and (isinstance(surface, Grid) or options.raster is not None):
         # For the record: in the result the light is the active array.
-        asked = dataclasses.replace(asked, elevation=elevation_name(own))
-    name = asked.name
-    each = [f"{name}_{i}" for i in range(len(lights) if asked.components else 0)]
-    made = [name, name + VALID, *each]
-    records.refuse_overwriting([(mesh, "")], name, made)
-    if asked.lit:
-        taken = sorted({DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}.intersection(made))
+        options = dataclasses.replace(options, elevation=elevation_name(surface))
+    name = options.name
+    each = [f"{name}_{i}" for i in range(len(lights) if options.components else 0)]
+    names = [name, name + VALID, *each]
+    records.refuse_overwriting([(mesh, "")], name, names)
+    if options.lit:
+        taken = sorted({DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}.intersection(names))
         if taken:
             expected = "a name that the light does not use, with lit=True"
             raise ValueError(_check.message("name", expected, repr(taken[0])))
-        refuse_overwriting([(mesh, "")], DEFAULT_NAME, scene, components=asked.components)
-    t = _ratios(shadow, lights, asked, progress_bar=progress_bar)
+        refuse_overwriting([(mesh, "")], DEFAULT_NAME, scene, components=options.components)
+    t = _ratios(shadow, lights, options, progress_bar=progress_bar)
     weight = np.array([light.intensity for light in lights])
     missing = int(np.count_nonzero(~shadow.valid))
     record = of_filter(
-        "relief_shadow", scene, asked, precision="float64", points=len(t), invalid=missing,
+        "relief_shadow", scene, options, precision="float64", points=len(t), invalid=missing,
         depth=shadow.depth,
     )  # fmt: skip
-    shading, share = None, share_of(sunlit, asked.occlusion)
-    if asked.lit:
+    shading, share = None, share_of(sunlit, options.occlusion)
+    if options.lit:
         # The engine multiplies each light by its own column of t, in this order.
         fixed = fit_depth_cue(scene.replace(lights=lights), [shadow.points])
         shading = engine.shade(
             shadow.points, None, fixed, normals=shadow.normals, shadow=t,
-            components=asked.components, occlusion=share,
+            components=options.components, occlusion=share,
         )  # fmt: skip
 
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
-    out, _ = blocks.placed(mesh, [own], inplace=inplace)
+    out, _ = blocks.placed(mesh, [surface], inplace=inplace)
     if shading is not None:
-        light = of_light(shading, "relief_shadow", scene, asked)
+        light = of_light(shading, "relief_shadow", scene, options)
         lit_arrays = arrays_of(shading, DEFAULT_NAME, occlusion=share)
         records.attach(out, DEFAULT_NAME, lit_arrays, light)
-    arrays: dict[str, Raw] = {one: t[:, i].copy() for i, one in enumerate(each)}
+    arrays: dict[str, Raw] = {key: t[:, i].copy() for i, key in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
     if missing:
         arrays[name + VALID] = shadow.valid
@@ -261,9 +265,9 @@ def relief_shadow(
             f"{missing} of {len(t)} points have no height or no normal and t = 0; "
             f"the point array {name + VALID!r} marks them"
         )
-    _warn_of_wide(own, t, asked.raster)
+    _warn_of_wide(surface, t, options.raster)
     records.attach(out, name, arrays, record)
-    if asked.lit:
+    if options.lit:
         records.activate(out, DEFAULT_NAME)
     return out
 
@@ -310,14 +314,14 @@ def _ratios(
     with _progress.progress("shadow", total, show=progress_bar) as report:
         for i, disc in enumerate(discs):
             column = np.zeros(count)
-            for one in disc:
-                column += shadow.of(one, lambda now, done=done: report(done + now))  # type: ignore[misc]
+            for lamp in disc:
+                column += shadow.ratios(lamp, lambda now, done=done: report(done + now))  # type: ignore[misc]
                 done += count
                 report(done)
             t[:, i] = column / len(disc)
 
     def again(point: int, light: int) -> float:
-        return float(np.mean([shadow.reference(point, one) for one in discs[light]]))
+        return float(np.mean([shadow.reference(point, lamp) for lamp in discs[light]]))
 
     size = t.itemsize * len(t) * (1 + len(lights) * options.components)
     effort = shadow.effort * max(map(len, discs))

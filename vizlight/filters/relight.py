@@ -1,4 +1,4 @@
-"""What a mesh needs to be lit again: the arrays and options of its light, from its record."""
+"""Arrays and options for lighting a mesh again, from the record of its light."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SEEN = 2 / 255
 
 
 class Source(NamedTuple):
-    """One mesh, the inputs of its light, and how it is lit.
+    """One mesh, with the inputs and the options of its light.
 
     ``named`` are options of a filter, from which the inputs are read again after the mesh has
     changed; None where that takes the filter itself. Where normals are turned to the eye,
@@ -74,13 +74,13 @@ class Source(NamedTuple):
 def from_options(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene, options: LightOptions
 ) -> list[Source]:
-    """Return what :func:`vizlight.illuminate` lights on a mesh, one source for each block."""
+    """Return the sources that :func:`vizlight.illuminate` lights on a mesh, one for each block."""
     chosen = [*blocks.named_blocks(mesh)]
     # One sky for all blocks, since they hide it from one another.
     meshes = with_sky([block for block, _ in chosen], options.occlusion)
     return [
-        read(block, path, scene, options, own)
-        for own, (block, path) in zip(meshes, chosen, strict=True)
+        read(block, path, scene, options, sky_mesh)
+        for sky_mesh, (block, path) in zip(meshes, chosen, strict=True)
     ]
 
 
@@ -89,11 +89,11 @@ def read(
     path: str,
     scene: Scene,
     options: LightOptions,
-    own: pv.DataSet | None = None,
+    sky_mesh: pv.DataSet | None = None,
 ) -> Source:
-    """Return what is lit on one mesh by options of :func:`vizlight.illuminate`.
+    """Return the source on one mesh that options of :func:`vizlight.illuminate` light.
 
-    ``own`` is the mesh with its sky, which several blocks hide from one another.
+    ``sky_mesh`` is the mesh with its sky, which several blocks hide from one another.
     """
     if options.feature_angle is not None:
         expected = "None for light that follows"
@@ -103,15 +103,15 @@ def read(
         )
         got = repr(options.feature_angle)
         raise ValueError(_check.message("feature_angle", expected, got, remedy))
-    own = with_sky([mesh], options.occlusion)[0] if own is None else own
-    part = lighting.part_of(own, path, scene, options)
+    sky_mesh = with_sky([mesh], options.occlusion)[0] if sky_mesh is None else sky_mesh
+    part = lighting.part_of(sky_mesh, path, scene, options)
     inputs, sided = part.inputs, part.sided
     shares: bundles.Dimmed | None = None
     if isinstance(options.bundle, Bundle):
         _refuse_following(scene)
-        given = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
+        names = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
         work = bundles.Work([mesh], [inputs], options.bundle)
-        shares = bundles.Dimmed(mesh, inputs, work, given)
+        shares = bundles.Dimmed(mesh, inputs, work, names)
         inputs = shares.dimmed(inputs, scene)
     inside = 0 if sided is None else int(sided.inside)
     source = Source(mesh, inputs, part.options, options, None, inside, shares)
@@ -145,7 +145,7 @@ def from_record(
     scene: Scene | None = None,
     name: str = DEFAULT_NAME,
 ) -> tuple[list[Source], Scene]:
-    """Return what a filter lit on the meshes that it returned, and the scene.
+    """Return the sources that a filter lit on the meshes it returned, and the scene.
 
     Parameters
     ----------
@@ -167,49 +167,49 @@ def from_record(
     Raises
     ------
     TypeError, ValueError
-        If there is no record of the light, it does not suffice, or the light of the record differs
+        If a record of the light is missing or does not suffice, or the light of the record differs
         from the mesh's, because points or arrays have changed.
     """
-    found, recorded = _read_record(mesh, scene, name)
+    sources, recorded = _read_record(mesh, scene, name)
     if scene is None and records.provenance(mesh, name).get("filter") != "fur":
-        _light_again(found, recorded, name)
-    return found, recorded
+        _light_again(sources, recorded, name)
+    return sources, recorded
 
 
 def terms_from_record(
     mesh: pv.DataSet | pv.MultiBlock, name: str
 ) -> tuple[list[Source], Scene, list[engine.Shading]]:
-    """Return what :func:`from_record` does, and the light of each source in terms."""
-    found, scene = _read_record(mesh, None, name)
-    return found, scene, _light_again(found, scene, name, components=True)
+    """Return the results of :func:`from_record`, and the light of each source in terms."""
+    sources, scene = _read_record(mesh, None, name)
+    return sources, scene, _light_again(sources, scene, name, components=True)
 
 
 def _read_record(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, name: str
 ) -> tuple[list[Source], Scene]:
-    """Return what a record says was lit, and its scene or the given one."""
+    """Return the sources of a record, and its scene or the given one."""
     record = records.provenance(mesh, name)
     recorded = Scene.from_dict(record["scene"])
     used = recorded if scene is None else scene
     if record.get("filter") == "fur":
         return _of_fur(mesh, record["options"], used), used
-    found: list[Source] = []
+    sources: list[Source] = []
     for block, path in blocks.named_blocks(mesh):
-        own = records.read(block, name)
-        if own is None:
+        block_record = records.read(block, name)
+        if block_record is None:
             expected = f"a record of {name!r} on each block"
             raise ValueError(_check.message("mesh", expected, f"none on block {path or block}"))
-        found.append(_of_block(block, path, own, used))
-    return found, used
+        sources.append(_of_block(block, path, block_record, used))
+    return sources, used
 
 
 def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: Scene) -> Source:
-    made, options = str(record["filter"]), dict(record["options"])
-    if made == "streamlines":
+    filter_name, options = str(record["filter"]), dict(record["options"])
+    if filter_name == "streamlines":
         # Where lines start has no part in their light.
         options = {key: value for key, value in options.items() if key != "seeds"}
-    _refuse_described(made, options)
-    if made == "relief_shadow":
+    _refuse_described(filter_name, options)
+    if filter_name == "relief_shadow":
         return _of_relief(mesh, options, scene)
     readers: dict[str, Callable[[pv.DataSet, Keywords], LightOptions]] = {
         "illuminate": lambda _, options: LightOptions(**options),
@@ -217,16 +217,16 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: S
         "streamlines": _of_lines,
         "project": _of_projection,
     }
-    if made not in readers:
+    if filter_name not in readers:
         expected = "light that follows the view"
         remedy = "draw its arrays by plotter.add_mesh"
-        raise ValueError(_check.message("mesh", expected, f"light of {made}", remedy))
-    light = readers[made](mesh, options)
+        raise ValueError(_check.message("mesh", expected, f"light of {filter_name}", remedy))
+    light = readers[filter_name](mesh, options)
     # The points of the result are split already.
     return read(mesh, path, scene, dataclasses.replace(light, feature_angle=None))
 
 
-def _refuse_described(made: str, options: Mapping[str, object]) -> None:
+def _refuse_described(filter_name: str, options: Mapping[str, object]) -> None:
     """Refuse options that the record describes instead of holding them."""
     for option, value in options.items():
         # Meshes and large arrays are described in a record by words like these.
@@ -234,7 +234,7 @@ def _refuse_described(made: str, options: Mapping[str, object]) -> None:
             value.startswith("an array of shape") or value.endswith(" points")
         ):
             remedy = f"attach the array and name it by {option}=, or pass scene= and the options"
-            expected = f"a record of {made} that holds {option}"
+            expected = f"a record of {filter_name} that holds {option}"
             raise ValueError(_check.message("mesh", expected, value, remedy))
 
 
@@ -251,8 +251,8 @@ def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
         light["normals"] = "Normals"
     # The record names the vectors of the traced mesh. Both of these are there if it had an array of
     # the second name.
-    made = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
-    light["tangents"] = next(made, None)
+    names = (name for name in (OWN_TANGENTS, TANGENTS) if name in mesh.point_data)
+    light["tangents"] = next(names, None)
     return LightOptions.of(light)
 
 
@@ -262,25 +262,25 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
 
     # The mesh of the record is turned and cut already.
     kept = {name: value for name, value in options.items() if name not in ("rotation", "cut")}
-    asked = ProjectOptions.of(kept)
-    before = asked.light == "before"
+    projection = ProjectOptions.of(kept)
+    before = projection.light == "before"
     # After the projection the frame in 3-space gives the light, which has another name.
-    frame = None if asked.frame is None else f"{'' if before else PROJECTED}{asked.frame}"
-    return asked.by(frame, asked.positions if before else None)
+    frame = None if projection.frame is None else f"{'' if before else PROJECTED}{projection.frame}"
+    return projection.by(frame, projection.positions if before else None)
 
 
 def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
     from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 
-    asked = ReliefOptions.of(options | {"lit": True, "components": False})
+    relief_options = ReliefOptions.of(options | {"lit": True, "components": False})
     field = mesh.copy(deep=False)
     # Colours of data, which tint() has put in the place of the light's.
     field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
     with warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
-        inputs, light = _runs(lambda: relief_shadow(field, scene, **asked.changed()))[-1]
+        inputs, light = _runs(lambda: relief_shadow(field, scene, **relief_options.changed()))[-1]
     return Source(mesh, inputs, light, None)
 
 
@@ -299,8 +299,8 @@ def _of_fur(
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
-    asked = FurOptions.of(options)
-    runs = _runs(lambda: fur(skin, scene, **asked.changed()))
+    fur_options = FurOptions.of(options)
+    runs = _runs(lambda: fur(skin, scene, **fur_options.changed()))
     return [
         Source(block, inputs, light, None)
         for block, (inputs, light) in zip((fibres, skin), runs, strict=True)
@@ -309,14 +309,14 @@ def _of_fur(
 
 def _runs(work: Callable[[], object]) -> list[tuple[ShadingInputs, ShadingOptions]]:
     """Return the inputs and the options with which a filter runs the engine."""
-    found: list[tuple[ShadingInputs, ShadingOptions]] = []
+    runs: list[tuple[ShadingInputs, ShadingOptions]] = []
 
     def keep(inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions) -> None:
-        found.append((inputs, options))
+        runs.append((inputs, options))
 
     with engine.observed(keep):
         work()
-    return found
+    return runs
 
 
 def _light_again(

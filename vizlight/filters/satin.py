@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class SatinOptions(StreamlineOptions):
-    """How the curves of satin are traced, and all panels are lit.
+    """Options of the curves of satin, and of the light of all panels.
 
     The fields are keywords of :func:`vizlight.satin`.
     """
@@ -97,12 +97,12 @@ def satin(
     TypeError, ValueError
         As :func:`vizlight.illuminate` and :func:`vizlight.streamlines`.
     """
-    asked = SatinOptions.of(locals() | {"surface": None})
-    if asked.tangents is None:
+    options = SatinOptions.of(locals() | {"surface": None})
+    if options.tangents is None:
         raise ValueError(_check.message("tangents", "the name of a point array", None))
     traced, averaged = surface, False
     if isinstance(surface, pv.DataSet):
-        name = str(asked.tangents)
+        name = str(options.tangents)
         averaged = is_of_cells(surface, name)
         if averaged:
             # Means over cells have no sign.
@@ -110,7 +110,7 @@ def satin(
             traced = surface.copy(deep=False)
             traced.point_data[name] = rows
         vectors_of(traced, "tangents", name, 3)
-    field = LightOptions.of(vars(asked) | {"conditioned": False})
+    field = LightOptions.of(vars(options) | {"conditioned": False})
     panels = {
         "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),
         # Beside tangents without a self-shadow normals and sides would be refused.
@@ -119,17 +119,17 @@ def satin(
     }
     # Options of streamlines, which the record of the curves names.
     lines = StreamlineOptions.of(
-        vars(asked)
+        vars(options)
         | {
-            "line_field": asked.line_field or averaged,
+            "line_field": options.line_field or averaged,
             "conditioned": False,
             "normals": None,
             "facing": "auto",
         }
     )
     curves = light_lines(traced, scene, lines, progress_bar=progress_bar, argument="surface")
-    made = {
+    lit_panels = {
         name: light_mesh(surface, scene, panel, progress_bar=progress_bar)
         for name, panel in panels.items()
     }
-    return pv.MultiBlock({"curves": curves, **made})
+    return pv.MultiBlock({"curves": curves, **lit_panels})

@@ -49,7 +49,7 @@ ACROSS, MOST = 32, 1 << 17
 
 @dataclass(frozen=True, kw_only=True)
 class SkyOptions(Options):
-    """How a sky is found; the fields are keywords of :func:`vizlight.sky`."""
+    """Options of a sky; the fields are keywords of :func:`vizlight.sky`."""
 
     error: float | None = None
     up: Sequence[float] | None = None
@@ -86,13 +86,13 @@ def sky(
     Parameters
     ----------
     mesh : pyvista.DataSet or pyvista.MultiBlock
-        Height field, surface, mesh of cells, whose surface counts, or mesh of lines. Blocks hide
-        one another's sky; a height field sees itself alone. Not changed, unless ``inplace``.
+        Height field, surface, mesh of cells, of which the surface counts, or mesh of lines. Blocks
+        hide one another's sky; a height field sees itself alone. Not changed, unless ``inplace``.
     error : float, optional
         Error that 95 of 100 points shall keep to, from 0.0001 to 0.5. Default: 0.01, of lines 0.1.
         From 0.1 on a mesh of lines is taken for a medium of voxels, which is faster for many lines,
-        where rays from some points confirm it; for more than 500 thousand voxels of lines nothing
-        does, and the error is None.
+        where rays from some points confirm it; for more than 500 thousand voxels of lines no rays
+        are taken, and the error is None.
     up : sequence of 3 float, optional
         Direction of the half space that is the sky. Default: the z axis for a grid of one layer,
         else the sky is all round.
@@ -159,17 +159,19 @@ def sky(
     >>> round(float(vizlight.sky(pv.Sphere())["sky"].min()), 2)
     1.0
     """
-    asked = SkyOptions.of(locals())
+    options = SkyOptions.of(locals())
     chosen = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
-    own = [asked.name + OPENNESS] if asked.openness else []
-    records.refuse_overwriting(chosen, asked.name, [asked.name, asked.name + VALID, *own])
-    taken = [_split(block, asked) for block, _ in chosen]
-    finer = asked.feature_angle is not None
-    taken, found = _found_finer(taken, asked, finer=finer, show=progress_bar)
+    extra_names = [options.name + OPENNESS] if options.openness else []
+    records.refuse_overwriting(
+        chosen, options.name, [options.name, options.name + VALID, *extra_names]
+    )
+    taken = [_split(block, options) for block, _ in chosen]
+    finer = options.feature_angle is not None
+    taken, results = _found_finer(taken, options, finer=finer, show=progress_bar)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     out, lit = blocks.placed(mesh, taken, inplace=inplace)
-    _attach(lit, found, asked, finer=finer)
+    _attach(lit, results, options, finer=finer)
     return out
 
 
@@ -194,21 +196,21 @@ def with_sky(
     if occlusion != SKY or all(SKY in mesh.point_data for mesh in meshes):
         return list(meshes)
     # Edges are not split here: the caller has done so where it wants that.
-    asked = SkyOptions(error=_error(meshes, FOR_LIGHT), up=up, feature_angle=None)
-    taken, found = _found_finer(
-        meshes, asked, finer=finer, show=False, elevation=elevation, factor=factor
+    options = SkyOptions(error=_error(meshes, FOR_LIGHT), up=up, feature_angle=None)
+    taken, results = _found_finer(
+        meshes, options, finer=finer, show=False, elevation=elevation, factor=factor
     )
     lit = [mesh.copy(deep=False) for mesh in taken]
-    _attach(lit, found, asked, finer=finer)
+    _attach(lit, results, options, finer=finer)
     return lit
 
 
-def _split(mesh: pv.DataSet, asked: SkyOptions) -> pv.DataSet:
-    """Return a mesh with points split at its sharp edges; of a volume the edges are told."""
-    if asked.feature_angle is not None and mesh.GetMaxSpatialDimension() == 3:
+def _split(mesh: pv.DataSet, options: SkyOptions) -> pv.DataSet:
+    """Return a mesh with points split at its sharp edges; of a volume warn of the edges."""
+    if options.feature_angle is not None and mesh.GetMaxSpatialDimension() == 3:
         # This is called for its warning: points of a volume cannot be split.
         normals.normals_of(mesh, None, 3, None, warn=True)
-    return normals.split_where_computed(mesh, asked.feature_angle)
+    return normals.split_where_computed(mesh, options.feature_angle)
 
 
 def _error(meshes: Sequence[pv.DataSet], errors: tuple[float, float]) -> float:
@@ -218,7 +220,7 @@ def _error(meshes: Sequence[pv.DataSet], errors: tuple[float, float]) -> float:
 
 
 def _source(mesh: object) -> str | None:
-    """Return what a sky depends on: a digest of the points, and the number of triangles.
+    """Return a digest of the points and the number of triangles, on which a sky depends.
 
     None for a grid that stores no points.
     """
@@ -254,20 +256,20 @@ def _warn_if_stale(meshes: Sequence[pv.DataSet], name: str) -> None:
 
 
 def _found_finer(
-    meshes: Sequence[pv.DataSet], asked: SkyOptions, *, finer: bool, **how: Given
+    meshes: Sequence[pv.DataSet], options: SkyOptions, *, finer: bool, **how: Given
 ) -> tuple[list[pv.DataSet], list[Sky]]:
     """Return meshes and their skies, with ``finer`` by smaller triangles where these are needed."""
-    found = _found(meshes, asked, **how)
+    results = _found(meshes, options, **how)
     if not finer:
-        return list(meshes), found
+        return list(meshes), results
     fine = [
-        _finer(mesh) if made.between > BENT else mesh
-        for mesh, made in zip(meshes, found, strict=True)
+        _finer(mesh) if result.between > BENT else mesh
+        for mesh, result in zip(meshes, results, strict=True)
     ]
     # Where no mesh became finer the first skies stand.
-    if all(one is other for one, other in zip(fine, meshes, strict=True)):
-        return fine, found
-    return fine, _found(fine, asked, **how)
+    if all(fine_mesh is other for fine_mesh, other in zip(fine, meshes, strict=True)):
+        return fine, results
+    return fine, _found(fine, options, **how)
 
 
 def _finer(mesh: pv.DataSet) -> pv.DataSet:
@@ -292,75 +294,75 @@ def _finer(mesh: pv.DataSet) -> pv.DataSet:
     # Numbers of pieces are interpolated too, and rounded back to integers.
     number = np.rint(rows[:, 4]).astype(np.intp)
     # Normals that count as kept would not be attached to a mesh.
-    made = dataclasses.replace(sided, vectors=vectors, lean=lean, open=number, kept=False)
-    normals.keep(fine, made)
+    finer_normals = dataclasses.replace(sided, vectors=vectors, lean=lean, open=number, kept=False)
+    normals.keep(fine, finer_normals)
     return fine
 
 
 def _found(
     meshes: Sequence[pv.DataSet],
-    asked: SkyOptions,
+    options: SkyOptions,
     *,
     show: bool,
     elevation: str | None = None,
     factor: float = 1.0,
 ) -> list[Sky]:
     total = sum(mesh.n_points for mesh in meshes)
-    error = asked.error or _error(meshes, FOR_POINTS)
+    error = options.error or _error(meshes, FOR_POINTS)
     with _progress.progress("sky", total, show=show) as report, noted_sky(total) as note:
-        found = skies(
-            meshes, error=error, up=None if asked.up is None else tuple(asked.up),
-            diameter=asked.diameter, openness=asked.openness,
+        results = skies(
+            meshes, error=error, up=None if options.up is None else tuple(options.up),
+            diameter=options.diameter, openness=options.openness,
             report=lambda now: report(min(now, total)), elevation=elevation, factor=factor,
         )  # fmt: skip
-        note([made.record for made in found])
-        return found
+        note([result.record for result in results])
+        return results
 
 
 def _attach(
-    meshes: Sequence[pv.DataSet], found: Sequence[Sky], asked: SkyOptions, *, finer: bool
+    meshes: Sequence[pv.DataSet], results: Sequence[Sky], options: SkyOptions, *, finer: bool
 ) -> None:
     """Attach skies to meshes, with their records."""
     lost = total = dark = 0
     bent, length = 0.0, 0.0
-    errors = [made.error for made in found if made.error is not None]
-    requested = max((made.requested for made in found), default=0.0)
+    errors = [result.error for result in results if result.error is not None]
+    requested = max((result.requested for result in results), default=0.0)
     if (largest := max(errors, default=0.0)) > requested:
         _check.warn(
             f"the error of the sky is {largest:.2g} at 95 of 100 points, and error={requested:g} "
             "was requested, which needs more directions than are tried"
         )
-    if len(errors) < len(found):
+    if len(errors) < len(results):
         _check.warn(
             f"the error of the sky is not known, and error={requested:g} was requested: lines of "
             f"more than {MANY} voxels are not compared with rays; error={VOXELS / 2:g} takes rays"
         )
-    for mesh, made in zip(meshes, found, strict=True):
-        arrays: dict[str, Raw] = {asked.name: made.share}
-        dark += made.dark
+    for mesh, result in zip(meshes, results, strict=True):
+        arrays: dict[str, Raw] = {options.name: result.share}
+        dark += result.dark
         # The warning is about the mesh in which the sky changes most.
-        if made.between > bent:
-            bent, length = made.between, mesh.length
-        missing = int(np.count_nonzero(~made.valid))
-        lost, total = lost + missing, total + len(made.valid)
+        if result.between > bent:
+            bent, length = result.between, mesh.length
+        missing = int(np.count_nonzero(~result.valid))
+        lost, total = lost + missing, total + len(result.valid)
         if missing:
-            arrays[asked.name + VALID] = made.valid
-        if made.openness is not None:
-            arrays[asked.name + OPENNESS] = made.openness
+            arrays[options.name + VALID] = result.valid
+        if result.openness is not None:
+            arrays[options.name + OPENNESS] = result.openness
         record: Record = {
-            "vizlight": __version__, "filter": "sky", "precision": "float32", **made.record,
-            "points": len(made.valid), "invalid": missing, "options": plain(asked),
+            "vizlight": __version__, "filter": "sky", "precision": "float32", **result.record,
+            "points": len(result.valid), "invalid": missing, "options": plain(options),
             "source": _source(mesh),
         }  # fmt: skip
         active = point_data(mesh).GetScalars()
-        records.attach(mesh, asked.name, arrays, record)
+        records.attach(mesh, options.name, arrays, record)
         if active is not None:
             # Such as the heights of a flat grid.
             records.activate(mesh, active.GetName())
     if lost:
         _check.warn(
             f"{lost} of {total} points have no sky (in a hole, without a normal, or buried inside "
-            f"a surface) and that of the nearest point; the point array {asked.name + VALID!r} "
+            f"a surface) and that of the nearest point; the point array {options.name + VALID!r} "
             "marks them"
         )
     if dark:

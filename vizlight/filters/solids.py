@@ -46,14 +46,14 @@ def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:
     writes ``trimesh.Trimesh(mesh.points, mesh.regular_faces).export("part.3mf")``; it needs the
     packages lxml and networkx.
     """
-    made = tessellation.tessellate(solid, tolerance=tolerance)
-    if not len(made.triangles):
+    facets = tessellation.tessellate(solid, tolerance=tolerance)
+    if not len(facets.triangles):
         mesh = pv.PolyData()
     else:
-        points = np.asarray(made.world(made.points), dtype=float)
-        triangles = np.asarray(made.triangles, dtype=int)
+        points = np.asarray(facets.world(facets.points), dtype=float)
+        triangles = np.asarray(facets.triangles, dtype=int)
         mesh = pv.PolyData.from_regular_faces(points, triangles)
-        mesh.cell_data["patch"] = np.asarray(made.patch)
+        mesh.cell_data["patch"] = np.asarray(facets.patch)
     # The bound is in the unit of the tessellation, which is ``scale`` units of the solid.
-    mesh.field_data["volume_error"] = [made.volume_error * made.scale**3]
+    mesh.field_data["volume_error"] = [facets.volume_error * facets.scale**3]
     return mesh

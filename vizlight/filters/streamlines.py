@@ -50,7 +50,7 @@ REACH = 1200
 
 @dataclass(frozen=True, kw_only=True)
 class StreamlineOptions(LightOptions):
-    """How streamlines are traced and lit.
+    """Options of tracing and lighting streamlines.
 
     The fields are keywords of :func:`vizlight.streamlines`.
     """
@@ -78,13 +78,13 @@ class StreamlineOptions(LightOptions):
         if surface is not None and not isinstance(surface, pv.DataSet):
             expected, got = "a PyVista surface", _check.describe(surface)
             raise TypeError(_check.message("surface", expected, got))
-        given: object = self.tangents
-        if isinstance(given, list | tuple):
-            names = _names_of(given, pair=self.line_field)
+        tangents: object = self.tangents
+        if isinstance(tangents, list | tuple):
+            names = _names_of(tangents, pair=self.line_field)
             # The two of a cross field have no sign; of others these are the components.
             _check.set_fields(self, tangents=names if self.line_field else ",".join(names))
         else:
-            records.refuse_unnamed("tangents", given)
+            records.refuse_unnamed("tangents", tangents)
         _check.fields(self, _check.integer, "seed", low=0)
         for length in ("spacing", "min_length", "stroke_length", "travel"):
             _check.fields(self, _check.positive, length, optional=True)
@@ -150,7 +150,7 @@ def streamlines(
         Name of an array of 3, 6 or 9 components, or two names; one of cells is averaged to the
         points. Names of two or three arrays of one component, as a tuple or as ``"u,v"``, are
         those of components. 6 components are a symmetric tensor (XX, YY, ZZ, XY, YZ, XZ, as in
-        VTK) and 9 a matrix, whose first eigenvector is traced as a line field. Two names, of arrays
+        VTK) and 9 a matrix; the first eigenvector is traced as a line field. Two names, of arrays
         of 3 components and with ``line_field=True``, are a cross field, such as both principal
         directions: lines of either direction are traced. Default: the active vectors, the only
         point array of 3 components, or the only components, by their standard or usual names. On
@@ -161,8 +161,8 @@ def streamlines(
         cross field each of the two is continued by whichever of the next two is nearest to it:
         signs, order and lengths do not matter.
     surface : pyvista.PolyData, optional
-        Surface whose normals condition the light of the lines near it (Banks 6), and on which
-        confined lines stay. Default for a mesh that is a surface: the mesh itself.
+        Surface with the normals that condition the light of the lines near it (Banks 6), and on
+        which confined lines stay. Default for a mesh that is a surface: the mesh itself.
     confined : bool, optional
         Whether the lines stay on the surface: the tangential part of the vectors is integrated.
         Default: whether the mesh itself is a surface and no other is given.
@@ -189,7 +189,7 @@ def streamlines(
         Length, in the unit of the mesh, of strokes into which the lines are cut, at points of
         theirs. They have the point array ``width``: 0.3, and at their ends along the vectors a
         head, from 1 at its base to 0 at its tip, so that a stroke is an arrow; in a line field both
-        ends are thin. It is what ``plotter.vizlight.add_mesh(lines, width="width")`` takes, whose
+        ends are thin. ``plotter.vizlight.add_mesh(lines, width="width")`` takes this array; its
         ``line_width`` is the width of the heads. Default: lines are whole.
     travel : float, optional
         Number of stroke lengths by which strokes move along the lines in a movie, where the vectors
@@ -197,10 +197,11 @@ def streamlines(
         whole then, with the point arrays ``width``, at the start, ``phase``, ``passing`` (strokes
         in a period, a whole number) and ``grown``, by which ``movie.travel`` moves the strokes, and
         the field array ``period``: the time that the movie shows, in the unit of lengths over that
-        of the vectors. Each stroke is as long as what moves past it. Default: strokes stand still.
+        of the vectors. Each stroke is as long as the part of the line that moves past it. Default:
+        strokes stand still.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
-        :func:`vizlight.illuminate`. Default: whether there is a surface, but not in the light of
+        :func:`vizlight.illuminate`. Default: whether a surface is present, but not in the light of
         ``presets.direction``, ``slope`` and ``heading``, which tells how the lines themselves run.
     facing, feature_angle, bundle, occlusion, name, exponent, model, components, precision
         As for :func:`vizlight.illuminate`; edges of the surface are split.
@@ -282,24 +283,28 @@ def light_lines(
     if isinstance(mesh, pv.MultiBlock):
         mesh = blocks.one_grid(mesh)
     _check_mesh(mesh, argument)
-    mesh, found = meaning.with_named(mesh, options.tangents)
-    options = dataclasses.replace(options, tangents=found)
+    mesh, vector_names = meaning.with_named(mesh, options.tangents)
+    options = dataclasses.replace(options, tangents=vector_names)
     mesh = records.averaged(mesh, *_names(options.tangents))
     scene = as_scene(scene)
     if options.conditioned is None and _tells_of_lines(scene):
         options = dataclasses.replace(options, conditioned=False)
-    made = _resolved(mesh, options)
+    resolved = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
-        lines, tangents = _traced(mesh, scene, made, report, argument)
-    lines = _as_strokes(lines, mesh, tangents, made)
+        lines, tangents = _traced(mesh, scene, resolved, report, argument)
+    lines = _as_strokes(lines, mesh, tangents, resolved)
     # Lines beside a surface have its self-shadow unless it is switched off (Banks 6).
-    conditioned = made.surface is not None if made.conditioned is None else made.conditioned
+    conditioned = (
+        resolved.surface is not None if resolved.conditioned is None else resolved.conditioned
+    )
     normals = "Normals" if conditioned is True else None
-    light = dataclasses.replace(made, tangents=tangents, conditioned=conditioned, normals=normals)
+    light = dataclasses.replace(
+        resolved, tangents=tangents, conditioned=conditioned, normals=normals
+    )
     # The lines are new and nobody else's, and need no copy.
     lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     # The record names the vectors that were found, since the active ones of a mesh may change.
-    recorded = dataclasses.replace(options, tangents=made.tangents)
+    recorded = dataclasses.replace(options, tangents=resolved.tangents)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
 
@@ -316,9 +321,9 @@ def _as_strokes(
             raise ValueError(_check.message("min_length", expected, options.min_length))
         lines.field_data["left_out"] = [count - lines.n_lines]
     speed = _speed(lines, options)
-    found = {AGE: strokes.ages(lines, lines.point_data[tangents])}
-    found |= {} if speed is None else {SPEED: speed}
-    for key, values in found.items():
+    point_arrays = {AGE: strokes.ages(lines, lines.point_data[tangents])}
+    point_arrays |= {} if speed is None else {SPEED: speed}
+    for key, values in point_arrays.items():
         lines.point_data[own_name(mesh, key)] = values
     if options.stroke_length is None:
         return lines
@@ -367,7 +372,7 @@ def _tells_of_lines(scene: Scene) -> bool:
 
 
 def _check_mesh(mesh: object, argument: str) -> None:
-    """Refuse what lines cannot be traced in."""
+    """Refuse meshes in which lines cannot be traced."""
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message(argument, "a PyVista dataset", type(mesh).__name__))
     if isinstance(mesh, pv.PointSet):
@@ -383,12 +388,12 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
     """Return the options with vectors, surface and whether lines are confined put in."""
     vectors, unsigned = _vectors_name(mesh, options.tangents)
     surface, confined = _as_surface(options.surface), options.confined
-    own = _as_surface(mesh)
-    is_surface = isinstance(own, pv.PolyData) and has_faces(own)
+    mesh_surface = _as_surface(mesh)
+    is_surface = isinstance(mesh_surface, pv.PolyData) and has_faces(mesh_surface)
     if confined is None:
         confined = is_surface and surface is None
     if surface is None and is_surface:
-        surface = own
+        surface = mesh_surface
     if surface is None and (confined or options.conditioned):
         what = "confined" if confined else "conditioned"
         raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
@@ -402,7 +407,7 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
 
 
 def _as_surface(mesh: object) -> pv.PolyData | None:
-    """Return a grid whose cells are faces as a surface; others as they are."""
+    """Return a grid of faces as a surface; others as they are."""
     grid = isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData)
     if grid and mesh.n_cells and mesh.GetMaxSpatialDimension() == 2:  # type: ignore[attr-defined]
         return blocks.outer_surface(mesh)[0]  # type: ignore[arg-type]
@@ -419,9 +424,9 @@ def _traced(
     """Return the lines, and the name of their array of tangents."""
     confined = bool(options.confined)
     # Light of an earlier result is no datum, and is not carried along the lines.
-    surface, traced, own = None, mesh, all_made(mesh)
+    surface, traced, lit_names = None, mesh, all_made(mesh)
     if options.surface is not None:
-        own |= all_made(options.surface)
+        lit_names |= all_made(options.surface)
         surface = with_normals(options.surface, onlooker(scene), options.feature_angle)
     vectors = _field(mesh, surface if confined else None, options)
     # Confined lines are traced in the triangles of the surface, which have the normals.
@@ -432,7 +437,7 @@ def _traced(
     vectors = georeference.motion(mesh, traced, vectors, scale)
     if surface is not None:
         surface = blocks.moved(surface, -origin, scale)
-    traced = tracers.scaled(blocks.moved(_bare(traced, own), -origin, scale), vectors)
+    traced = tracers.scaled(blocks.moved(_bare(traced, lit_names), -origin, scale), vectors)
     lines = _lines(traced, options, origin, scale, report, argument)
     if not lines.n_points:
         expected = "points inside the mesh where the vectors are not zero"
@@ -474,7 +479,7 @@ def _traced(
     exact = places / scale + origin
     lines.points = exact.astype(np.float64 if far else np.float32)
     if confined:
-        # The exact places lie on their triangles to rounding in float64: what is measured is the
+        # The exact places lie on their triangles to rounding in float64: the drift measures the
         # type of the points.
         drift = np.abs(np.asarray(lines.points, dtype=np.float64) - exact).max()
         lines.field_data["drift"] = [drift]
@@ -511,18 +516,18 @@ def _lines(
         expected = "cells of some area or volume between finite points"
         raise ValueError(_check.message(argument, expected, "none"))
     unsigned = options.tangents if options.line_field else None
-    given = None if places is None else tracer.located(places)
+    located = None if places is None else tracer.located(places)
     if options.spacing is None:
-        start = tracer.random(count, options.seed) if given is None else given
+        start = tracer.random(count, options.seed) if located is None else located
         # For seeds that are given no others are drawn where a line fails.
-        wanted = count if given is None else None
+        wanted = count if located is None else None
         lines = tracer.lines(tracer.traced(start, how, wanted, report), unsigned)
         _warn_of_fewer(lines, wanted)
         return lines
     # The spacing is scaled like the mesh, whose longest side is 1 here.
     spacing = options.spacing / size
     tracers.check_spacing(tracer, spacing, size)
-    curves, facts = tracer.even(given, how, spacing, report)
+    curves, facts = tracer.even(located, how, spacing, report)
     lines = tracer.lines(curves, unsigned)
     for key, value in facts.items():
         lines.field_data[key] = [value]
@@ -576,13 +581,13 @@ def _warn_of_fewer(lines: pv.PolyData, wanted: int | None) -> None:
 
 
 def vectors_by_default(mesh: pv.DataSet) -> str | None:
-    """Return the name of the active vectors of the points, or of the only ones that there are."""
+    """Return the name of the active vectors of the points, or of the only ones."""
     there = [key for key in mesh.point_data if np.shape(mesh.point_data[key])[1:] == (3,)]
     return mesh.point_data.active_vectors_name or (there[0] if len(there) == 1 else None)
 
 
 def _vectors_name(mesh: pv.DataSet, vectors: Vectors | None) -> tuple[Vectors, bool]:
-    """Return the names of what is traced, and whether it is tensors or a cross field."""
+    """Return the names of the traced arrays, and whether these are tensors or a cross field."""
     if vectors is None:
         vectors = vectors_by_default(mesh)
         if vectors is None:
@@ -616,8 +621,8 @@ def _no_vectors(mesh: pv.DataSet, got: str | None) -> ValueError:
         return ValueError(_check.message("tangents", expected, "a mesh without one"))
     remedy = f"pass {' or '.join(f'tangents={key}' for key in point)}"
     expected = f"the name of an array of 3 components ({', '.join(point)})"
-    given = None if got is None else repr(got)
-    return ValueError(_check.message("tangents", expected, given, remedy))
+    shown = None if got is None else repr(got)
+    return ValueError(_check.message("tangents", expected, shown, remedy))
 
 
 def _field(mesh: pv.DataSet, surface: pv.PolyData | None, options: StreamlineOptions) -> Array:
@@ -659,44 +664,44 @@ def _on_surface(
             source.point_data[TRACED] = np.concatenate([products, lengths], axis=1)
         field = pv.PolyData(surface.points).sample(source)
         if unsigned:
-            found = np.asarray(field.point_data[TRACED])
+            sampled = np.asarray(field.point_data[TRACED])
             # The eigenvector has length 1, and the sampled length makes a vector of it again.
-            array = tracers.principal_directions(found[:, :9])
-            surface.point_data[name] = array * found[:, 9:]
+            array = tracers.principal_directions(sampled[:, :9])
+            surface.point_data[name] = array * sampled[:, 9:]
         else:
             rows = np.asarray(field.point_data[name])
             surface.point_data[name] = rows
             array = _directions(rows)
-    # Lines end where vectors are zero, as they do where none is known.
+    # Lines end where vectors are zero, as they do where vectors are missing.
     array[~np.all(np.isfinite(array), axis=1)] = 0
     normal = np.asarray(surface.point_data[NORMALS], dtype=np.float64)
-    # What leads out of the surface is taken away: v - (v . n) n.
+    # The part that leads out of the surface is removed: v - (v . n) n.
     return np.asarray(array - np.einsum("ij,ij->i", array, normal)[:, np.newaxis] * normal)
 
 
 def _directions(rows: Array) -> Array:
     """Return vectors as they are, and tensors as their first eigenvectors."""
     if rows.shape[1] in (6, 9):
-        found = tracers.principal_directions(np.asarray(rows, dtype=np.float64))
+        axes = tracers.principal_directions(np.asarray(rows, dtype=np.float64))
         # A tensor of zeros stands for no data, and is not counted.
-        lost = int(np.count_nonzero(~np.any(found, axis=1) & np.any(rows, axis=1)))
+        lost = int(np.count_nonzero(~np.any(axes, axis=1) & np.any(rows, axis=1)))
         if lost:
             _check.warn(
-                f"{lost} of {len(found)} tensors have no first eigenvector (isotropic or not "
+                f"{lost} of {len(axes)} tensors have no first eigenvector (isotropic or not "
                 "finite): lines end there"
             )
-        return found
+        return axes
     return np.array(rows, dtype=np.float64)
 
 
-def _bare(mesh: pv.DataSet, own: set[str]) -> pv.DataSet:
+def _bare(mesh: pv.DataSet, lit_names: set[str]) -> pv.DataSet:
     """Return a mesh that the tracer may change.
 
     Arrays of words, which end the tracer's process, and vizlight's own are left out.
     """
     bare = mesh.copy(deep=False)
     for key in list(bare.point_data):
-        if key in own or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
+        if key in lit_names or np.asarray(bare.point_data[key]).dtype.kind not in "biuf":
             # PyVista's own way forgets in the mesh, too, that an array is one of flags.
             bare.GetPointData().RemoveArray(key)
     return bare
@@ -705,15 +710,15 @@ def _bare(mesh: pv.DataSet, own: set[str]) -> pv.DataSet:
 def _seeds(seeds: object, origin: Array, scale: Array) -> tuple[int, Array | None]:
     """Return the number of lines, or where they start in a mesh that was moved and scaled."""
     if isinstance(seeds, pv.DataSet):
-        given: Array = np.asarray(seeds.points, dtype=np.float64)
+        positions: Array = np.asarray(seeds.points, dtype=np.float64)
     else:
-        given = _check.floats("seeds", seeds).astype(np.float64)
-    if not given.ndim:
+        positions = _check.floats("seeds", seeds).astype(np.float64)
+    if not positions.ndim:
         count = _check.integer("seeds", seeds, low=1)
         _check.holds("seeds", (count, 3))
         return count, None
     # Seeds are moved and scaled as the mesh was.
-    places = (_check.vectors("seeds", given, n=3) - origin) * scale
+    places = (_check.vectors("seeds", positions, n=3) - origin) * scale
     if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3), one or more"
         raise ValueError(_check.message("seeds", what, _check.describe(seeds)))

@@ -70,7 +70,7 @@ def tint(
         Mesh with the light of a filter, such as :func:`vizlight.illuminate`; not changed, unless
         ``inplace``.
     scalars : str or array_like, shape (N,) or (N, c), optional
-        Array whose values are coloured, by its name, or as an array with a row per point. Default:
+        Array of the coloured values, by its name, or as an array with a row per point. Default:
         the active scalars of the points, if they are not the light. Cells of a PolyData surface
         have one colour each, as in PyVista, and those of an UnstructuredGrid where they have whole
         numbers or colours; other cell arrays are averaged to the points. The length of vectors is
@@ -85,7 +85,7 @@ def tint(
     n_colors : int, default: 256
         Number of colours.
     categories : bool or int, default: False
-        Whether there is one colour for each different value, or the number of colours.
+        Whether each different value has a colour of its own, or the number of colours.
     log_scale : bool, default: False
         Whether colours follow the logarithm of the values.
     flip_scalars : bool, default: False
@@ -139,13 +139,13 @@ def tint(
     """
     every = blocks.check(lit)
     inplace = _check.boolean("inplace", inplace)
-    own = [block for block, _ in every]
+    lit_blocks = [block for block, _ in every]
     _check.array_name("name", name)
     # Colours that came with the light may be replaced by those of the data under the same name.
-    if not _holds_light(own, name):
+    if not _holds_light(lit_blocks, name):
         records.refuse_overwriting(every, name, [name])
     component = None if component is None else _check.integer("component", component, low=0)
-    split = [_split(mesh, scalars) for mesh in own]
+    split = [_split(mesh, scalars) for mesh in lit_blocks]
     meshes = [mesh for mesh, _ in split]
     values = values_of_blocks(meshes, scalars, component)
     # One table for all blocks, so that equal values have equal colours.
@@ -158,8 +158,8 @@ def tint(
     record = _record(table, scalars, light, component)
     # The points were lit before: a report counts the light on their colours apart.
     with report.tinted():
-        lights = _light_of(lit, own, light)
-    made = [
+        lights = _light_of(lit, lit_blocks, light)
+    colors = [
         display.on_colors(
             map_colors(table, value, components=3),
             share[origin],
@@ -169,14 +169,14 @@ def tint(
         for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True)
     ]
     out, meshes = blocks.placed(lit, meshes, inplace=inplace)
-    for mesh, array in zip(meshes, made, strict=True):
+    for mesh, array in zip(meshes, colors, strict=True):
         kept = records.read(mesh, light) or {}
         records.attach(mesh, name, {name: array}, record | {"scene": kept.get("scene")})
     return out
 
 
 def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
-    """Return a mesh whose cells have the colours of their values, and the point each point was."""
+    """Return a mesh that colours cells by their own values, and the original point of each."""
     if isinstance(scalars, str) and is_of_cells(mesh, scalars):
         if isinstance(mesh, pv.PolyData) and has_faces(mesh):
             return normals.split_values(mesh, scalars)
@@ -206,8 +206,8 @@ def values_of(
         scalars = mesh.point_data.active_scalars_name
         # On a lit mesh the light itself is active, which is no datum to be coloured by.
         if scalars is None or scalars in records.all_made(mesh):
-            own = [key for key in mesh.point_data if key not in records.all_made(mesh)]
-            expected = f"the name of a point array, {_check.one_of(own)}"
+            data_names = [key for key in mesh.point_data if key not in records.all_made(mesh)]
+            expected = f"the name of a point array, {_check.one_of(data_names)}"
             raise ValueError(_check.message("scalars", expected, None))
     if isinstance(scalars, str):
         _check.text("scalars", scalars, expected="the name of a point array")
@@ -218,8 +218,8 @@ def values_of(
             moved = at_points(mesh, of_cells)
             array = of_cells if moved is None else moved
         else:
-            known = _check.one_of([*mesh.point_data, *mesh.cell_data])
-            expected = f"a point array or a cell array, {known}"
+            names = _check.one_of([*mesh.point_data, *mesh.cell_data])
+            expected = f"a point array or a cell array, {names}"
             raise ValueError(_check.message("scalars", expected, repr(scalars)))
     else:
         array = _check.reals("scalars", scalars)
@@ -255,7 +255,7 @@ def values_of_blocks(
     if not isinstance(scalars, str):
         return [values_of(mesh, scalars, component) for mesh in meshes]
     having = [scalars in mesh.point_data or scalars in mesh.cell_data for mesh in meshes]
-    # Where no mesh has it the first says which arrays there are.
+    # Where no mesh has it the error lists the arrays of the first.
     having[:1] = [having[0] or not any(having)] if having else []
     return [
         values_of(mesh, scalars, component) if has else np.full(mesh.n_points, np.nan)
@@ -287,7 +287,7 @@ def color_table(
     if not isinstance(categories, bool):
         categories = _check.integer("categories", categories, low=0, high=MOST_COLORS)
     colors = {"nan_color": nan_color, "above_color": above_color, "below_color": below_color}
-    known: Keywords = {name: _known_color(name, color) for name, color in colors.items()}
+    special: Keywords = {name: _known_color(name, color) for name, color in colors.items()}
     # PyVista looks at values to count categories alone.
     sample: Raw = np.zeros(1)
     if categories is True and any(len(part) for part in values):
@@ -305,7 +305,7 @@ def color_table(
             cmap=cmap,
             flip_scalars=_check.boolean("flip_scalars", flip_scalars),
             log_scale=_check.boolean("log_scale", log_scale),
-            **known,
+            **special,
         )
     except (KeyError, TypeError, ValueError) as error:
         # The check of this option has said already what is wrong with it.
@@ -391,7 +391,7 @@ def map_colors(table: pv.LookupTable, values: Raw, *, components: Literal[3, 4] 
 
 
 def light_on_colors(sources: Sequence[relight.Source], scene: Scene) -> list[tuple[Array, Bools]]:
-    """Return for each source the light on colours of data, and where there is any.
+    """Return for each source the light on colours of data, and a mask of the lit points.
 
     Parameters
     ----------
@@ -416,11 +416,11 @@ def _light_of(
     """Return the light on colours of the meshes, as they carry it or computed again."""
     _check.text("light", light, expected="the name of the light")
     if not relight.is_lit(lit, light):
-        known = "a mesh with the light of a filter and its record"
+        expected = "a mesh with the light of a filter and its record"
         remedy = "light it by vizlight.illuminate first"
-        raise ValueError(_check.message("lit", known, f"no {light!r} with a record", remedy))
+        raise ValueError(_check.message("lit", expected, f"no {light!r} with a record", remedy))
     stored = [_stored(mesh, light) for mesh in meshes]
-    carried = [own for own in stored if own is not None]
+    carried = [entry for entry in stored if entry is not None]
     if len(carried) == len(meshes):
         for values, _ in carried:
             report.note_stored(values, light)
@@ -435,15 +435,15 @@ def _light_of(
     sources, scene, again = relight.terms_from_record(lit, light)
     # Colours of data never have less ambient light, so that they can be read in the shade.
     least = max(scene.material.ambient, display.LEAST) * scene.ambient_intensity
-    found: list[tuple[Array, Bools | None]] = []
+    lights: list[tuple[Array, Bools | None]] = []
     for source, shading in zip(sources, again, strict=True):
         share = source.inputs.occlusion
-        # What hides the sky from a point dims the ambient light alone.
+        # Anything that hides the sky from a point dims the ambient light alone.
         ambient = least if share is None else least * np.asarray(share[:])
         valid = shading.valid if shading.invalid else None
         light_here = ambient + np.asarray(shading.diffuse)
-        found.append((display.exposed(light_here, scene.exposure), valid))
-    return found
+        lights.append((display.exposed(light_here, scene.exposure), valid))
+    return lights
 
 
 def _colored(scene: Scene) -> bool:
@@ -460,7 +460,7 @@ def _stored(mesh: pv.DataSet, light: str) -> tuple[Array, Bools | None] | None:
     valid = np.asarray(mesh[light + VALID], np.bool_) if light + VALID in ours else None
     if _colored(scene):
         return None
-    # Without a highlight, and with ambient light enough, the luminance is what colours need.
+    # Without a highlight, and with enough ambient light, colours need the luminance alone.
     if light in ours and not material.specular and material.ambient >= display.LEAST:
         return display.exposed(np.asarray(mesh.point_data[light]), scene.exposure), valid
     names = [part_name(light, part) for part in ("ambient", "diffuse")]
@@ -485,8 +485,8 @@ def _record(table: pv.LookupTable, scalars: object, light: str, component: int |
         "clim": [float(x) for x in table.scalar_range],
         "log_scale": bool(table.log_scale),
     }
-    for option, own in SPECIAL_COLORS.items():
-        color = getattr(table, own)
+    for option, attribute in SPECIAL_COLORS.items():
+        color = getattr(table, attribute)
         options[option] = None if color is None else pv.Color(color).hex_rgba
     return {"vizlight": __version__, "filter": "tint", "options": options}
 
@@ -519,7 +519,7 @@ def unlit_colors(mesh: pv.DataSet | pv.MultiBlock, /, name: str = RGB) -> pv.Loo
     table.values = np.array([list(bytes.fromhex(c[1:])) for c in options["colors"]], np.uint8)
     table.log_scale = options["log_scale"]
     table.scalar_range = tuple(options["clim"])
-    for option, own in SPECIAL_COLORS.items():
+    for option, attribute in SPECIAL_COLORS.items():
         if options[option] is not None:
-            setattr(table, own, options[option])
+            setattr(table, attribute, options[option])
     return table

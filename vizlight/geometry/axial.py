@@ -22,7 +22,7 @@ FEWEST, MOST = 36, 1 << 13
 
 
 @dataclass(frozen=True)
-class Source:
+class ShapeLight:
     """One light and its reflection, of luminance ``low + scale cosine^power fading``.
 
     Attributes
@@ -59,7 +59,7 @@ class Source:
 def source(
     center: Array, *, direction: VectorLike | None, position: VectorLike | None, ambient: float,
     diffuse: float, power: float, attenuation: VectorLike,
-) -> Source:  # fmt: skip
+) -> ShapeLight:  # fmt: skip
     """Validate the light of a shape and return it relative to the shape's centre."""
     if (direction is None) == (position is None):
         expected = "either direction= (toward the light) or position="
@@ -73,12 +73,12 @@ def source(
         if fading != (1.0, 0.0, 0.0):
             expected = "a light with position="
             raise ValueError(_check.message("attenuation", expected, "a light at infinity"))
-        return Source(_check.unit("direction", direction), math.inf, low, scale, power, fading)
+        return ShapeLight(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
     size = math.hypot(*offset)
     # A light in the centre is in no direction; any will do.
     toward = offset / size if size > 0 else np.array([0.0, 0, 1])
-    return Source(toward, size, low, scale, power, fading)
+    return ShapeLight(toward, size, low, scale, power, fading)
 
 
 def triple(name: str, value: object) -> Array:
@@ -111,7 +111,7 @@ def circle(angle: Array, first: Array, second: Array) -> Array:
 
 
 def reached(luminance: Callable[[Array], Array], levels: Array, end: float) -> Array:
-    """Return where from 0 to an end a luminance that falls reaches each level, by halving."""
+    """Return the places from 0 to an end where a falling luminance is at each level, by halving."""
     low, high = np.zeros(len(levels)), np.full(len(levels), end)
     while True:
         middle = (low + high) / 2

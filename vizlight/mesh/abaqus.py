@@ -1,4 +1,4 @@
-"""Input files of Abaqus and CalculiX: nodes and elements of parts, where instances put them.
+"""Input files of Abaqus and CalculiX: nodes and elements of parts, as instances place them.
 
 Source: "Abaqus Keywords Guide" and "CalculiX CrunchiX User's Manual". A line of a keyword begins
 with one asterisk, a comment with two; lines of data follow a keyword.
@@ -45,7 +45,7 @@ _DEEPEST = 16
 
 @dataclass
 class _Part:
-    """Nodes and elements, as they stand in lines."""
+    """Nodes and elements, as listed in the file."""
 
     row_of: dict[int, int] = field(default_factory=dict)
     points: list[list[float]] = field(default_factory=list)
@@ -74,23 +74,23 @@ class _Model:
         self.part = ""
         self.left: set[str] = set()
 
-    def take(self, keyword: str, given: dict[str, str], rows: list[list[str]]) -> None:
-        """Take what a keyword with its parameters and its lines of data says."""
-        name = given.get("NAME", "").upper()
+    def take(self, keyword: str, parameters: dict[str, str], rows: list[list[str]]) -> None:
+        """Take a keyword with its parameters and its lines of data."""
+        name = parameters.get("NAME", "").upper()
         if keyword in ("PART", "END PART", "END INSTANCE"):
             self.part = name if keyword == "PART" else ""
             self.parts.setdefault(self.part, _Part())
         elif keyword == "INSTANCE":
-            of = given.get("PART", "").upper()
-            if of not in self.parts:
-                raise ValueError(f"*INSTANCE of the part {of!r}, which is not there")
-            self.instances[name] = of, rows
+            part_name = parameters.get("PART", "").upper()
+            if part_name not in self.parts:
+                raise ValueError(f"*INSTANCE of the part {part_name!r}, which is not there")
+            self.instances[name] = part_name, rows
         elif keyword == "NODE":
-            if given.get("SYSTEM", "R").upper() != "R":
+            if parameters.get("SYSTEM", "R").upper() != "R":
                 raise ValueError("*NODE, SYSTEM= other than R is not read: write x, y and z")
             self._nodes(rows)
         elif keyword == "ELEMENT":
-            self._elements(given.get("TYPE", "").upper(), rows)
+            self._elements(parameters.get("TYPE", "").upper(), rows)
         elif keyword in _MADE:
             raise ValueError(f"*{keyword} is not read: write the mesh with each node and element")
 
@@ -109,22 +109,22 @@ class _Model:
         words = [int(word) for row in rows for word in row if word]
         if len(words) % (size + 1):
             raise ValueError(f"{len(words)} numbers are no elements of {kind}, of {size} nodes")
-        found = self.parts[self.part].cells.setdefault(cell, [])
-        found += [words[i + 1 : i + size + 1] for i in range(0, len(words), size + 1)]
+        cells = self.parts[self.part].cells.setdefault(cell, [])
+        cells += [words[i + 1 : i + size + 1] for i in range(0, len(words), size + 1)]
 
     def blocks(self) -> pv.MultiBlock:
-        """Return the parts where their instances put them, and what is in none."""
-        found = pv.MultiBlock()
-        for name, (of, rows) in self.instances.items():
-            if self.parts[of].cells:
-                found.append(_placed(self.parts[of].grid(), rows), name)
+        """Return the parts as their instances place them, and the parts of no instance."""
+        blocks = pv.MultiBlock()
+        for name, (part_name, rows) in self.instances.items():
+            if self.parts[part_name].cells:
+                blocks.append(_placed(self.parts[part_name].grid(), rows), name)
         for name, part in self.parts.items():
             if part.cells and (not name or not self.instances):
-                found.append(part.grid(), name or "mesh")
+                blocks.append(part.grid(), name or "mesh")
         if self.left:
             names = ", ".join(sorted(self.left))
             _check.warn(f"file: '{self.path}': elements without cells are left out: {names}")
-        return found
+        return blocks
 
 
 def read(path: Path) -> pv.MultiBlock:
@@ -137,17 +137,17 @@ def read(path: Path) -> pv.MultiBlock:
     Raises
     ------
     ValueError
-        If a line cannot be read, or a file that is included is not there.
+        If a line cannot be read, or an included file is missing.
     """
     model = _Model(path)
-    keyword, given, rows = "", dict[str, str](), list[list[str]]()
+    keyword, parameters, rows = "", dict[str, str](), list[list[str]]()
     for line in _lines(path, path.parent, 0):
         if not line.startswith("*"):
             rows.append([word.strip() for word in line.split(",")])
             continue
-        model.take(keyword, given, rows)
-        (keyword, given), rows = _keyword(line), []
-    model.take(keyword, given, rows)
+        model.take(keyword, parameters, rows)
+        (keyword, parameters), rows = _keyword(line), []
+    model.take(keyword, parameters, rows)
     return model.blocks()
 
 
@@ -155,8 +155,8 @@ def _keyword(line: str) -> tuple[str, dict[str, str]]:
     """Return the word of a line of a keyword, and its parameters."""
     word, *parameters = line.lstrip("*").split(",")
     pairs = [part.partition("=") for part in parameters]
-    given = {name.strip().upper(): value.strip().strip("\"'") for name, _, value in pairs}
-    return " ".join(word.upper().split()), given
+    values = {name.strip().upper(): value.strip().strip("\"'") for name, _, value in pairs}
+    return " ".join(word.upper().split()), values
 
 
 def _lines(path: Path, folder: Path, depth: int) -> Iterator[str]:
@@ -168,13 +168,15 @@ def _lines(path: Path, folder: Path, depth: int) -> Iterator[str]:
             line = text.strip()
             if not line or line.startswith("**"):
                 continue
-            keyword, given = _keyword(line) if line.startswith("*") else ("", {})
+            keyword, parameters = _keyword(line) if line.startswith("*") else ("", {})
             if keyword != "INCLUDE":
                 yield line
-            if "INPUT" in given and keyword in ("INCLUDE", "NODE", "ELEMENT"):
-                inner = folder / given["INPUT"]
+            if "INPUT" in parameters and keyword in ("INCLUDE", "NODE", "ELEMENT"):
+                inner = folder / parameters["INPUT"]
                 if not inner.is_file():
-                    raise ValueError(f"*{keyword} of '{given['INPUT']}': no such file beside it")
+                    raise ValueError(
+                        f"*{keyword} of '{parameters['INPUT']}': no such file beside it"
+                    )
                 yield from _lines(inner, folder, depth + 1)
 
 

@@ -35,17 +35,17 @@ SQUARE = 1e-5
 _FREESURFER, _CURV = (b"\xff\xff\xfe", b"\xff\xff\xfd", b"\xff\xff\xff"), b"\xff\xff\xff"
 #: Codes of GIFTI for points and for triangles.
 _POINTS, _TRIANGLES = 1008, 1009
-#: What a .mz3 file holds, bit by bit: type and numbers for each face or point.
+#: Contents of a .mz3 file, bit by bit: type and numbers for each face or point.
 _MZ3 = {"faces": ("<i4", 3), "points": ("<f4", 3), "rgb": ("u1", 4), "values": ("<f4", 1)}
 _MAGIC = b"MZ"
 #: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
 _TT = 32
-#: What is said of values at the points of a surface, such as its curvature.
+#: Note on values at the points of a surface, such as its curvature.
 NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
 
 def is_freesurfer(path: Path) -> bool:
-    """Return whether a file begins as FreeSurfer's surfaces and arrays do.
+    """Return whether a file begins like FreeSurfer's surfaces and arrays.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
 
 
 def _of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.StructuredGrid:
-    """Return a grid whose point i, j, k is at the affine times these."""
+    """Return a grid with its point i, j, k at the affine times these."""
     spacing = np.linalg.norm(affine[:3, :3], axis=0)
     axes = affine[:3, :3] / np.where(spacing > 0, spacing, 1)
     if np.allclose(axes.T @ axes, np.eye(3), atol=SQUARE):
@@ -189,28 +189,28 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     import nibabel
 
     name = re.sub(r"\.gz$", "", path.name)
-    own = name.removesuffix(".gii")
+    stem = name.removesuffix(".gii")
     if name.endswith(".mz3"):
         # Such a file may have a surface beside its values.
-        found = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
+        arrays = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
     elif name.endswith(".gii"):
-        found = _gifti(path)[2]
+        arrays = _gifti(path)[2]
     elif name.endswith(".annot"):
         # Indices of regions in the table of colours, -1 for none; colours and names are left out.
-        found = {"values": nibabel.freesurfer.read_annot(path)[0]}
+        arrays = {"values": nibabel.freesurfer.read_annot(path)[0]}
     elif path.name.lower().endswith(VOLUMES):
         volume: Foreign = nibabel.load(path)
         # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
-        found = {"values": np.asarray(volume.dataobj).reshape(-1)}
+        arrays = {"values": np.asarray(volume.dataobj).reshape(-1)}
     else:
-        found = {"values": nibabel.freesurfer.read_morph_data(path)}
-    other = {len(rows) for rows in found.values()} - {count}
-    if other or not found:
+        arrays = {"values": nibabel.freesurfer.read_morph_data(path)}
+    other = {len(rows) for rows in arrays.values()} - {count}
+    if other or not arrays:
         got = f"{min(other)} values" if other else "no values"
         raise ValueError(f"its overlay '{path}' has {got} for a surface of {count} points")
-    if len(found) == 1:
-        return {own: next(iter(found.values()))}
-    return {f"{own}_{key}": rows for key, rows in found.items()}
+    if len(arrays) == 1:
+        return {stem: next(iter(arrays.values()))}
+    return {f"{stem}_{key}": rows for key, rows in arrays.items()}
 
 
 def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray]]:
@@ -255,18 +255,18 @@ def _mz3(path: Path) -> dict[str, AnyArray]:
     # and of bytes to skip before the first part.
     parts = int.from_bytes(data[2:4], "little")
     faces, points, skip = (int(number) for number in np.frombuffer(data, "<u4", 3, 4))
-    at, found = 16 + skip, {}
+    at, arrays = 16 + skip, {}
     # Parts stand in the order of their bits.
     for bit, (name, (kind, width)) in enumerate(_MZ3.items()):
         if parts >> bit & 1:
             rows = faces if name == "faces" else points
             array = np.frombuffer(data, kind, rows * width, at)
             at += array.nbytes
-            found[name] = array.reshape(rows, width) if width > 1 else array
+            arrays[name] = array.reshape(rows, width) if width > 1 else array
     # The fourth is the opacity.
-    if "rgb" in found:
-        found["rgb"] = found["rgb"][:, :3]
-    return found
+    if "rgb" in arrays:
+        arrays["rgb"] = arrays["rgb"][:, :3]
+    return arrays
 
 
 def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
@@ -274,7 +274,7 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
 
     The file is one of MATLAB 4; a tract is its number of coordinates, its first point in 32nds of
     a voxel, and steps of a byte for each further coordinate. Points are in mm, by ``trans_to_mni``
-    where it is there.
+    if the file has it.
 
     Parameters
     ----------

@@ -39,9 +39,9 @@ class Dimming(NamedTuple):
     transmittance : ndarray of float32, shape (N, L)
         Share of each light of intensity above 0.
     record : dict
-        Diameter, side of a voxel, and digests of what the shares were computed from.
+        Diameter, side of a voxel, and digests of the sources of the shares.
     keys : list of str
-        Where each light comes from.
+        Position or direction of each light.
     """
 
     transmittance: Array
@@ -49,7 +49,7 @@ class Dimming(NamedTuple):
     keys: list[str]
 
 
-class Lines(NamedTuple):
+class LineSet(NamedTuple):
     """Polylines of one or several meshes."""
 
     points: Array
@@ -78,7 +78,7 @@ def dim(
     scene : Scene
         Lights, in the unit of the meshes, and the view that headlights follow.
     bundle : Bundle
-        How the lines dim the light.
+        Options of the lines that dim the light.
     names : tuple of str
         Names of the luminance and the transmittance. Shares that a mesh has under that name are
         used again where nothing that they depend on has changed.
@@ -96,19 +96,19 @@ def dim(
         If there are no lines, or points that are not in 3-space.
     """
     work, lights = Work(meshes, inputs, bundle), _lights(scene)
-    made: list[Dimming] = []
-    for mesh, given in zip(meshes, inputs, strict=True):
+    dimmings: list[Dimming] = []
+    for mesh, mesh_inputs in zip(meshes, inputs, strict=True):
 
-        def report(count: int, done: int = len(made) * len(lights)) -> None:
+        def report(count: int, done: int = len(dimmings) * len(lights)) -> None:
             # Grids of the meshes before, counted when the function is made, and of this one.
             progress(done + count, len(meshes) * len(lights))
 
-        made.append(Dimmed(mesh, given, work, names).by(lights, report))
-    return made
+        dimmings.append(Dimmed(mesh, mesh_inputs, work, names).shares_of(lights, report))
+    return dimmings
 
 
 class Work:
-    """The lines that dim meshes, and what is computed of them once it is needed.
+    """The lines that dim meshes, and their medium, which is computed once it is needed.
 
     Raises
     ------
@@ -119,19 +119,19 @@ class Work:
     def __init__(
         self, meshes: Sequence[pv.DataSet], inputs: Sequence[ShadingInputs], bundle: Bundle
     ) -> None:
-        for given in inputs:
-            if given.points.shape[1] != 3:
-                got = f"points of {given.points.shape[1]} components"
+        for mesh_inputs in inputs:
+            if mesh_inputs.points.shape[1] != 3:
+                got = f"points of {mesh_inputs.points.shape[1]} components"
                 raise ValueError(_check.message("bundle", "points in 3-space", got))
         # Among the lines that are lit a point must not be in the shade of its own line.
-        self.own, self.bundle = bundle.lines is None, bundle
-        self.lines = joined(meshes) if self.own else _lines_of(bundle.lines)
+        self.of_meshes, self.bundle = bundle.lines is None, bundle
+        self.lines = joined(meshes) if self.of_meshes else _lines_of(bundle.lines)
         if not len(self.lines.ids):
             remedy = "pass Bundle(lines=...) to dim another mesh by lines"
             raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
         # Shares that a mesh has kept hold only for the same lines and the same options.
-        asked = repr([bundle.diameter, bundle.depth, bundle.grid, self.own])
-        self.source = records.source(*self.lines, np.array([asked]))
+        options_text = repr([bundle.diameter, bundle.depth, bundle.grid, self.of_meshes])
+        self.source = records.source(*self.lines, np.array([options_text]))
 
     @functools.cached_property
     def medium(self) -> tuple[Medium, float]:
@@ -140,12 +140,12 @@ class Work:
 
 
 def _lights(scene: Scene) -> list[Light]:
-    """Return the lights that shine, where the view of a scene has them."""
+    """Return the lights that shine, placed by the view of a scene."""
     # A lamp that is off would cost a grid of voxels for nothing.
     return [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
 
 
-def medium_of(lines: Lines, bundle: Bundle) -> tuple[Medium, float]:
+def medium_of(lines: LineSet, bundle: Bundle) -> tuple[Medium, float]:
     """Return the medium of lines and their diameter."""
     ends = lines.points[lines.ids].astype(np.float64)
     # Only points of lines count, since others would make the box and all voxels larger.
@@ -203,7 +203,7 @@ class Dimmed:
         if inputs.tangents is not None:
             # Length 0 stands for a point on no line of the medium, which adds nothing to its depth.
             halves = np.zeros((len(points), 2, 3))
-            if work.own and polylines.has_lines_only(mesh):
+            if work.of_meshes and polylines.has_lines_only(mesh):
                 halves = polylines.of_points(mesh, geometry.line_halves)
         if rows is not None and len(rows) * inputs.repeat == len(points):
             # One vector may serve several points, as on a fibre of fur.
@@ -217,25 +217,27 @@ class Dimmed:
         self._source = f"{work.source} {records.source(*arrays)}"
         self._known = _kept(mesh, names, self._source)
 
-    def by(self, lights: Sequence[Light], progress: Callable[[int], None] | None = None) -> Dimming:
-        """Return the shares of some lights, known ones where they still hold."""
-        keys, known = [_key(light) for light in lights], self._known
+    def shares_of(
+        self, lights: Sequence[Light], progress: Callable[[int], None] | None = None
+    ) -> Dimming:
+        """Return the shares of some lights, kept ones where they still hold."""
+        keys, kept = [_key(light) for light in lights], self._known
         columns: dict[str, Array] = {}
         facts: Record = {}
-        if known is not None:
-            if known.keys == keys:
+        if kept is not None:
+            if kept.keys == keys:
                 # The same object, by which callers see that nothing has changed.
-                return known
-            columns = dict(zip(known.keys, known.transmittance.T, strict=True))
-            facts = known.record
+                return kept
+            columns = dict(zip(kept.keys, kept.transmittance.T, strict=True))
+            facts = kept.record
         # Where one lamp moves, the others keep their shares.
         missing = [i for i, key in enumerate(keys) if key not in columns]
         if missing:
             medium, diameter = self._work.medium
             places = [_place(lights[i]) for i in missing]
             targets = medium.targets(*self._targets)
-            found = medium.dimmed(targets, diameter, places, progress=progress)
-            columns |= {keys[i]: column for i, column in zip(missing, found.T, strict=True)}
+            shares = medium.dimmed(targets, diameter, places, progress=progress)
+            columns |= {keys[i]: column for i, column in zip(missing, shares.T, strict=True)}
             facts = {"diameter": diameter, "voxel": medium.voxel}
         transmittance = np.empty((len(self._targets[0]), len(keys)), np.float32)
         for i, key in enumerate(keys):
@@ -248,21 +250,21 @@ class Dimmed:
 
         They are the same object where they have those shares already.
         """
-        made = self.by(_lights(scene))
-        if inputs.transmittance is made.transmittance:
+        dimming = self.shares_of(_lights(scene))
+        if inputs.transmittance is dimming.transmittance:
             return inputs
-        return dataclasses.replace(inputs, transmittance=made.transmittance)
+        return dataclasses.replace(inputs, transmittance=dimming.transmittance)
 
 
 def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
     """Return a vector along a line through each point."""
     first = geometry.segment_starts(ids, offsets)
-    found = np.zeros((len(points), 3))
+    tangents = np.zeros((len(points), 3))
     step = points[ids[first + 1]].astype(np.float64) - points[ids[first]]
-    found[ids[first + 1]] = step
+    tangents[ids[first + 1]] = step
     # Written second: an inner point has the step after it, the last of a line the one before.
-    found[ids[first]] = step
-    return found
+    tangents[ids[first]] = step
+    return tangents
 
 
 def _place(light: Light) -> tuple[tuple[float, ...], bool]:
@@ -296,30 +298,30 @@ def _kept(mesh: pv.DataSet, names: tuple[str, str], source: str) -> Dimming | No
     return Dimming(shares, record, keys) if shares.shape[1] == len(keys) else None
 
 
-def _lines_of(given: object) -> Lines:
+def _lines_of(mesh: object) -> LineSet:
     """Return the lines of a mesh or of the blocks of several."""
-    if not isinstance(given, pv.DataSet | pv.MultiBlock):
+    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         expected = "a PyVista mesh of lines"
-        raise TypeError(_check.message("Bundle(lines=)", expected, type(given).__name__))
-    lines = joined(list(blocks.all_blocks(given)))
+        raise TypeError(_check.message("Bundle(lines=)", expected, type(mesh).__name__))
+    lines = joined(list(blocks.all_blocks(mesh)))
     if not len(lines.ids):
-        expected, got = "a mesh of lines", type(given).__name__
+        expected, got = "a mesh of lines", type(mesh).__name__
         raise ValueError(_check.message("Bundle(lines=)", expected, got))
     return lines
 
 
-def joined(meshes: Sequence[pv.DataSet]) -> Lines:
+def joined(meshes: Sequence[pv.DataSet]) -> LineSet:
     """Return the lines of the meshes that have nothing but lines."""
-    found = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
+    cells = [polylines.cells_of(mesh) for mesh in meshes if polylines.has_lines_only(mesh)]
     none = np.empty((0, 3)), np.empty(0, np.intp), np.zeros(1, np.intp)
-    points, ids, offsets = zip(*(found or [none]), strict=True)
+    points, ids, offsets = zip(*(cells or [none]), strict=True)
     starts = np.cumsum([0, *(len(rows) for rows in points)])
-    ends = np.cumsum([0, *(len(own) for own in ids)])
-    return Lines(
+    ends = np.cumsum([0, *(len(line_ids) for line_ids in ids)])
+    return LineSet(
         np.concatenate(points),
-        np.concatenate([own + start for own, start in zip(ids, starts, strict=False)]),
+        np.concatenate([line_ids + start for line_ids, start in zip(ids, starts, strict=False)]),
         # The first offset of a mesh, 0, is where the mesh before ends.
         np.concatenate(
-            [[0], *(own[1:] + end for own, end in zip(offsets, ends, strict=False))]
+            [[0], *(line_starts[1:] + end for line_starts, end in zip(offsets, ends, strict=False))]
         ).astype(np.intp),
     )

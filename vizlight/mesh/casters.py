@@ -40,7 +40,7 @@ FIELD_ALONE = ("elevation", "exaggeration", "border", "raster")
 
 @dataclass(frozen=True, kw_only=True)
 class CasterOptions(Options):
-    """How a mesh casts shadows.
+    """Options of casting shadows.
 
     The fields are keywords of :func:`vizlight.relief_shadow`.
     """
@@ -55,14 +55,14 @@ class CasterOptions(Options):
     occluders: pv.PolyData | Sequence[pv.PolyData] = ()
 
     def __post_init__(self) -> None:
-        given: object = self.occluders
-        if isinstance(given, pv.DataObject):
-            given = [given]
+        occluders: object = self.occluders
+        if isinstance(occluders, pv.DataObject):
+            occluders = [occluders]
         # Text and arrays can be iterated, too, but are no meshes.
-        if isinstance(given, str | np.ndarray) or not isinstance(given, Iterable):
+        if isinstance(occluders, str | np.ndarray) or not isinstance(occluders, Iterable):
             expected = "a closed surface or several"
-            raise TypeError(_check.message("occluders", expected, _check.describe(given)))
-        _check.set_fields(self, occluders=list(given))
+            raise TypeError(_check.message("occluders", expected, _check.describe(occluders)))
+        _check.set_fields(self, occluders=list(occluders))
         if self.thickness is not None:
             _check.positive("thickness", self.thickness)
         if self.elevation is not None:
@@ -73,7 +73,7 @@ class CasterOptions(Options):
 def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaster | SolidCaster:
     """Return a mesh that casts shadows on itself.
 
-    ``of`` gives t at all its points and reports the number of rays followed so far, ``reference``
+    ``ratios`` gives t at all its points and reports the number of rays followed, ``reference``
     gives t at one point by an independent method, NaN where that does not apply. ``valid`` is the
     mask of the points that have a t, ``depth`` the depth d, and ``effort`` the number of planes of
     nodes or triangles that ``reference`` visits for one t, 0 if it finds none.
@@ -90,10 +90,10 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaste
     if isinstance(mesh, pv.PolyData):
         defaults = {field.name: field.default for field in dataclasses.fields(options)}
         for option in FIELD_ALONE:
-            given, default = getattr(options, option), defaults[option]
-            if given is not default and (default is None or np.any(given != default)):
+            setting, default = getattr(options, option), defaults[option]
+            if setting is not default and (default is None or np.any(setting != default)):
                 remedy = "leave it out, or pass a grid"
-                raise ValueError(_check.message(option, "none on a surface", repr(given), remedy))
+                raise ValueError(_check.message(option, "none on a surface", repr(setting), remedy))
         return SolidCaster(mesh, scene, options)
     expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
     remedy = "take the mesh's extract_surface()"
@@ -106,36 +106,36 @@ class FieldCaster:
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
         grid = georeference.in_metres(grid)
-        found = heights_of(grid, options.elevation, options.exaggeration, options.raster)
+        heights = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         # Where the ground goes on beyond the border and in holes its slope does, for one cell.
         self._rim = int(options.border == "extend")
-        nodes = height_field.continued(found.x, found.y, found.z) if self._rim else (
-            found.x, found.y, found.z
+        nodes = height_field.continued(heights.x, heights.y, heights.z) if self._rim else (
+            heights.x, heights.y, heights.z
         )  # fmt: skip
         field = self._field = height_field.make(*nodes, border=options.border)
-        self._normal, self._found = height_field.normals(field), found
+        self._normal, self._heights = height_field.normals(field), heights
         # From the axes of the mesh to those of the grid's rows and columns.
-        self._turn = np.eye(3) if found.turn is None else found.turn
+        self._turn = np.eye(3) if heights.turn is None else heights.turn
         # The nodes are then others than the points of the mesh.
-        sampled = isinstance(found, Raster)
+        sampled = isinstance(heights, Raster)
         # By the nodes of the grid, without the ring.
         inner = dataclasses.replace(
             field,
-            x=field.x[self._rim :][: len(found.x)] - field.x[self._rim],
-            y=field.y[self._rim :][: len(found.y)] - field.y[self._rim],
+            x=field.x[self._rim :][: len(heights.x)] - field.x[self._rim],
+            y=field.y[self._rim :][: len(heights.y)] - field.y[self._rim],
             heights=self._inner(field.heights),
-            top=float(np.nanmax(found.z) - np.nanmin(found.z)),
+            top=float(np.nanmax(heights.z) - np.nanmin(heights.z)),
         )
         self.depth = _depth(options.depth, height_field.default_depth(inner))
-        self.points = found.points()
-        known = np.isfinite(found.z)
+        self.points = heights.points()
+        covered = np.isfinite(heights.z)
         # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
-        upright = found.to_points(
-            np.where(known[..., np.newaxis], self._inner(self._normal) @ self._turn, 0)
+        upright = heights.to_points(
+            np.where(covered[..., np.newaxis], self._inner(self._normal) @ self._turn, 0)
         )
         # Interpolated from the nodes around, normals are shorter than 1.
         self.normals = kernels.unit_rows(upright) if sampled else upright
-        self.valid: Bools = found.covered() & (found.to_points(known * 1.0) > 0)
+        self.valid: Bools = heights.covered() & (heights.to_points(covered * 1.0) > 0)
         if georeference.UNIT in grid.field_data and 0 < inner.top < UNSEEN * inner.size:
             wanted = georeference.ENOUGH[0] * inner.size / inner.top * options.exaggeration
             _check.warn(
@@ -146,22 +146,22 @@ class FieldCaster:
         exact = not sampled and self.depth > shadowing.LEAST_DEPTH * field.size
         self.effort = sum(field.heights.shape) if exact else 0
 
-    def of(self, light: Light, report: Callable[[int], None]) -> Array:
+    def ratios(self, light: Light, report: Callable[[int], None]) -> Array:
         """Return t at all points; ``report`` takes the number of rays followed so far."""
-        rays, nodes = self._field.heights.size, self._found.z.size
+        rays, nodes = self._field.heights.size, self._heights.z.size
         t = shadowing.ratio(
             self._field, self._normal, self.depth, direction=self._turned(light.direction),
             position=self._turned(light.position),
             report=lambda done: report(done * nodes // rays),
         )  # fmt: skip
         t = self._inner(t).copy()
-        t[np.isnan(self._found.z)] = 0
-        t = self._found.to_points(t)
+        t[np.isnan(self._heights.z)] = 0
+        t = self._heights.to_points(t)
         t[~self.valid] = 0
         return t
 
     def _inner(self, rows: Array) -> Array:
-        """Return what is at the nodes of the grid itself."""
+        """Return the rows at the nodes of the grid itself."""
         end = -self._rim or None
         return rows[self._rim : end, self._rim : end]
 
@@ -203,7 +203,10 @@ class SolidCaster:
         # underflow.
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
-        self._solids = [closed_meshes.Solid(*one, self._origin, self._unit) for one in bodies]
+        self._solids = [
+            closed_meshes.TriangleSolid(*triangles, self._origin, self._unit)
+            for triangles in bodies
+        ]
         self.depth = _depth(options.depth, DEPTH * self._unit)
         self._share = self.depth / self._unit
         self.points: Array = np.asarray(mesh.points, dtype=np.float64)
@@ -212,7 +215,7 @@ class SolidCaster:
         faces = sum(len(body.triangles) for body in self._solids)
         self.effort = faces if self._share > shadowing.LEAST_DEPTH else 0
 
-    def of(self, light: Light, report: Callable[[int], None]) -> Array:
+    def ratios(self, light: Light, report: Callable[[int], None]) -> Array:
         """Return t at all points; ``report`` takes the number of rays followed so far."""
         good, depth = self.valid, self._share
         # At depth 0 the limit of t is the cosine where the way is free, else 0: rays start just

@@ -75,12 +75,12 @@ class Tracer:
         t, part, cell = mutable(0.0), mutable(0), mutable(0)
         place, weights = [0.0] * 3, [0.0] * 3
         find: Foreign = self._tree.IntersectWithLine
-        found = np.full(len(start), -1)
+        hits_by_ray = np.full(len(start), -1)
         ends = start + np.reshape(reach, (-1, 1)) * way
         for row, (a, b) in enumerate(zip(start.tolist(), ends.tolist(), strict=True)):
             if find(a, b, NEAR, t, place, weights, part, cell):
-                found[row] = int(cell)
-        return found
+                hits_by_ray[row] = int(cell)
+        return hits_by_ray
 
     def free(self, start: Array, way: Array, reach: float) -> Bools:
         """Return whether rays meet no triangle."""
@@ -91,7 +91,7 @@ class Tracer:
         return np.asarray(hit != 0)
 
 
-class Solid:
+class TriangleSolid:
     """Triangles of a closed surface in float64, relative to an origin and in a unit."""
 
     def __init__(
@@ -206,7 +206,7 @@ def _open_edges(triangles: Indices, *, directed: bool) -> Indices:
 
 
 def hits(
-    body: Solid, start: Array, way: Array, reach: Array
+    body: TriangleSolid, start: Array, way: Array, reach: Array
 ) -> tuple[Indices, Indices, Array, bool]:
     """Return ray, triangle and distance of every hit, and whether shared edges may be hit twice.
 
@@ -215,9 +215,9 @@ def hits(
     """
     # Rays of a sun need no search tree, and where they meet an edge there are exact rules.
     if len(way) and np.all(way == way[0]):
-        found = parallel_rays.hits(body.vertices, body.triangles, start, way[0])
-        if found is not None:
-            return *found, _distances(body, start, way, *found), False
+        pairs = parallel_rays.hits(body.vertices, body.triangles, start, way[0])
+        if pairs is not None:
+            return *pairs, _distances(body, start, way, *pairs), False
     row, s = np.arange(len(start)), np.zeros(len(start))
     rays, cells, places = [], [], []
     for _ in range(MOST):
@@ -236,7 +236,7 @@ def hits(
     return np.concatenate(rays), np.concatenate(cells), np.concatenate(places), True
 
 
-def _distances(body: Solid, start: Array, way: Array, ray: Indices, cell: Indices) -> Array:
+def _distances(body: TriangleSolid, start: Array, way: Array, ray: Indices, cell: Indices) -> Array:
     """Return the distances of hits along their rays."""
     normal, toward = body.normals[cell], way[ray]
     against = np.einsum("ij,ij->i", toward, normal)
@@ -244,8 +244,8 @@ def _distances(body: Solid, start: Array, way: Array, ray: Indices, cell: Indice
     s /= np.where(against == 0, 1, against)
     # Of a triangle along the ray the distance is ill-conditioned: it stays between the corners'.
     steep = np.flatnonzero(against**2 < STEEP**2 * np.einsum("ij,ij->i", normal, normal))
-    own = body.corners[cell[steep]] - start[ray[steep], np.newaxis]
-    along = np.einsum("ijk,ik->ij", own, toward[steep])
+    corners = body.corners[cell[steep]] - start[ray[steep], np.newaxis]
+    along = np.einsum("ijk,ik->ij", corners, toward[steep])
     s[steep] = np.clip(
         s[steep], along.min(axis=1, initial=np.inf), along.max(axis=1, initial=-np.inf)
     )
@@ -253,7 +253,7 @@ def _distances(body: Solid, start: Array, way: Array, ray: Indices, cell: Indice
 
 
 def inside_length(
-    solids: list[Solid],
+    solids: list[TriangleSolid],
     start: Array,
     way: Array,
     reach: Array,
@@ -263,7 +263,7 @@ def inside_length(
 
     Parameters
     ----------
-    solids : list of Solid
+    solids : list of TriangleSolid
     start, way : ndarray, shape (N, 3)
         Starting points and unit directions of the rays.
     reach : ndarray, shape (N,)
@@ -299,7 +299,9 @@ def inside_length(
     return length
 
 
-def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indices, Array, Indices]:
+def _events(
+    body: TriangleSolid, start: Array, way: Array, reach: Array
+) -> tuple[Indices, Array, Indices]:
     """Return where rays enter (-1) and leave (+1) one solid: ray, distance and change.
 
     Events are in the order from the end of the ray to its start, where a last event at distance 0
@@ -335,7 +337,7 @@ def _events(body: Solid, start: Array, way: Array, reach: Array) -> tuple[Indice
     return ray, s, change
 
 
-def is_inside(body: Solid, place: Array) -> bool:
+def is_inside(body: TriangleSolid, place: Array) -> bool:
     """Return whether a point is inside a solid: whether its faces fill the sphere around it.
 
     Source: Van Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30 (1983).

@@ -65,7 +65,7 @@ _DEM_COLUMNS, _DEM_LEAST = slice(858, 864), 100
 
 
 def missing(path: Path) -> str:
-    """Return the remedy for a file whose package is not installed, else an empty text."""
+    """Return the remedy for a file that needs a missing package, else an empty text."""
     package, extra = PACKAGES.get(path.suffix.lower(), ("", ""))
     if not package:
         return ""
@@ -135,8 +135,8 @@ def _head(path: Path, count: int) -> bytes:
 def _of_meshio(path: Path) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
-    ``meshio.read`` prints what its readers say, and ends the process. Names of parts are left out:
-    gmsh's sets are not of the form that PyVista takes, and their numbers are cell data.
+    ``meshio.read`` prints the messages of its readers, and ends the process. Names of parts are
+    left out: gmsh's sets are not of the form that PyVista takes, and their numbers are cell data.
     """
     import meshio
 
@@ -146,29 +146,29 @@ def _of_meshio(path: Path) -> pv.DataSet:
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
-            found = reader.read(path)
+            data = reader.read(path)
         except meshio.ReadError:
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
                 raise
         else:
             break
-    if not found.cells:
+    if not data.cells:
         raise ValueError("it has no cells")
-    found.cell_sets = {}
-    mesh = pv.from_meshio(found)
+    data.cell_sets = {}
+    mesh = pv.from_meshio(data)
     if _SAID.texts:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
 
 
-#: What meshio said to each thread.
+#: Messages of meshio, by thread.
 _SAID = threading.local()
 
 
 class _Console:
-    """In place of the console on which meshio prints: what is said there is kept, by thread."""
+    """Stands for the console on which meshio prints: its messages are kept, by thread."""
 
     def __init__(self, **_options: object) -> None:
         pass
@@ -184,7 +184,7 @@ _SCAN = {3: (), 4: ("intensity",), 6: ("color",), 7: ("intensity", "color")}
 
 
 def _scan(path: Path) -> pv.PolyData:
-    """Return the points of a scan: a count, if it is there, and a line for each point.
+    """Return the points of a scan: an optional count, and a line for each point.
 
     VTK's reader loses the first of them, and ends the process where a line has no numbers.
     """
@@ -271,8 +271,8 @@ def _tracts(path: Path) -> pv.PolyData:
     lines = tracts.streamlines
     if len(lines) and not np.isfinite(lines.get_data()).any():
         raise ValueError("no point is finite, by the affine of its header")
-    for one in said:
-        _check.warn(f"file: '{path}': {one.message}")
+    for warning in said:
+        _check.warn(f"file: '{path}': {warning.message}")
     if path.suffix.lower() == ".trk":
         # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
         header = nibabel.streamlines.load(path, lazy_load=True).header
@@ -361,8 +361,8 @@ def _polylines(
         (mesh.point_data, of_points, rows, len(points)),
         (mesh.cell_data, of_lines, np.flatnonzero(lengths > 0), len(lengths)),
     ):
-        for name, given in arrays.items():
-            array = np.asarray(given)
+        for name, values in arrays.items():
+            array = np.asarray(values)
             if len(array) == count and array.dtype.kind in "biuf":
                 _attach(data, name, array[kept])
             else:

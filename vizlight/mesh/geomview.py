@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 #: Name of the point array of places in 4-space.
 POSITIONS = "positions"
-#: Words at the begin of a file, and what each letter before OFF and MESH adds to a vertex.
+#: Words at the start of a file, and the meaning of each letter before OFF and MESH for a vertex.
 _OFF = re.compile(rb"\s*(?:#.*\n\s*)*(ST)?(C)?(N)?(4)?(n)?OFF\b")
 _MESH = re.compile(rb"\s*(?:#.*\n\s*)*(U)?(C)?(N)?(Z)?(4)?(u)?(v)?MESH\b")
 _HEAD = 4096
 
 
 def is_mesh(path: Path) -> bool:
-    """Return whether a file is a MESH of Geomview, whose suffix other formats have too."""
+    """Return whether a file is a MESH of Geomview; other formats share the suffix."""
     with path.open("rb") as file:
         return _MESH.match(file.read(_HEAD)) is not None
 
@@ -156,8 +156,8 @@ def _with_vertices(
         mesh.point_data.active_normals_name = "Normals"
     first = width + 3 * normal
     if coloured:
-        own = table[:, first : first + min(rest, 4)]
-        mesh.point_data["color"] = _bytes(own)
+        colors = table[:, first : first + min(rest, 4)]
+        mesh.point_data["color"] = _bytes(colors)
     return mesh
 
 

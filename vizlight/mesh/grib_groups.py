@@ -27,11 +27,11 @@ def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, obj
     Returns
     -------
     xarray.Dataset
-        Variables, whose times are numbers. Of two with one name the second is named by its level.
+        Variables, with times as numbers. Of two with one name the second is named by its level.
     dict
         The values of ``at`` along axes.
     str
-        Words for the variables on other grids, empty where there are none.
+        Words for the variables on other grids; empty without any.
 
     Raises
     ------
@@ -89,24 +89,26 @@ def _first_group(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[st
 
 
 def _fits(group: Foreign, at: Mapping[str, object]) -> bool:
-    """Return whether a group has all coordinates that are asked for, and the value of single ones.
+    """Return whether a group has all requested coordinates, and the value of single ones.
 
-    A value along an axis is looked for by who reads the group.
+    The reader of the group looks for values along an axis.
     """
     for name, value in at.items():
         if name in group.sizes:
             continue
         if name not in group.coords or group.coords[name].ndim:
             return False
-        own = group.coords[name].item()
-        if own != value and f"{own:g}" != str(value):
+        coordinate = group.coords[name].item()
+        if coordinate != value and f"{coordinate:g}" != str(value):
             return False
     return True
 
 
 def _level(group: Foreign) -> str:
-    """Return the kind of the level of a group, with its value where there is one."""
-    kinds = {str(one.attrs.get("GRIB_typeOfLevel", "")) for one in group.data_vars.values()}
+    """Return the kind of the level of a group, with its value if it is single."""
+    kinds = {
+        str(variable.attrs.get("GRIB_typeOfLevel", "")) for variable in group.data_vars.values()
+    }
     kind = min(kinds)
     single = kind in group.coords and group.coords[kind].ndim == 0
     return f"{kind} {group.coords[kind].item():g}" if single else kind

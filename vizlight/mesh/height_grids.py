@@ -61,9 +61,9 @@ class Heights:
     def points(self) -> Array:
         """Return the nodes in the order of the points, shape (ny nx, 3)."""
         x, y = np.meshgrid(self.x, self.y)
-        found = self.to_points(np.stack([x, y, self.z], axis=-1))
+        nodes = self.to_points(np.stack([x, y, self.z], axis=-1))
         # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
-        return found if self.turn is None else found @ self.turn
+        return nodes if self.turn is None else nodes @ self.turn
 
 
 @dataclass(frozen=True)
@@ -72,30 +72,30 @@ class Raster(Heights):
 
     Attributes
     ----------
-    own : ndarray, shape (N, 3)
+    surface_points : ndarray, shape (N, 3)
         Points of the surface.
     """
 
-    own: Array = field(default_factory=lambda: np.empty((0, 3)))
+    surface_points: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     def covered(self) -> Bools:
         """Return a mask of the points that have a height."""
-        known: Bools = np.all(np.isfinite(self.own), axis=1)
-        return known
+        finite: Bools = np.all(np.isfinite(self.surface_points), axis=1)
+        return finite
 
     def to_points(self, values: Array) -> Array:
         """Return values at the nodes interpolated to the points, bilinear."""
         # Rows are y: the order is y, x. Points without a place read any node, and are not covered.
-        own = np.nan_to_num(self.own[:, 1::-1])
+        places = np.nan_to_num(self.surface_points[:, 1::-1])
         # By rounding a point may lie beyond the outermost nodes, where the interpolator raises an
         # error.
-        beside = np.clip(own, [self.y[0], self.x[0]], [self.y[-1], self.x[-1]])
+        beside = np.clip(places, [self.y[0], self.x[0]], [self.y[-1], self.x[-1]])
         between = scipy.interpolate.RegularGridInterpolator((self.y, self.x), values)
         return np.asarray(between(beside))
 
     def points(self) -> Array:
         """Return the points of the surface, shape (N, 3)."""
-        return self.own
+        return self.surface_points
 
 
 def heights_of(
@@ -149,8 +149,8 @@ def _sampled(
         _check_layer(mesh)
     triangles = subdivision.simplices(mesh)
     # A face with a corner that has no height is a hole.
-    known = np.all(np.isfinite(points), axis=1)
-    triangles = triangles[np.all(known[triangles], axis=1)]
+    finite = np.all(np.isfinite(points), axis=1)
+    triangles = triangles[np.all(finite[triangles], axis=1)]
     if not len(triangles) or triangles.shape[1] < 3:
         raise ValueError(_check.message("mesh", "faces with heights", "none"))
     # Points of no face would make the raster larger.
@@ -174,7 +174,7 @@ def _sampled(
         raise ValueError(_check.message("raster", "nodes that the mesh covers", "none"))
     place = np.arange(heights.size).reshape(heights.shape)
     # Points at the outline interpolate nodes beyond it, which so have the height of the nearest.
-    return Raster(x, y, height_field.filled(heights), place, own=points)
+    return Raster(x, y, height_field.filled(heights), place, surface_points=points)
 
 
 def _check_layer(grid: Grid) -> tuple[int, int]:

@@ -24,7 +24,7 @@ _SAME = 6
 
 @dataclass(frozen=True)
 class Listed:
-    """Names of what gives the values of a list their places.
+    """Names of the coordinates that give the values of a list their places.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Listed:
 
 
 def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]) -> Listed | None:
-    """Return the list of a dataset that has most values, None where there is none.
+    """Return the list with the most values of a dataset, None without a list.
 
     Parameters
     ----------
@@ -62,15 +62,15 @@ def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
     lists = []
     for dim, pair in places.items():
         sizes = [
-            one.size
-            for name, one in file.data_vars.items()
-            if dim in one.dims and name not in pair.values()
+            variable.size
+            for name, variable in file.data_vars.items()
+            if dim in variable.dims and name not in pair.values()
         ]
         if len(pair) == 2 and sizes:
             bounds = [_bounds(file, pair[letter]) for letter in "xy"]
             bounds = bounds if all(bounds) else ["", ""]
             lists.append((bool(bounds[0]), max(sizes), Listed(dim, pair["x"], pair["y"], *bounds)))
-    return max(lists, key=lambda one: one[:2])[2] if lists else None
+    return max(lists, key=lambda entry: entry[:2])[2] if lists else None
 
 
 def _bounds(file: Foreign, name: str) -> str:
@@ -79,9 +79,9 @@ def _bounds(file: Foreign, name: str) -> str:
     bounds = str((file[name].encoding | file[name].attrs).get("bounds", ""))
     if bounds not in file.variables:
         return ""
-    one = file[bounds]
-    corners = one.ndim == 2 and one.dims[0] == file[name].dims[0] and one.shape[1] > 2
-    return bounds if corners and one.dtype.kind == "f" else ""
+    array = file[bounds]
+    corners = array.ndim == 2 and array.dims[0] == file[name].dims[0] and array.shape[1] > 2
+    return bounds if corners and array.dtype.kind == "f" else ""
 
 
 def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
@@ -110,12 +110,12 @@ def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
 
 
 def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
-    """Return points in the plane, and the row of the list that each is.
+    """Return points in the plane, and the row of the list of each.
 
     Parameters
     ----------
     x, y : ndarray, shape (N,)
-        Coordinates; what is not finite is left out.
+        Coordinates; points that are not finite are left out.
     degrees : bool
         Whether they are longitude and latitude, in degrees.
     """
@@ -125,7 +125,7 @@ def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
         x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
         # A region across the date line is not parted by it.
         eastward = np.where(x < 0, x + 360.0, x)
-        x = min(x, eastward, key=lambda one: float(np.ptp(one)) if one.size else 0.0)
+        x = min(x, eastward, key=lambda angles: float(np.ptp(angles)) if angles.size else 0.0)
     return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept
 
 

@@ -113,11 +113,11 @@ class Turning:
             got = f"{self.positions!r} with {n}"
             remedy = "name an array of positions in n-space"
             raise ValueError(_check.message("positions", "2 components or more", got, remedy))
-        found = {self.positions: position}
-        given = [("turned", name) for name in self.turned]
+        arrays = {self.positions: position}
+        arguments = [("turned", name) for name in self.turned]
         if self.frame is not None:
-            given.append(("frame", self.frame))
-        for argument, name in given:
+            arguments.append(("frame", self.frame))
+        for argument, name in arguments:
             array = _named(mesh, argument, name)
             # A frame of n tangents spans all of n-space, where no normal is left to light by.
             most = n - 1 if argument == "frame" else array.shape[1]
@@ -126,13 +126,13 @@ class Turning:
                 got = f"{name!r} with {array.shape[1]} components"
                 remedy = "name another array"
                 raise ValueError(_check.message(argument, expected, got, remedy))
-            found[name] = array
+            arrays[name] = array
         # Positions have no array of images: these are the points of the result.
-        _refuse_overwriting(mesh, [PROJECTED + name for name in list(found)[1:]])
+        _refuse_overwriting(mesh, [PROJECTED + name for name in list(arrays)[1:]])
         # Integers do not hold turned vectors.
         return {
             name: array if array.dtype.kind == "f" else array.astype(np.float64)
-            for name, array in found.items()
+            for name, array in arrays.items()
         }
 
     def _sliced(self, mesh: pv.DataSet, normal: Array, offset: float, lost: Counter) -> pv.PolyData:
@@ -242,12 +242,12 @@ class Turning:
 
         def work(x: Array, p: Array) -> Array:
             x = x.reshape(-1, rows, n)
-            found: Array = (
+            images: Array = (
                 projection.push_frame(x, p, distance=self.distance, rtol=rtol)[0]
                 if space
                 else projection.push_forward(x, p, distance=self.distance)
             )
-            return found
+            return images
 
         return _blocks(work, vectors, rows, 3, position)
 
@@ -258,7 +258,7 @@ def continued(mesh: pv.DataSet, name: str) -> Array | None:
     At a fold of the projection the image of a tangent vanishes, but the spaces that the tangents
     span at the points around usually have a limit. It is found as their mean, of second order in
     the distance of points that lie on both sides of the fold. Where the spaces around differ by
-    much, as at a pinch point, there is no limit and the rows stay as they are.
+    much, as at a pinch point, no limit exists and the rows stay as they are.
 
     Parameters
     ----------
@@ -389,7 +389,7 @@ def cut(
     heights : ndarray, shape (N,)
         Values of the function at the points.
     spaces : mapping of str to int, optional
-        Names of point arrays whose rows span a space, and the number n of components of a row:
+        Names of point arrays of rows that span a space, and the number n of components of a row:
         the mean is one of spaces, independent of the basis at each point.
 
     Returns
@@ -435,22 +435,22 @@ def cut(
 def _sparse(parts: Array, columns: Indices, count: int) -> Sparse:
     """Return a sparse array of rows with equally many parts in given columns."""
     ends = np.arange(0, parts.size + 1, parts.shape[1])
-    made = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
+    matrix = scipy.sparse.csr_array((parts.ravel(), columns.ravel(), ends), (len(parts), count))
     # Where the function is 0 at a point, both ends of its edge are that point.
-    made.sum_duplicates()
-    return made
+    matrix.sum_duplicates()
+    return matrix
 
 
 def _mean_frames(array: Array, between: Sparse, n: int) -> Array:
     """Return weighted means of frames in n-space; a row of ``between`` has the weights of one."""
-    found = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
-    for block in _pool.blocks(len(found), FRAMES):
+    means = np.empty((between.shape[0], array.shape[1]), dtype=array.dtype)
+    for block in _pool.blocks(len(means), FRAMES):
         part = between[block]
         # Only the frames that a block needs are widened to float64.
         used = np.unique(part.indices)
         rows = array[used].astype(np.float64).reshape(len(used), -1, n)
-        found[block] = slices.mean_frame(rows, part[:, used]).reshape(-1, array.shape[1])
-    return found
+        means[block] = slices.mean_frame(rows, part[:, used]).reshape(-1, array.shape[1])
+    return means
 
 
 def _triangles(mesh: pv.PolyData) -> Indices:
@@ -512,9 +512,9 @@ def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indi
     middle = np.broadcast_to(
         count + np.arange(len(corners))[:, np.newaxis, np.newaxis], (len(corners), 6, 1)
     )
-    found = [
+    parts = [
         np.concatenate([ring[..., part], middle], axis=2).reshape(-1, 4)
         # Both triangles of a face have the diagonal from its first corner in common.
         for part in ([0, 1, 2], [0, 2, 3])
     ]
-    return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *found]), corners
+    return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *parts]), corners

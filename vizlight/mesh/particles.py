@@ -23,7 +23,7 @@ MOST_STEPS = 10_000
 
 @dataclass
 class Rows(Columns):
-    """Particles at R times of release or of passage, for each of N seeds; NaN where there is none.
+    """Particles at R times of release or of passage, for each of N seeds; NaN for none.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Rows(Columns):
     times: Array
 
     def thinned(self, most: int) -> Rows:
-        """Return the rows from the oldest that is there on, without one that is close to others."""
+        """Return the rows from the oldest present one on, without one that is close to others."""
         there = np.any(np.isfinite(self.places), axis=(1, 2))
         # Rows age in order: one whose particles have all left the mesh is dropped.
         kept = np.arange(np.argmax(there) if there.any() else len(there), len(there))
@@ -73,7 +73,7 @@ class Carrier:
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Mesh, whose arrays are not used.
+        Mesh; its arrays are not used.
     """
 
     def __init__(self, mesh: pv.DataSet) -> None:
@@ -116,10 +116,10 @@ class Carrier:
         if len(inside):
             self._probe.SetInputData(pv.PolyData(places[inside]))
             self._probe.Update()
-            found: Foreign = pv.wrap(self._probe.GetOutput())
+            probed: Foreign = pv.wrap(self._probe.GetOutput())
             # VTK gives zeros outside of the mesh: only its mask tells them from vectors at rest.
-            valid = np.asarray(found.point_data["vtkValidPointMask"], dtype=bool)
-            both[inside[valid]] = np.asarray(found.point_data[BOTH])[valid]
+            valid = np.asarray(probed.point_data["vtkValidPointMask"], dtype=bool)
+            both[inside[valid]] = np.asarray(probed.point_data[BOTH])[valid]
         return both
 
     def count(self, places: Array, duration: float, step: float) -> int:

@@ -116,11 +116,11 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
     lines = [line for line in data.splitlines() if line.strip()]
     first = 0
     for element in elements:
-        own = lines[first : first + element.count]
+        element_lines = lines[first : first + element.count]
         first += element.count
-        if len(own) < element.count:
-            raise element.lacks(len(own))
-        rows = [line.split() for line in own]
+        if len(element_lines) < element.count:
+            raise element.lacks(len(element_lines))
+        rows = [line.split() for line in element_lines]
         if element.lengths:
             _lists_of_text(element, rows)
         else:
@@ -167,13 +167,13 @@ def _length(size: int, element: _Element) -> int:
 
 def _numbers(words: list[bytes], kind: str) -> Raw:
     """Return numbers of a type, refused where they are none of it."""
-    found: Array = np.array(words, dtype=np.float64)
+    numbers: Array = np.array(words, dtype=np.float64)
     if kind[0] == "f":
-        return found.astype(kind)
+        return numbers.astype(kind)
     limits = np.iinfo(kind)
-    if not np.all((found >= limits.min) & (found <= limits.max)):
-        raise ValueError(f"numbers from {found.min():g} to {found.max():g} as {limits.dtype}")
-    return found.astype(kind)
+    if not np.all((numbers >= limits.min) & (numbers <= limits.max)):
+        raise ValueError(f"numbers from {numbers.min():g} to {numbers.max():g} as {limits.dtype}")
+    return numbers.astype(kind)
 
 
 def _read_bytes(data: bytes, at: int, element: _Element, order: str) -> int:
@@ -212,7 +212,7 @@ def _read_bytes(data: bytes, at: int, element: _Element, order: str) -> int:
 def _walk(
     data: bytes, at: int, element: _Element, order: str, count: int
 ) -> tuple[dict[str, Indices], dict[str, Indices], int]:
-    """Follow rows one by one: where the numbers of each property begin, and the sizes of lists."""
+    """Follow rows one by one; return where the numbers of each property begin, and list sizes."""
     begins = {name: np.zeros(count, dtype=np.intp) for name in element.kinds}
     sizes = {name: np.zeros(count, dtype=np.intp) for name in element.lengths}
     each = []
@@ -226,13 +226,13 @@ def _walk(
         for begin, width, length, size in each:
             number = 1
             if size is not None:
-                own = data[at : at + length.itemsize]
-                number = int.from_bytes(own, endian, signed=length.kind == "i")  # type: ignore[arg-type]
+                length_bytes = data[at : at + length.itemsize]
+                number = int.from_bytes(length_bytes, endian, signed=length.kind == "i")  # type: ignore[arg-type]
                 size[i] = min(_length(number, element), len(data))
                 at += length.itemsize
             begin[i] = at
             at += number * width
-        # A damaged length may be in the billions: what is not there is not followed.
+        # A damaged length may be in the billions: missing data are not followed.
         if at > len(data):
             raise element.lacks(i)
     return begins, sizes, at
@@ -298,7 +298,7 @@ def _strips(ids: Indices, sizes: Indices) -> tuple[Indices, Indices]:
 
 
 def _parted(mesh: pv.PolyData, ids: Indices, corners: Raw) -> tuple[pv.PolyData, Indices]:
-    """Return points that are repeated where faces have their own texture coordinates there."""
+    """Return points, repeated where faces have texture coordinates of their own."""
     rows = np.column_stack([ids, corners])
     kept, number = np.unique(rows, axis=0, return_inverse=True)
     of = kept[:, 0].astype(np.intp)
@@ -314,7 +314,7 @@ def _parted(mesh: pv.PolyData, ids: Indices, corners: Raw) -> tuple[pv.PolyData,
 
 
 def _attach(data: pv.DataSetAttributes, columns: dict[str, Raw]) -> None:
-    """Attach columns as arrays: what belongs together as one of several components."""
+    """Attach columns as arrays; related columns become one array of several components."""
     for array, names in _TOGETHER:
         if {*names} <= columns.keys() and array not in data:
             rows = np.column_stack([columns.pop(name) for name in names])

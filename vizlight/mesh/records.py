@@ -48,8 +48,8 @@ def attach(
     for stale in made(mesh, name):
         # PyVista's own way forgets in other copies, too, that an array is one of flags.
         point_data(mesh).RemoveArray(stale)
-    for own, array in arrays.items():
-        attach_rows(mesh, own, array)
+    for key, array in arrays.items():
+        attach_rows(mesh, key, array)
     activate(mesh, name)
     write(mesh, name, record, arrays, common)
 
@@ -61,19 +61,19 @@ def write(
     arrays: Iterable[str] = (),
     common: str = "",
 ) -> None:
-    """Attach the record of an array, with digests of the point arrays that it tells of.
+    """Attach the record of an array, with digests of the point arrays that it describes.
 
-    ``arrays`` has their names; a dict also has what they hold, or None for :data:`ANY`. ``common``
+    ``arrays`` has their names; a dict also has their rows, or None for :data:`ANY`. ``common``
     is the JSON text of other entries, which many records have in common.
     """
     if not isinstance(arrays, dict):
         data = point_data(mesh)
         # A caller that has the rows at hand passes a dict, and they are not read back from VTK.
-        arrays = {own: as_numpy(data.GetAbstractArray(own)) for own in arrays}
+        arrays = {key: as_numpy(data.GetAbstractArray(key)) for key in arrays}
     # VTK has no columns of width 1.
     digests = {
-        own: ANY if rows is None else digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
-        for own, rows in sorted(arrays.items())
+        key: ANY if rows is None else digest(rows[:, 0] if rows.shape[1:] == (1,) else rows)
+        for key, rows in sorted(arrays.items())
     }
     text = json.dumps(record | {"arrays": digests})
     attached = vtkStringArray()
@@ -136,11 +136,11 @@ def keep(mesh: pv.DataSet, name: str, filter_name: str, rows: Raw, **facts: obje
 
     Where the user has an array of that name nothing is attached.
     """
-    own = fingerprint(mesh)
-    if own is None or (point_data(mesh).HasArray(name) and name not in made(mesh, name)):
+    mesh_digest = fingerprint(mesh)
+    if mesh_digest is None or (point_data(mesh).HasArray(name) and name not in made(mesh, name)):
         return
     attach_rows(mesh, name, rows)
-    record = {"vizlight": __version__, "filter": filter_name, "source": own} | facts
+    record = {"vizlight": __version__, "filter": filter_name, "source": mesh_digest} | facts
     write(mesh, name, record, {name: rows})
 
 
@@ -171,16 +171,16 @@ def count(record: Mapping[str, object], name: str, most: int) -> int:
 def made(mesh: pv.DataSet, name: str) -> set[str]:
     """Return the names of the point arrays attached under a name that are unchanged since.
 
-    Those of pieces count whatever became of them.
+    Those of pieces count even if they were changed.
     """
     claimed: dict[str, str] = (read(mesh, name) or {}).get("arrays", {})
     data = point_data(mesh)
     # An array that was edited since has another digest, and is the user's.
     return {
-        own
-        for own, made_as in claimed.items()
-        if data.HasArray(own)
-        and (made_as == ANY or digest(as_numpy(data.GetAbstractArray(own))) == made_as)
+        key
+        for key, made_as in claimed.items()
+        if data.HasArray(key)
+        and (made_as == ANY or digest(as_numpy(data.GetAbstractArray(key))) == made_as)
     }
 
 
@@ -190,7 +190,7 @@ def all_made(mesh: pv.DataSet) -> set[str]:
 
 
 def _names(mesh: pv.DataSet) -> list[str]:
-    """Return the names of the arrays whose records a mesh has."""
+    """Return the names of the arrays of which a mesh has records."""
     fields = getattr(mesh, "field_data", ())
     return [name.removesuffix(record_key("")) for name in fields if name.endswith(record_key(""))]
 
@@ -200,7 +200,7 @@ def carry(mesh: pv.DataSet, derived: pv.DataSet) -> None:
     for name in _names(mesh):
         record = read(derived, name)
         if record is not None:
-            # What it was computed from is not the derived mesh.
+            # The source of the record is not the derived mesh.
             record.pop("source", None)
             # Whose an array is shows on the mesh, which has the values of the digests; then they
             # are anew.
@@ -218,17 +218,17 @@ def refuse_overwriting(
             if data.HasArray(array) and array not in ours:
                 expected = "one under which the mesh has no array of its own"
                 # An array by vizlight that was edited later is the user's own, as the message says.
-                known = array in (read(mesh, name) or {}).get("arrays", {})
-                got = repr(array) + ", changed since it was computed" * known
+                edited = array in (read(mesh, name) or {}).get("arrays", {})
+                got = repr(array) + ", changed since it was computed" * edited
                 remedy = "pass another name=, rename that array or delete it"
                 raise ValueError(_check.message("name", expected, got, remedy))
 
 
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
     """Replace the filter and the options in the record of an array; options are merged."""
-    own = {key: value for each in options for key, value in plain(each).items()}
+    merged = {key: value for each in options for key, value in plain(each).items()}
     # Filters that light by illuminate take its place in the record, with their own options.
-    record = (read(mesh, name) or {}) | {"filter": filter_name, "options": own}
+    record = (read(mesh, name) or {}) | {"filter": filter_name, "options": merged}
     write(mesh, name, record, made(mesh, name))
 
 
@@ -245,13 +245,13 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
     Returns
     -------
     dict
-        Record, in the form that vizlight writes; what it says is as reliable as the file that it
-        comes from. ``p["filter"]`` names the filter, which reproduces the array from the original
-        mesh: ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes
-        the scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100
-        numbers among the options are replaced by a description. ``p["arrays"]`` holds a digest of
-        each array that was attached, or "any" of pieces, which may be joined; only arrays that
-        still have it are replaced by new light.
+        Record, in the form that vizlight writes; it is as reliable as the file that it comes from.
+        ``p["filter"]`` names the filter, which reproduces the array from the original mesh:
+        ``illuminate(mesh, Scene.from_dict(p["scene"]), **p["options"])``; ``project`` takes the
+        scene by ``scene=``, ``relief_day`` takes none. Meshes and arrays of more than 100 numbers
+        among the options are replaced by a description. ``p["arrays"]`` holds a digest of each
+        array that was attached, or "any" of pieces, which may be joined; only arrays that still
+        have it are replaced by new light.
 
     Raises
     ------
@@ -264,19 +264,19 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     if not isinstance(name, str):
         raise TypeError(_check.message("name", "the name of an array", _check.describe(name)))
-    known = set()
+    names = set()
     for block in blocks.all_blocks(mesh):
         # VTK takes no name with half of a surrogate pair.
-        if name in _names(block) and (found := read(block, name)) is not None:
+        if name in _names(block) and (record := read(block, name)) is not None:
             # Blocks that were lit together have scene and options in common: one record stands for
             # all.
-            return found
-        known |= {own for own in _names(block) if read(block, own) is not None}
-    if not known:
+            return record
+        names |= {key for key in _names(block) if read(block, key) is not None}
+    if not names:
         remedy = "light it first, or read it from a file format that keeps field data"
         raise ValueError(_check.message("mesh", "one with an array by vizlight", "none", remedy))
     raise ValueError(
-        _check.message("name", f"one of the arrays by vizlight, {sorted(known)}", repr(name))
+        _check.message("name", f"one of the arrays by vizlight, {sorted(names)}", repr(name))
     )
 
 
@@ -302,7 +302,7 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     mesh : pyvista.DataSet
         Mesh, which is not changed.
     *names : object
-        Names of arrays; what is no name is ignored.
+        Names of arrays; anything but a name is ignored.
 
     Returns
     -------
@@ -321,9 +321,9 @@ def averaged(mesh: DataSetT, *names: object) -> DataSetT:
 def scalars_of(mesh: pv.DataSet, argument: str, name: object) -> AnyArray:
     """Return a point array of one component, or raise an error that names the argument."""
     data = mesh.point_data
-    known = [key for key in data if data[key].ndim == 1]
-    if name not in known:
-        expected = f"a point array of one component, {_check.one_of(known)}"
+    names = [key for key in data if data[key].ndim == 1]
+    if name not in names:
+        expected = f"a point array of one component, {_check.one_of(names)}"
         raise ValueError(_check.message(argument, expected, repr(name)))
     return np.asarray(data[str(name)])
 
@@ -336,8 +336,8 @@ def attach_rows(mesh: pv.DataSet, name: str, array: Raw) -> None:
         part = getattr(array.base, "nbytes", 0) > array.nbytes
         # A part that is shared would keep the whole of the larger array in memory.
         copied = part or array.size < _SMALL
-        own = as_vtk(array, name) if copied else pv.convert_array(array, name)
-        point_data(mesh).AddArray(own)
+        attached = as_vtk(array, name) if copied else pv.convert_array(array, name)
+        point_data(mesh).AddArray(attached)
     elif array.dtype == np.bool_:
         # Without the search for active scalars that assignment adds.
         mesh.point_data.set_array(cast("Foreign", array), name)

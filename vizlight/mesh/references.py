@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from urllib.parse import unquote
 
-#: What names another file in the formats that do so, by suffix.
+#: Patterns of the names of other files in the formats that have them, by suffix.
 _NAMED = {
     **dict.fromkeys(
         (".vtm", ".vtmb", ".vtpd", ".pvd", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"),

@@ -10,7 +10,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.mesh import records, subdivision
-from vizlight.mesh.subdivision import Cells
+from vizlight.mesh.subdivision import SplitCells
 from vizlight.shading import engine
 from vizlight.verify.between import Between, Places, columns, error_between, random_places
 from vizlight.vtk.cells import field_data, has_faces
@@ -51,7 +51,7 @@ NEAREST = 0.2
 
 
 class Left(NamedTuple):
-    """What refinement leaves.
+    """Errors that refinement leaves.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Left(NamedTuple):
 
 
 class Refined(NamedTuple):
-    """A refined mesh, what it is lit by, and the error that is left."""
+    """A refined mesh, the inputs of its light, and the error that is left."""
 
     mesh: pv.PolyData
     part: Part
@@ -88,9 +88,9 @@ def refined(
     path : str
         Path of the mesh in a MultiBlock, for an error.
     part : Part
-        What it is lit by.
+        Inputs and options of its light.
     scene : Scene
-        Scene whose depth cue, if it has one, has both ends.
+        Scene; its depth cue, if any, has both ends.
     error : float
         Largest error allowed.
     most : int, optional
@@ -119,16 +119,16 @@ def refined(
     between = Between(inputs, scene, options)
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, error, most)
-    given = _named(flat, between, options)
+    new_rows = _named(flat, between, options)
     positions = options.positions if isinstance(options.positions, str) else None
-    found = subdivision.rebuilt(flat, cells, origin, given, places=positions)
-    records.carry(mesh, found)
-    made = _extended(part, between, cells.corners)
+    split_mesh = subdivision.rebuilt(flat, cells, origin, new_rows, places=positions)
+    records.carry(mesh, split_mesh)
+    extended = _extended(part, between, cells.corners)
     # Taken from the refined line, tangents would be those of its straight segments.
-    if origin is None and options.tangents is None and made.inputs.tangents is not None:
-        tangents = np.asarray(made.inputs.tangents[:])
-        records.keep(found, subdivision.TANGENTS, "refine", tangents)
-    return Refined(found, made, left)
+    if origin is None and options.tangents is None and extended.inputs.tangents is not None:
+        tangents = np.asarray(extended.inputs.tangents[:])
+        records.keep(split_mesh, subdivision.TANGENTS, "refine", tangents)
+    return Refined(split_mesh, extended, left)
 
 
 def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[str, Array]:
@@ -139,37 +139,37 @@ def _named(mesh: pv.PolyData, between: Between, options: LightOptions) -> dict[s
         "tangents": options.tangents,
         "base_tangents": options.conditioned,
     }
-    found = {}
+    new_rows = {}
     for name, key in named.items():
         if name in between.vectors and isinstance(key, str) and key in mesh.point_data:
             rows = between.rows(name).reshape(len(between.points), -1)
             rows = between.scales.get(name, 1.0) * rows
-            known = np.asarray(mesh.point_data[key], dtype=np.float64)
+            old_rows = np.asarray(mesh.point_data[key], dtype=np.float64)
             with np.errstate(invalid="ignore", over="ignore"):
-                along = rows[: len(known)] * known
+                along = rows[: len(old_rows)] * old_rows
             if name == "normals" and np.sum(along, where=np.isfinite(along)) < 0:
                 # Outward normals of a mesh whose own point inward.
                 rows = -rows
-            found[key] = rows[len(known) :]
-    return found
+            new_rows[key] = rows[len(old_rows) :]
+    return new_rows
 
 
 def _extended(part: Part, between: Between, corners: Indices) -> Part:
-    """Return what a mesh is lit by, with the new points."""
+    """Return the inputs of the light of a mesh, with the new points."""
     inputs, sided = part.inputs, part.sided
     count = inputs.count
-    own: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
+    arrays: dict[str, ArraySource] = {"points": _joined(inputs.points, between.points[count:])}
     for name in between.vectors:
         rows = between.rows(name)
         added = rows[count:].reshape(len(rows) - count, rows[0].size if count else 0)
         if name == "normals":
             added = between.turned(added, between.facts[count:], between.points[count:])
-        own[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
+        arrays[name] = _joined(getattr(inputs, name), between.scales.get(name, 1.0) * added)
     if inputs.dimensions is not None and inputs.tangents is not None:
-        # New points are on faces; what a point is not lit by has any direction.
+        # New points are on faces; vectors that a point is not lit by have any direction.
         new = np.ones((len(between.points) - count, 3))
-        own["tangents"] = _joined(inputs.tangents, new)
-        own["dimensions"] = _joined(inputs.dimensions, 2 * new[:, :1]).ravel()
+        arrays["tangents"] = _joined(inputs.tangents, new)
+        arrays["dimensions"] = _joined(inputs.dimensions, 2 * new[:, :1]).ravel()
     sides = inputs.sides and inputs.sides()
     if sided is not None and sides is not None:
         facts = between.facts
@@ -179,21 +179,21 @@ def _extended(part: Part, between: Between, corners: Indices) -> Part:
         sided = dataclasses.replace(
             sided, vectors=vectors, lean=lean, open=np.rint(facts[:, 1]).astype(np.intp), kept=False
         )
-    made = dataclasses.replace(
+    extended = dataclasses.replace(
         inputs,
-        **own,  # type: ignore[arg-type]
+        **arrays,  # type: ignore[arg-type]
         cells=lambda: corners,
         sides=None if sides is None else lambda: sides,
     )
-    return part._replace(inputs=made, sided=sided)
+    return part._replace(inputs=extended, sided=sided)
 
 
 def _joined(rows: ArraySource, added: Array) -> Array:
     """Return rows with further ones, in the type of the first."""
-    known = np.asarray(rows[:])
-    known = known.reshape(len(known), -1)
-    kind = known.dtype if known.dtype.kind == "f" else np.dtype(np.float64)
-    return np.concatenate([known.astype(kind), added.astype(kind)])
+    first_rows = np.asarray(rows[:])
+    first_rows = first_rows.reshape(len(first_rows), -1)
+    kind = first_rows.dtype if first_rows.dtype.kind == "f" else np.dtype(np.float64)
+    return np.concatenate([first_rows.astype(kind), added.astype(kind)])
 
 
 def forget(mesh: pv.DataSet, name: str) -> None:
@@ -203,15 +203,15 @@ def forget(mesh: pv.DataSet, name: str) -> None:
         del mesh.field_data[name + LEFT]
 
 
-def warn_of_rest(made: Sequence[Refined], error: float) -> None:
+def warn_of_rest(results: Sequence[Refined], error: float) -> None:
     """Warn once if errors are left at more than 0.5 % of the places, or the budget is spent."""
-    worst = max((one.left.error for one in made), default=0.0)
-    share = max((one.left.share for one in made), default=0.0)
+    worst = max((result.left.error for result in results), default=0.0)
+    share = max((result.left.share for result in results), default=0.0)
     what = (
         f"{100 * share:.2g} % of the places are off by more than {error:.3g}, by up to {worst:.3g}"
     )
-    if not all(one.left.enough for one in made):
-        used = max(one.mesh.n_points for one in made if not one.left.enough)
+    if not all(result.left.enough for result in results):
+        used = max(result.mesh.n_points for result in results if not result.left.enough)
         remedy = "allow a larger error, or call vizlight.refine with a larger max_points"
         _check.warn(f"refined to {used} points, where the budget ends: {what}; {remedy}")
     elif share > WARNED:
@@ -222,13 +222,13 @@ def warn_of_rest(made: Sequence[Refined], error: float) -> None:
 
 def refine(
     between: Between, shading: Shading, parents: Indices, error: float, most: int
-) -> tuple[Cells, Left]:
+) -> tuple[SplitCells, Left]:
     """Split cells until interpolated light is within an error of the light between the points.
 
     Parameters
     ----------
     between : Between
-        What is lit at the points and between them.
+        Points and vectors that are lit at the points and between them.
     shading : Shading
         Light of the points.
     parents : ndarray of int, shape (P, s)
@@ -240,7 +240,7 @@ def refine(
 
     Returns
     -------
-    Cells
+    SplitCells
         Parts of the cells.
     Left
     """
@@ -261,7 +261,7 @@ class _Refinement:
         self, between: Between, shading: Shading, parents: Indices, error: float, most: int
     ) -> None:
         self.between, self.error, self.most = between, error, most
-        self.cells, self.count = Cells(between.points, parents), len(between.points)
+        self.cells, self.count = SplitCells(between.points, parents), len(between.points)
         self.light = columns(shading)
         # A point without light, as in a hole, has nothing to be compared with.
         good = shading.valid & np.isfinite(between.points).all(axis=1)
@@ -280,8 +280,7 @@ class _Refinement:
         codes, share, wrong = self._worst_edges(fresh)
         inside = self._worst_inside(fresh)
         bad = inside > KEPT * self.error
-        # Only once all chosen places are right random ones are looked at: they find what is
-        # between.
+        # Only once all chosen places are right random ones are looked at: they find errors between.
         if not len(codes) and not bad.any():
             cell, miss = self._at_random()
             # The worst place of each part comes first.
@@ -300,15 +299,15 @@ class _Refinement:
             return codes
         # Errors at random places were those of the parts before.
         self.checked = None
-        made = self.cells.split(codes, share)
+        new_parts = self.cells.split(codes, share)
         added = self.cells.steps[-1]
         self.light = np.concatenate([self.light, self.between.light(added)])
         self.between.extend(added)
         # With the budget spent no part is split again: there is nothing to measure them for.
-        return made if self.enough else made[:0]
+        return new_parts if self.enough else new_parts[:0]
 
     def left(self) -> Left:
-        """Return what is left."""
+        """Return the errors that are left."""
         # Where the last round split nothing, its random places tell what is left.
         wrong = self._at_random()[1] if self.checked is None else self.checked
         share = float(np.mean(wrong > self.error)) if len(wrong) else 0.0
@@ -320,7 +319,7 @@ class _Refinement:
         return error_between(self.between, self.light, places)
 
     def _worst_edges(self, fresh: Indices) -> tuple[Indices, Array, Array]:
-        """Return the edges of parts to be split, where each errs most, and the error there."""
+        """Return the edges of parts to be split, the place where each errs most, and its error."""
         size = self.cells.size
         fresh = fresh[self._seen(fresh)]
         codes, reverse = self.cells.edges(fresh)
@@ -383,18 +382,18 @@ class _Refinement:
     def _with_inside(
         self, codes: Indices, share: Array, wrong: Array, cells: Indices, inside: Array
     ) -> tuple[Indices, Array, Array]:
-        """Add the edges of parts that are wrong within and have no edge that is."""
-        own, _ = self.cells.edges(cells)
+        """Add the edges of parts that are wrong inside but have no wrong edge."""
+        edges, _ = self.cells.edges(cells)
         # Where one of its edges is split anyway, a part is not cut further before it is measured
         # anew.
-        free = ~np.isin(own, codes).any(axis=1)
+        free = ~np.isin(edges, codes).any(axis=1)
         free &= self._seen(cells)
-        cells, own, inside = cells[free], own[free], inside[free]
+        cells, edges, inside = cells[free], edges[free], inside[free]
         if not len(cells):
             return codes, share, wrong
-        sides = own.shape[1]
+        sides = edges.shape[1]
         long = self._long(np.repeat(cells, sides), np.tile(np.arange(sides), len(cells)))
-        added, place = np.unique(own.ravel()[long], return_inverse=True)
+        added, place = np.unique(edges.ravel()[long], return_inverse=True)
         most = np.zeros(len(added))
         np.maximum.at(most, place.reshape(-1), np.repeat(inside, sides)[long])
         codes, share = (
@@ -406,7 +405,7 @@ class _Refinement:
         return codes[order], share[order], np.concatenate([wrong, most])[order]
 
     def _at_random(self) -> tuple[Indices, Array]:
-        """Return the parts at random places, and the error there."""
+        """Return the parts at random places, and the errors of the places."""
         cells = np.flatnonzero(self.measured[self.cells.parent])
         corners = self.cells.corners[cells]
         places, cell = random_places(self.between.points, corners, CHECKS, self.random)

@@ -1,4 +1,4 @@
-"""Files of scenes, VRML and 3DS: each shape where its transforms put it."""
+"""Files of scenes, VRML and 3DS: each shape placed by its transforms."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ def read(path: Path) -> pv.MultiBlock:
     Parameters
     ----------
     path : pathlib.Path
-        Path of a file whose suffix is among ``SUFFIXES``.
+        Path of a file with a suffix among ``SUFFIXES``.
     """
     importer: Foreign = _IMPORTERS[path.suffix.lower()]()
     importer.SetFileName(str(path))
-    found, empty = pv.MultiBlock(), 0
+    shapes, empty = pv.MultiBlock(), 0
     with _LOCK:
         importer.Update()
         actors = importer.GetRenderer().GetActors()
         every = [actors.GetItemAsObject(i) for i in range(actors.GetNumberOfItems())]
         for actor in every:
             if (shape := _placed(actor)) is not None:
-                found.append(shape)
+                shapes.append(shape)
             else:
                 empty += 1
-    if empty and found.n_blocks:
+    if empty and shapes.n_blocks:
         _check.warn(f"file: '{path}': {empty} of {len(every)} shapes are left out: no points")
-    return found
+    return shapes
 
 
 def _placed(actor: Foreign) -> pv.PolyData | None:

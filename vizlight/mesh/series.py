@@ -49,7 +49,7 @@ class Series:
     Raises
     ------
     TypeError, ValueError
-        If there are fewer than two meshes, or the times do not rise.
+        If fewer than two meshes are given, or the times do not rise.
     """
 
     def __init__(self, source: object, times: object = None) -> None:
@@ -88,8 +88,8 @@ class Series:
         if len(self.times) < 2:
             raise ValueError(_check.message("series", "two steps or more", str(len(self.times))))
         # A difference with NaN is not above 0, so NaN counts as a fall, too.
-        known = np.isfinite(self.times)
-        falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~known[1:] | ~known[:-1])
+        finite = np.isfinite(self.times)
+        falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~finite[1:] | ~finite[:-1])
         if len(falls):
             got = f"{self.times[falls[0]]:g} before {self.times[falls[0] + 1]:g}"
             raise ValueError(_check.message("times", "finite times that rise", got))
@@ -184,7 +184,7 @@ def chosen(times: Sequence[float], time: object, name: str = "time") -> int:
         A time of a step, ``"last"``, ``"first"`` or, if it is an integer and no time of a step,
         the index of a step, from the end if negative. Default: the last.
     name : str
-        What an error names.
+        Name in errors.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def of(mesh: pv.DataSet) -> list[float]:
 
 
 def note(mesh: pv.DataSet) -> str:
-    """Return what a reader should know of the last step, which was taken by itself.
+    """Return a note on the last step, which was taken by default.
 
     Parameters
     ----------
@@ -347,7 +347,7 @@ def at(reader: Foreign, time: float) -> Foreign:
 
 
 def unchecked(reader: Foreign) -> Foreign:
-    """Return what a reader reads; PyVista would warn of arrays that do not fit, which are refused.
+    """Return the mesh of a reader; PyVista would warn of arrays that do not fit, which are refused.
 
     Parameters
     ----------
@@ -369,7 +369,7 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     Raises
     ------
     NoStepError
-        If there is no such step, or a time is given for a file without steps.
+        If the file has no such step, or a time is given for a file without steps.
     """
     reader = reader_of(path)
     times = times_of(reader)
@@ -379,5 +379,5 @@ def read(path: Path, time: object) -> pv.DataObject | None:
             raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
         return None
     index = chosen(times, time)
-    found: pv.DataObject = marked(at(reader, times[index]), times, index)
-    return found
+    mesh: pv.DataObject = marked(at(reader, times[index]), times, index)
+    return mesh

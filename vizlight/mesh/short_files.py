@@ -1,6 +1,6 @@
 """Files that are shorter than their format states.
 
-Readers say most of what is wrong with a file. This is what they take for whole, or crash on.
+Readers report most faults of a file. These are the faults that they overlook, or crash on.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _END = 512
 
 
 def missing_part(path: Path, /) -> str:
-    """Return what a file lacks of the size or the end that it states.
+    """Return the part that a file lacks of the size or the end that it states.
 
     These are the XML files of VTK, netCDF, HDF5 and STL.
 
@@ -88,16 +88,16 @@ def _xml(file: BinaryIO) -> str:
 def _grid(file: BinaryIO) -> str:
     """Compare the extents of the pieces of a grid with that of the whole.
 
-    What no piece has VTK leaves as it is in memory, and a huge whole takes it long.
+    VTK leaves memory that no piece covers uninitialised, and a huge whole takes it long.
     """
     if lacks := _xml(file):
         return lacks
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
-        # What follows are no words.
+        # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
-    found = re.finditer(rb'<(?:(Piece)|\w+)[^<>]*?\s(?:Whole)?Extent="([^"]*)"', head)
-    whole, *pieces = [(one[1], [int(word) for word in one[2].split()]) for one in found]
+    extents = re.finditer(rb'<(?:(Piece)|\w+)[^<>]*?\s(?:Whole)?Extent="([^"]*)"', head)
+    whole, *pieces = [(match[1], [int(word) for word in match[2].split()]) for match in extents]
     boxes = np.array([extent for piece, extent in pieces if piece])
     if len(whole[1]) != 6 or boxes.shape[1:] != (6,):
         return "its extents are no six numbers"
@@ -112,7 +112,7 @@ _HDF_END = {0: 40, 1: 44, 2: 28, 3: 28}
 
 
 def _netcdf(file: BinaryIO) -> str:
-    """Map each variable of a netCDF 3 file; the library of netCDF takes what is missing for 0."""
+    """Map each variable of a netCDF 3 file; the library of netCDF reads missing data as 0."""
     head = file.read(64)
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
@@ -158,7 +158,7 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
 
 
 def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
-    """Return what a legacy file of text lacks of the numbers of its mesh, which VTK makes up.
+    """Return the numbers that a legacy file of text lacks for its mesh; VTK makes them up.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
             return ""
         # Lines of keywords begin with a letter, as does "nan", which is a number.
-        found = sum(
+        count = sum(
             len(words)
             for words in map(bytes.split, file)
             if words
@@ -208,4 +208,4 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         ]
         # An unstructured grid has a type for each cell, too.
         expected += sum(sizes) + (mesh.n_cells if isinstance(mesh, pv.UnstructuredGrid) else 0)
-    return f"{found} of {expected} numbers are there" if found < expected else ""
+    return f"{count} of {expected} numbers are there" if count < expected else ""

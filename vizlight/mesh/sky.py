@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.mesh.height_grids import Heights
-    from vizlight.mesh.sky_rays import Places
+    from vizlight.mesh.sky_rays import SkyPlaces
     from vizlight.shading.results import Record
 
 #: Error from which lines are taken for a medium of voxels, number of points at which rays measure
@@ -52,7 +52,7 @@ class Sky(NamedTuple):
     openness : ndarray of float32, shape (N,), or None
         Openness in radians.
     record : dict
-        Way in which it was found, its error, and its effort.
+        Method, error and effort.
     dark : int
         Number of points of a surface that see nothing.
     between : float
@@ -81,7 +81,7 @@ class _Shape(NamedTuple):
 
     points: Array
     triangles: Indices
-    places: Places
+    places: SkyPlaces
     ids: Indices
 
 
@@ -119,7 +119,7 @@ def skies(
     TypeError, ValueError
         If a mesh has neither faces nor lines, or an argument does not fit it.
     """
-    found: dict[int, Sky] = {}
+    skies_by_number: dict[int, Sky] = {}
     shapes: dict[int, pv.DataSet] = {}
     for number, mesh in enumerate(meshes):
         # Fields know their own horizon exactly; all other meshes hide one another's sky.
@@ -131,14 +131,14 @@ def skies(
         if up is not None and not (up[2] > 0 and up[0] == up[1] == 0):
             remedy = "leave it out, or pass the surface of the grid"
             raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
-        found[number] = _of_field(field, error, openness=openness, report=report)
+        skies_by_number[number] = _of_field(field, error, openness=openness, report=report)
     if shapes and openness:
         remedy = "leave it out"
         raise ValueError(_check.message("openness", "a height field", "another mesh", remedy))
     if shapes:
-        made = _by_rays([*shapes.values()], error, up, diameter, report)
-        found |= dict(zip(shapes, made, strict=True))
-    skies_in_order = [found[number] for number in range(len(meshes))]
+        by_rays = _by_rays([*shapes.values()], error, up, diameter, report)
+        skies_by_number |= dict(zip(shapes, by_rays, strict=True))
+    skies_in_order = [skies_by_number[number] for number in range(len(meshes))]
     return [
         sky._replace(record=sky.record | {"requested": error}, requested=error)
         for sky in skies_in_order
@@ -157,8 +157,8 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
     mesh = georeference.in_metres(mesh)
     if not isinstance(mesh, pv.StructuredGrid):
         # Without heights such a grid is flat.
-        known = elevation is not None or elevation_name(mesh) is not None
-        return heights_of(mesh, elevation, factor) if known else None
+        has_heights = elevation is not None or elevation_name(mesh) is not None
+        return heights_of(mesh, elevation, factor) if has_heights else None
     try:
         return heights_of(mesh, elevation, factor)
     except ValueError:
@@ -174,19 +174,19 @@ def _of_field(
     report: Callable[[int], None],
 ) -> Sky:
     """Return the sky of a height field."""
-    made = fields.sky(field.x, field.y, field.z, error=error, progress=report)
+    ground = fields.sky(field.x, field.y, field.z, error=error, progress=report)
     opened = None
     if openness:
         other = fields.sky(field.x, field.y, field.z, error=error, openness=True, progress=report)
         # A hole has no horizon: its openness is 0.
         opened = np.nan_to_num(field.to_points(other.share))
-    share = field.to_points(made.share)
+    share = field.to_points(ground.share)
     valid: Bools = np.isfinite(share)
     record: Record = {
-        "method": made.method,
-        "error": made.error, "directions": made.azimuths, "rays": made.azimuths * share.size,
+        "method": ground.method,
+        "error": ground.error, "directions": ground.azimuths, "rays": ground.azimuths * share.size,
     }  # fmt: skip
-    # Told only where it takes long enough to be noticed.
+    # A warning only where it takes long enough to be noticed.
     if (reason := _compiled.why_not()) and share.size > fields.SMALL:
         _check.warn(f"the sky takes ten times as long by NumPy: {reason}")
     points = field.points()
@@ -235,19 +235,21 @@ def _by_rays(
     shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
     if among and medium is not None:
-        found = [_in_medium(mesh, medium, thick) for mesh in meshes]
+        skies_by_voxels = [_in_medium(mesh, medium, thick) for mesh in meshes]
         # The medium's error is not known beforehand: rays from some points measure it.
-        worst = [_missed(sky, shape, hidden) for sky, shape in zip(found, shapes, strict=True)]
+        worst = [
+            _missed(sky, shape, hidden) for sky, shape in zip(skies_by_voxels, shapes, strict=True)
+        ]
         if max(worst) <= error:
             return [
-                sky._replace(record=sky.record | {"error": own})
-                for sky, own in zip(found, worst, strict=True)
+                sky._replace(record=sky.record | {"error": measured})
+                for sky, measured in zip(skies_by_voxels, worst, strict=True)
             ]
     total = sum(len(shape.ids) for shape in shapes)
     if hidden.tracer.name != "rays by Embree" and total > SLOW:
         remedy = "pip install 'vizlight[rays]'"
         _check.warn(f"the sky takes 20 times as long without embreex (try: {remedy})")
-    made, done = [], 0
+    results, done = [], 0
     for mesh, shape, axis in zip(meshes, shapes, above, strict=True):
         seen = hidden.seen(
             shape.places, error=error, up=None if axis is None else np.array(axis, np.float64),
@@ -269,8 +271,8 @@ def _by_rays(
             off = _between(seen, shape, hidden, axis)
             record |= {"dark": dark, "between": off}
         places = np.asarray(mesh.points, np.float64)
-        made.append(Sky(_filled(share, valid, places), valid, None, record, dark, off))
-    return made
+        results.append(Sky(_filled(share, valid, places), valid, None, record, dark, off))
+    return results
 
 
 def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
@@ -285,7 +287,7 @@ def _occluders(shapes: Sequence[_Shape]) -> sky_rays.Occluders:
 def _between(
     seen: sky_rays.Seen, shape: _Shape, hidden: sky_rays.Occluders, up: tuple[float, ...] | None
 ) -> float:
-    """Return how far interpolated shares are off at 95 of 100 places on the faces."""
+    """Return the error of interpolated shares at 95 of 100 places on the faces."""
     places, _ = between.random_places(
         shape.points, shape.triangles, SAMPLES, np.random.default_rng(0)
     )
@@ -296,7 +298,7 @@ def _between(
     ways = sky_rays.across(shape.points, places.corners)
     axis = None if up is None else np.array(up, np.float64)
     # The light between the points is interpolated; rays from there tell what that misses.
-    true = hidden.seen(sky_rays.Places(at, ways), error=VOXELS / 4, up=axis)
+    true = hidden.seen(sky_rays.SkyPlaces(at, ways), error=VOXELS / 4, up=axis)
     off = np.abs(true.share - between.interpolated(seen.share, places))[true.valid]
     return float(np.quantile(off, 0.95)) if len(off) else 0.0
 
@@ -307,7 +309,7 @@ def _missed(sky: Sky, shape: _Shape, hidden: sky_rays.Occluders) -> float:
     if not len(some):
         return 0.0
     points, ways, radius, _ = shape.places
-    seen = hidden.seen(sky_rays.Places(points[some], ways[some], radius), error=VOXELS / 4)
+    seen = hidden.seen(sky_rays.SkyPlaces(points[some], ways[some], radius), error=VOXELS / 4)
     return float(np.quantile(np.abs(sky.share[some] - seen.share), 0.95))
 
 
@@ -349,7 +351,7 @@ def _in_medium(mesh: pv.DataSet, medium: media.Medium, thick: float) -> Sky:
 
 
 def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Shape:
-    """Return what a mesh hides, and its points that look at the sky.
+    """Return the triangles by which a mesh hides the sky, and its points that look at it.
 
     Open pieces without normals of their own face a sky that is above.
     """
@@ -358,7 +360,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
         # A line has no area that could hide anything: tubes of its diameter stand for it.
         vertices, faces = sky_rays.tubes(points, ids, offsets, thick / 2)
         ways = polylines.line_tangents(mesh)
-        places = sky_rays.Places(np.asarray(mesh.points), ways, thick / 2)
+        places = sky_rays.SkyPlaces(np.asarray(mesh.points), ways, thick / 2)
         return _Shape(vertices, faces, places, np.arange(mesh.n_points))
     surface, ids = _surface(mesh)
     if not has_faces(surface):
@@ -373,7 +375,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     faces = sky_rays.turned(points, faces, outward)
     # A ray must not meet the faces around its own start.
     beside = sky_rays.beside(points, faces)
-    return _Shape(points, faces, sky_rays.Places(points, outward, beside=beside), ids)
+    return _Shape(points, faces, sky_rays.SkyPlaces(points, outward, beside=beside), ids)
 
 
 def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:

@@ -50,7 +50,7 @@ PRISM = np.pi / (SIDES * np.sin(np.pi / SIDES))
 OUTSIDE = 1.06
 
 
-class Places(NamedTuple):
+class SkyPlaces(NamedTuple):
     """Points that look at the sky.
 
     Attributes
@@ -71,7 +71,7 @@ class Places(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What points see.
+    """Shares of the sky that points see.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Occluders:
 
     def seen(
         self,
-        places: Places,
+        places: SkyPlaces,
         *,
         error: float,
         up: Array | None = None,
@@ -121,7 +121,7 @@ class Occluders:
 
         Parameters
         ----------
-        places : Places
+        places : SkyPlaces
         error : float
             Error that 95 of 100 points shall keep to.
         up : ndarray, shape (3,), optional
@@ -156,7 +156,7 @@ class Occluders:
             return Seen(share, valid, missed, work.rays)
         near, out = places.beside
         # These have no places beside them, so that they look once more only.
-        again = self.seen(Places(near[dark], out[dark]), error=error, up=up)
+        again = self.seen(SkyPlaces(near[dark], out[dark]), error=error, up=up)
         share[dark], valid[dark] = again.share, again.valid
         return Seen(share, valid, missed, work.rays + again.rays)
 
@@ -187,18 +187,18 @@ class _Rays:
 
     def free(self, rows: Indices, first: int, count: int) -> Array:
         """Return the share of ``count`` rays of each point, from a first one on, that are free."""
-        found = np.empty(len(rows), np.float32)
+        shares = np.empty(len(rows), np.float32)
         self.rays += len(rows) * count
         for number, net in enumerate(_net(SHIFTS, count, first, line=self.line)):
-            own = np.flatnonzero(self.shift[rows] == number)
-            at = rows[own]
+            of_net = np.flatnonzero(self.shift[rows] == number)
+            at = rows[of_net]
             for part, start, way in _starts(self.points[at], self.ways[at], net, self.away):
                 free = self.tracer.free(start, way, FAR)
                 if self.up is not None:
                     # Below the horizon there is no sky, even where nothing stands.
                     free &= way @ self.up > 0
-                found[own[part]] = free.reshape(count, -1).mean(axis=0)
-        return found
+                shares[of_net[part]] = free.reshape(count, -1).mean(axis=0)
+        return shares
 
 
 def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Array, float]:
@@ -206,27 +206,27 @@ def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Ar
     # Two halves at first, whose difference tells the error.
     count = added = FEWEST // 2
     going = np.arange(len(work.points))
-    one = work.free(going, 0, count)
+    first = work.free(going, 0, count)
     share = np.zeros(len(going), np.float32)
     squares = 0.0
     while True:
         other, total = work.free(going, count, added), count + added
         # The square of a net's error falls with the power 1.5 of its rays, which gives that of
         # both parts together from their difference.
-        square = (one - other) ** 2 * total**-1.5 / (count**-1.5 + added**-1.5)
-        mean = (count * one + added * other) / total
+        square = (first - other) ** 2 * total**-1.5 / (count**-1.5 + added**-1.5)
+        mean = (count * first + added * other) / total
         share[going] = mean
         # Few points tell little: what nets err by as a rule stands for some more of each class.
         rule = USUAL * mean * (1 - mean) * total**-1.5
         kind = np.minimum((mean * CLASSES).astype(np.intp), CLASSES - 1)
-        size, found, usual = (
+        size, sums, usual = (
             np.bincount(kind, rows, minlength=CLASSES) for rows in (None, square, rule)
         )
-        pooled = (found + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
+        pooled = (sums + WEIGHT * usual / np.maximum(size, 1)) / (size + WEIGHT)
         # By classes, since a single point may seem right by chance.
         done = (QUANTILE * np.sqrt(pooled) <= error)[kind] | (total >= MOST)
         squares += float(pooled[kind[done]].sum())
-        going, one = going[~done], mean[~done]
+        going, first = going[~done], mean[~done]
         report(len(share) - len(going))
         if not len(going):
             return share, QUANTILE * float(np.sqrt(squares / len(share)))
@@ -236,7 +236,7 @@ def _until(error: float, work: _Rays, report: Callable[[int], None]) -> tuple[Ar
 def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array, Array]]:
     """Return shifted parts of a net of directions, weighted by the cosine."""
     net = (np.arange(first, first + count)[:, np.newaxis] + 0.5) * RATES[3 if line else 2]
-    made = []
+    parts = []
     for shift in np.random.default_rng(1).random((shifts, net.shape[1])):
         h = (net + shift) % 1
         # Even on the disc below the hemisphere and lifted to it, directions are weighted by the
@@ -251,8 +251,8 @@ def _net(shifts: int, count: int, first: int, *, line: bool) -> list[tuple[Array
             # The hemisphere stands on the side of the tube, its x along the line.
             ways = np.stack([cosine * c - y * s, cosine * s + y * c, x], axis=1)
             outward = np.stack([c, s, np.zeros(count)], axis=1)
-        made.append((ways.astype(np.float32), outward.astype(np.float32)))
-    return made
+        parts.append((ways.astype(np.float32), outward.astype(np.float32)))
+    return parts
 
 
 def _starts(
@@ -270,7 +270,7 @@ def _starts(
 
 
 def _frames(ways: Array) -> Array:
-    """Return orthonormal frames of float32, shape (N, 3, 3), whose last rows are unit vectors.
+    """Return orthonormal frames of float32, shape (N, 3, 3), with unit vectors as last rows.
 
     Source: Duff and others, Journal of Computer Graphics Techniques 6 (2017), without branches.
     """
@@ -309,10 +309,10 @@ def beside(points: Array, triangles: Indices) -> tuple[Array, Array]:
     largest[triangles[order].ravel()] = np.repeat(order, 3)
     there = largest >= 0
     near, out = points.copy(), np.zeros(points.shape)
-    own = largest[there]
+    triangle = largest[there]
     with np.errstate(invalid="ignore"):  # at points that are infinite
-        near[there] += BESIDE * (points[triangles[own]].mean(axis=1) - points[there])
-    out[there] = normals[own]
+        near[there] += BESIDE * (points[triangles[triangle]].mean(axis=1) - points[there])
+    out[there] = normals[triangle]
     return near, out
 
 

@@ -34,15 +34,15 @@ def alike(
     letters : dict
         Letter of the axis of each dimension.
     ticks : dict
-        Coordinates along each dimension, None where there are none.
+        Coordinates along each dimension, or None.
     """
     counts = {
-        dim: sum(dim in one.dims for one in file.variables.values() if one.ndim > 1)
+        dim: sum(dim in variable.dims for variable in file.variables.values() if variable.ndim > 1)
         for dim in letters
     }
     middles: list[str] = []
     result: dict[str, str] = {}
-    for dim in sorted(letters, key=lambda one: -counts[one]):
+    for dim in sorted(letters, key=lambda name: -counts[name]):
         if letters[dim] not in ("x", "y", "z"):
             continue
         for middle in middles:
@@ -79,7 +79,7 @@ def _beside(
 def to_middles(
     values: Foreign, dims: Sequence[str], middles: Mapping[str, str], sizes: Mapping[str, int]
 ) -> Foreign | None:
-    """Return values on other dimensions of the same cells, None where they have not one of them.
+    """Return values on other dimensions of the same cells, None where these are not related.
 
     Where the sides are fewer than the middles, the first and the last middle have no value.
 
@@ -104,6 +104,6 @@ def to_middles(
             result = 0.5 * (left + right)
         if change < 0:
             result = result.pad({dim: 1}, constant_values=np.nan)
-        result = type(result)([to if one == dim else one for one in result.dims], result.data)
+        result = type(result)([to if name == dim else name for name in result.dims], result.data)
     result.attrs = values.attrs
     return result

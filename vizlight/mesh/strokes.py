@@ -34,7 +34,7 @@ GOLDEN = 0.6180339887
 SLOWEST = 1e-3
 
 
-class Segments(NamedTuple):
+class LineSegments(NamedTuple):
     """Segments of the lines of a mesh, line after line.
 
     Attributes
@@ -60,7 +60,7 @@ class Segments(NamedTuple):
         return np.asarray(np.bincount(self.lines, weights=self.lengths), dtype=np.float64)
 
 
-def segments_of(mesh: pv.PolyData) -> Segments:
+def segments_of(mesh: pv.PolyData) -> LineSegments:
     """Return the segments of the lines of a mesh, of lines of two points or more."""
     points, ids, offsets = polylines.cells_of(mesh)
     number = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
@@ -72,10 +72,10 @@ def segments_of(mesh: pv.PolyData) -> Segments:
     sums = np.cumsum(lengths) - lengths
     first = np.flatnonzero(np.diff(lines, prepend=-1))
     before = sums - np.repeat(sums[first], np.diff(first, append=len(lines)))
-    return Segments(starts, ends, lines, before, lengths)
+    return LineSegments(starts, ends, lines, before, lengths)
 
 
-def against(mesh: pv.PolyData, segments: Segments, tangents: AnyArray) -> Bools:
+def against(mesh: pv.PolyData, segments: LineSegments, tangents: AnyArray) -> Bools:
     """Return whether each line runs against the tangents at its points."""
     points = np.asarray(mesh.points, dtype=np.float64)
     ways = points[segments.ends] - points[segments.starts]
@@ -103,15 +103,15 @@ def ages(mesh: pv.PolyData, tangents: AnyArray) -> Array:
     return _run_through(mesh, segments, against(mesh, segments, tangents))
 
 
-def _run_through(mesh: pv.PolyData, segments: Segments, turned: Bools) -> Array:
-    """Return what lines have before each point, where some are run through from their ends."""
+def _run_through(mesh: pv.PolyData, segments: LineSegments, turned: Bools) -> Array:
+    """Return the length or time of lines before each point, some counted from their ends."""
     after = segments.before + segments.lengths
     turned = turned[segments.lines]
     totals = segments.totals()[segments.lines]
-    found = np.zeros(mesh.n_points)
-    found[segments.ends] = np.where(turned, totals - after, after)
-    found[segments.starts] = np.where(turned, totals - segments.before, segments.before)
-    return found
+    lengths = np.zeros(mesh.n_points)
+    lengths[segments.ends] = np.where(turned, totals - after, after)
+    lengths[segments.starts] = np.where(turned, totals - segments.before, segments.before)
+    return lengths
 
 
 def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
@@ -145,8 +145,10 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     """
     segments = segments_of(mesh)
     totals = segments.totals()
-    own = totals / np.maximum(np.round(totals / length), 1)
-    share = (segments.before + segments.lengths / 2) / np.maximum(own[segments.lines], 1e-300)
+    stroke_lengths = totals / np.maximum(np.round(totals / length), 1)
+    share = (segments.before + segments.lengths / 2) / np.maximum(
+        stroke_lengths[segments.lines], 1e-300
+    )
     places = np.stack([segments.lines, np.floor(share)])
     pieces = np.cumsum(np.any(np.diff(places, prepend=0.0), axis=0))
     strokes = _rebuilt(mesh, segments, np.ones(len(pieces), dtype=np.bool_), pieces)
@@ -195,7 +197,7 @@ def _crossings(lines: pv.PolyData, level: Array) -> Array:
 
 
 def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
-    """Return lines, whose points are in their order, with points at fractions of their numbers."""
+    """Return lines with ordered points, with new points at fractions of their numbers."""
     _, _, offsets = polylines.cells_of(lines)
     rows = np.sort(np.concatenate([np.arange(lines.n_points), places]))
     before = np.floor(rows).astype(np.intp)
@@ -238,7 +240,7 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
     """Give lines the point arrays of strokes that move along them with the vectors.
 
     Each line has a whole number of strokes that pass in a period, so that a movie can be repeated.
-    Strokes are as long as what moves past in that time: longer where the vectors are.
+    Strokes are as long as the way moved in that time: longer where the vectors are.
 
     Parameters
     ----------
@@ -257,7 +259,7 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
     speed = np.linalg.norm(np.asarray(velocities, dtype=np.float64), axis=1)
     least = SLOWEST * float(np.median(speed[speed > 0])) if speed.any() else 1.0
     speed = np.maximum(speed, least)
-    # The mean of what a step takes at both ends, which is exact where the speed is even.
+    # The mean of the times by both ends of a step, which is exact where the speed is even.
     slow = (1 / speed[segments.starts] + 1 / speed[segments.ends]) / 2
     times = segments.lengths * slow
     sums = np.cumsum(times) - times
@@ -267,13 +269,13 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
     totals, period = timed.totals(), travel * length / float(np.percentile(speed, 90))
     mean = segments.totals() / np.maximum(totals, 1e-300)
     passing = np.maximum(np.round(period * mean / length), 1)
-    found = _run_through(mesh, timed, against(mesh, segments, velocities))
+    elapsed = _run_through(mesh, timed, against(mesh, segments, velocities))
     line = np.zeros(mesh.n_points, dtype=np.intp)
     line[segments.starts], line[segments.ends] = segments.lines, segments.lines
     apart = period / passing[line]
     # Neighbours are out of step, by a ratio that repeats last.
-    phase = found / apart + np.arange(len(totals))[line] * GOLDEN
-    near = np.minimum(found, totals[line] - found)
+    phase = elapsed / apart + np.arange(len(totals))[line] * GOLDEN
+    near = np.minimum(elapsed, totals[line] - elapsed)
     arrays = {PHASE: phase, PASSING: passing[line], GROWN: np.clip(near / (FADE * apart), 0, 1)}
     for name, values in arrays.items():
         mesh.point_data[name] = values.astype(np.float32)
@@ -294,8 +296,7 @@ def moved_widths(mesh: pv.PolyData, share: float) -> Array:
     Returns
     -------
     ndarray of float32, shape (n_points,)
-        0 where there is no stroke, 0.3 behind its head, which is 1 at its base, less where it
-        grows.
+        0 between strokes, 0.3 behind the head of one, which is 1 at its base, less where it grows.
     """
     phase, passing, grown = (
         np.asarray(mesh.point_data[name], dtype=np.float64) for name in (PHASE, PASSING, GROWN)
@@ -305,7 +306,9 @@ def moved_widths(mesh: pv.PolyData, share: float) -> Array:
     return np.asarray(np.where(place < BARE, 0.0, grown * width), dtype=np.float32)
 
 
-def _rebuilt(mesh: pv.PolyData, segments: Segments, kept: Bools, pieces: Indices) -> pv.PolyData:
+def _rebuilt(
+    mesh: pv.PolyData, segments: LineSegments, kept: Bools, pieces: Indices
+) -> pv.PolyData:
     """Return polylines of the segments that are kept, one for each run of equal pieces.
 
     Each has points of its own. Arrays of points and fields are those of the mesh.
@@ -321,7 +324,7 @@ def _rebuilt(mesh: pv.PolyData, segments: Segments, kept: Bools, pieces: Indices
 def _polylines(
     mesh: pv.PolyData, at_points: Callable[[AnyArray], AnyArray], counts: Indices
 ) -> pv.PolyData:
-    """Return polylines of numbers of points, with what a function makes of points and arrays."""
+    """Return polylines of numbers of points, with points and arrays that a function makes."""
     rebuilt = pv.PolyData()
     rebuilt.points = at_points(np.asarray(mesh.points))
     offsets = np.cumsum(counts) - counts

@@ -34,7 +34,7 @@ class _Zone:
         self.markers: dict[str, list[list[bytes]]] = {}
 
     def blocks(self) -> dict[str, pv.UnstructuredGrid]:
-        """Return the cells, or the markers by name where there are no cells."""
+        """Return the cells, or without cells the markers by name."""
         if self.dimensions not in (2, 3) or self.points is None:
             raise ValueError("no NDIME of 2 or 3, or no NPOIN")
         short = [row for row in self.points if len(row) < self.dimensions]
@@ -62,10 +62,10 @@ def read(path: Path) -> pv.MultiBlock:
     zones, marker = [_Zone()], ""
     data = path.read_bytes()
     short_files.warn_of_last_line(path, data)
-    lines = iter([line for one in data.splitlines() if (line := one.partition(b"%")[0].strip())])
+    lines = iter([line for text in data.splitlines() if (line := text.partition(b"%")[0].strip())])
     for line in lines:
-        word, given, value = (part.strip() for part in line.partition(b"="))
-        if not given:
+        word, sign, value = (part.strip() for part in line.partition(b"="))
+        if not sign:
             continue  # what belongs to a keyword that says nothing of cells
         if word == b"IZONE" and zones[-1].points is not None:
             zones.append(_Zone())
@@ -106,7 +106,7 @@ def _rows(lines: Iterator[bytes], word: bytes, value: bytes) -> list[list[bytes]
 
 def _by_kind(rows: list[list[bytes]]) -> dict[int, Indices]:
     """Return the corners of cells by their kind."""
-    found: dict[int, list[list[int]]] = {}
+    corners_by_kind: dict[int, list[list[int]]] = {}
     for row in rows:
         kind = int(row[0])
         corners = _CORNERS.get(kind)
@@ -114,5 +114,5 @@ def _by_kind(rows: list[list[bytes]]) -> dict[int, Indices]:
             raise ValueError(f"{kind} is no kind of cell")
         if len(row) <= corners:
             raise ValueError(f"{len(row) - 1} of {corners} corners of a cell are there")
-        found.setdefault(kind, []).append([int(word) for word in row[1 : corners + 1]])
-    return {kind: np.array(corners, dtype=np.int64) for kind, corners in found.items()}
+        corners_by_kind.setdefault(kind, []).append([int(word) for word in row[1 : corners + 1]])
+    return {kind: np.array(corners, dtype=np.int64) for kind, corners in corners_by_kind.items()}

@@ -49,12 +49,12 @@ def simplices(mesh: pv.DataSet) -> Indices:
         return np.empty((0, 3), np.intp)
     surface, origin = hull.surface_of(mesh)
     lines = not has_faces(surface)
-    found = polylines.segments(surface.GetLines()) if lines else triangles_of(surface)
+    corners = polylines.segments(surface.GetLines()) if lines else triangles_of(surface)
     if origin is None:
-        return found.astype(np.intp, copy=False)
-    found = origin[found]
+        return corners.astype(np.intp, copy=False)
+    corners = origin[corners]
     # Curved cells have points on their surface that are none of the mesh.
-    return found[(found >= 0).all(axis=1)]
+    return corners[(corners >= 0).all(axis=1)]
 
 
 def drawn(mesh: pv.DataSet) -> tuple[Indices, Indices | None]:
@@ -93,33 +93,33 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
             _check.message("mesh", "faces or lines to refine", "cells that fill space", remedy)
         )
     if isinstance(mesh, pv.PolyData):
-        found = mesh
+        polydata = mesh
     else:
         # Of cells of Bezier the control points are not on the surface.
         mesh = pv.wrap(as_lagrange(mesh)) if isinstance(mesh, pv.UnstructuredGrid) else mesh
         surface, origin = blocks.outer_surface(mesh)
-        found = pv.PolyData()
-        found.points = np.asarray(mesh.points)
+        polydata = pv.PolyData()
+        polydata.points = np.asarray(mesh.points)
         for get, put in (
-            (surface.GetVerts, found.SetVerts),
-            (surface.GetLines, found.SetLines),
-            (surface.GetPolys, found.SetPolys),
+            (surface.GetVerts, polydata.SetVerts),
+            (surface.GetLines, polydata.SetLines),
+            (surface.GetPolys, polydata.SetPolys),
         ):
             ids, offsets = connectivity(get())
             if len(offsets) > 1:
                 # The surface numbers its points anew; cells get the numbers of the mesh again.
                 put(blocks.cell_array(origin[ids], offsets))
         for key, array in surface.cell_data.items():
-            found.cell_data[key] = np.asarray(array)
-        found.GetPointData().ShallowCopy(mesh.GetPointData())
-        found.GetFieldData().DeepCopy(mesh.GetFieldData())
-    if not (has_faces(found) or found.n_lines):
+            polydata.cell_data[key] = np.asarray(array)
+        polydata.GetPointData().ShallowCopy(mesh.GetPointData())
+        polydata.GetFieldData().DeepCopy(mesh.GetFieldData())
+    if not (has_faces(polydata) or polydata.n_lines):
         remedy = "between points alone there is no light to refine"
         raise ValueError(_check.message("mesh", "faces or lines", "points alone", remedy))
-    return found
+    return polydata
 
 
-class Cells:
+class SplitCells:
     """Segments or triangles that are split step by step.
 
     Parameters
@@ -188,15 +188,15 @@ class Cells:
         marked = chosen[at] == codes
         hit = marked.any(axis=1)
         rows, marked, at, reverse = near[hit], marked[hit], at[hit], reverse[hit]
-        own, side = np.nonzero(marked)
-        edge = at[own, side]
-        ends = self.corners[rows[own], side], self.corners[rows[own], (side + 1) % self.size]
+        part, side = np.nonzero(marked)
+        edge = at[part, side]
+        ends = self.corners[rows[part], side], self.corners[rows[part], (side + 1) % self.size]
         # A share counts from the end of the smaller number; the part may run the other way.
-        t = np.where(reverse[own, side], 1 - share[edge], share[edge])
+        t = np.where(reverse[part, side], 1 - share[edge], share[edge])
         # A point for each pair of ends, a twin for each edge.
         _, first, point = np.unique(_pairs(*ends), return_index=True, return_inverse=True)
         middles = np.full(marked.shape, -1)
-        middles[own, side] = len(self.twin) + point.reshape(-1)
+        middles[part, side] = len(self.twin) + point.reshape(-1)
         self.steps.append(
             Places(np.stack(ends, axis=1)[first], np.stack([1 - t, t], axis=1)[first])
         )
@@ -208,7 +208,7 @@ class Cells:
         """Replace parts by smaller ones, given new points on some edges."""
         old = self.corners[rows]
         if self.size == 2:
-            made = np.concatenate([
+            parts = np.concatenate([
                 np.column_stack([old[:, 0], middles[:, 0]]),
                 np.column_stack([middles[:, 0], old[:, 1]]),
             ])  # fmt: skip
@@ -216,32 +216,32 @@ class Cells:
         else:
             from vizlight.geometry.solids import triangle_mesh
 
-            made, owner = triangle_mesh.split(old, middles)
+            parts, owner = triangle_mesh.split(old, middles)
         # One part takes the place of the old one, the others stand at the end.
         _, first = np.unique(owner, return_index=True)
-        more = np.ones(len(made), np.bool_)
+        more = np.ones(len(parts), np.bool_)
         more[first] = False
         before = len(self.corners)
-        self.corners = np.concatenate([self.corners, made[more]])
+        self.corners = np.concatenate([self.corners, parts[more]])
         self.parent = np.concatenate([self.parent, self.parent[rows][owner[more]]])
-        self.corners[rows] = made[first]
+        self.corners[rows] = parts[first]
         return np.concatenate([rows, np.arange(before, len(self.corners))])
 
     def shares(self) -> Sparse:
         """Return the weights of the points of the mesh in all points, shape (N + new, N)."""
         numbers = np.arange(self.count + 1)
-        found = scipy.sparse.csr_array((np.ones(self.count), numbers[:-1], numbers))
+        matrix = scipy.sparse.csr_array((np.ones(self.count), numbers[:-1], numbers))
         for step in self.steps:
             weights = np.asarray(step.weights.ravel(), dtype=np.float64)
             ends = np.arange(0, len(weights) + 1, 2)
-            size = len(step.corners), found.shape[0]
+            size = len(step.corners), matrix.shape[0]
             # New points lie between earlier ones, which may be new themselves: products of the
             # weights lead back to the points of the mesh.
             between = scipy.sparse.csr_array((weights, step.corners.ravel(), ends), shape=size)
-            found = scipy.sparse.csr_array(
-                scipy.sparse.vstack([found, between @ found], format="csr")
+            matrix = scipy.sparse.csr_array(
+                scipy.sparse.vstack([matrix, between @ matrix], format="csr")
             )
-        return found
+        return matrix
 
 
 def _pairs(a: Indices, b: Indices) -> Indices:
@@ -251,19 +251,19 @@ def _pairs(a: Indices, b: Indices) -> Indices:
 
 def rebuilt(
     mesh: pv.PolyData,
-    parts: Cells,
+    parts: SplitCells,
     origin: Indices | None,
-    given: Mapping[str, Array],
+    new_rows: Mapping[str, Array],
     *,
     places: str | None = None,
 ) -> pv.PolyData:
-    """Return a mesh whose segments or triangles are split, with its data.
+    """Return a mesh with split segments or triangles, with its data.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
         Mesh that the parts lie in; not changed.
-    parts : Cells
+    parts : SplitCells
         Parts of its segments or triangles, in their order.
     origin : ndarray of int or None
         Cell of the mesh that each triangle was taken from; None for segments.
@@ -300,8 +300,8 @@ def rebuilt(
         out.cell_data[key] = np.asarray(array)[cells]
     for key, array in mesh.point_data.items():
         rows = np.asarray(array)
-        own = given.get(key)
-        added = _interpolated(rows, new, places=key == places) if own is None else own
+        given_rows = new_rows.get(key)
+        added = _interpolated(rows, new, places=key == places) if given_rows is None else given_rows
         records.attach_rows(out, key, np.concatenate([rows, added.astype(rows.dtype)]))
     out.GetFieldData().DeepCopy(mesh.GetFieldData())
     records.carry_active(mesh, out)
@@ -309,13 +309,13 @@ def rebuilt(
 
 
 def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
-    """Return a surface whose triangles have sides of at most a length, and all its arrays.
+    """Return a surface with triangle sides of at most a length, and all its arrays.
 
-    Points at equal places stay apart; what is between them is interpolated as by :func:`rebuilt`.
+    Points at equal places stay apart; values between them are interpolated as by :func:`rebuilt`.
     """
     parents, origin = triangles(mesh)
     points = np.asarray(mesh.points, dtype=np.float64)
-    cells, places = Cells(points, parents), points
+    cells, places = SplitCells(points, parents), points
     fresh = np.arange(len(parents))
     while len(fresh):
         numbers, _ = cells.edges(fresh)
@@ -333,11 +333,11 @@ def with_sides(mesh: pv.PolyData, most: float) -> pv.PolyData:
 
 
 def by_corner(mesh: pv.PolyData, name: str) -> pv.PolyData:
-    """Return a surface whose cells have the labels of their points, as halves of their sides do.
+    """Return a surface with cells that have the labels of their points, split at side middles.
 
-    Colours that run from one label to another would show those between them. Here each polygon
-    whose corners differ is split: every corner has the part between it, the middles of its two
-    sides and the middle of the polygon.
+    Colours that run from one label to another would show those between them. Here each polygon with
+    different corners is split: every corner has the part between it, the middles of its two sides
+    and the middle of the polygon.
 
     Parameters
     ----------
@@ -403,12 +403,12 @@ def _means(ids: Indices, size: Indices, count: int) -> Sparse:
     return scipy.sparse.csr_array((weights, ids, ends), shape=(len(size), count))
 
 
-def _split_lines(lines: vtkCellArray, parts: Cells, shares: Sparse) -> pv.CellArray:
+def _split_lines(lines: vtkCellArray, parts: SplitCells, shares: Sparse) -> pv.CellArray:
     """Return polylines with the new points of their segments."""
     if not len(parts.corners):  # lines of one point
-        own = pv.CellArray()
-        own.DeepCopy(lines)
-        return own
+        copied = pv.CellArray()
+        copied.DeepCopy(lines)
+        return copied
     ids, offsets = connectivity(lines)
     # The segments of a line stand one after the other; its last point follows.
     # How far along its segment each part begins: the share of the segment's end in its first
@@ -442,21 +442,21 @@ def _interpolated(rows: Raw, shares: Sparse, *, places: bool = False) -> Raw:
         return np.asarray(rows[shares.indices[order][shares.indptr[1:] - 1]])
     values = rows.reshape(len(rows), -1).astype(np.float64)
     with np.errstate(all="ignore"):
-        found = np.asarray(shares @ values)
+        means = np.asarray(shares @ values)
         if not places and are_unit(values):
-            found = kernels.unit_rows(found)
+            means = kernels.unit_rows(means)
     # Colours are whole numbers: a type of integers would cut their fractions off.
-    found = np.rint(found) if colour else found
-    return np.asarray(found.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
+    means = np.rint(means) if colour else means
+    return np.asarray(means.reshape(-1, *rows.shape[1:]).astype(rows.dtype))
 
 
 def kept_tangents(mesh: pv.DataSet) -> Array | None:
     """Return the tangents that were kept of lines, if the mesh has not changed since.
 
-    New points of a refined line lie on its segments, whose direction is not the line's there.
+    New points of a refined line lie on its segments, with directions that are not the line's.
     """
-    found = records.kept(mesh, TANGENTS, 3)
-    return None if found is None else found[0]
+    rows = records.kept(mesh, TANGENTS, 3)
+    return None if rows is None else rows[0]
 
 
 def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:
@@ -471,5 +471,5 @@ def triangles(mesh: pv.PolyData) -> tuple[Indices, Indices]:
     bare.cell_data[CELLS] = np.arange(before, before + bare.n_cells)
     if not bare.is_all_triangles:
         bare = bare.triangulate()
-    found = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
-    return found, np.asarray(bare.cell_data[CELLS], dtype=np.intp)
+    corners = np.asarray(bare.regular_faces, dtype=np.intp).reshape(-1, 3)
+    return corners, np.asarray(bare.cell_data[CELLS], dtype=np.intp)

@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
 from vizlight.geometry.lines import even, evenness, fur, tracing
-from vizlight.geometry.lines.simplices import Places, Simplices
+from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, Tracing, trace
 from vizlight.mesh import polylines
 from vizlight.model import kernels, line_fields
@@ -120,14 +120,14 @@ class CellTracer:
         array = np.asarray(self.mesh.point_data[name])
         return array if self.sheets == 1 else np.concatenate([array, array])
 
-    def located(self, points: Array) -> Places:
+    def located(self, points: Array) -> CellPlaces:
         """Return places: the closest on a surface; in a volume only those inside.
 
-        On two sheets there are two for each point, one after the other.
+        On two sheets each point has two places, one after the other.
         """
         if isinstance(self.mesh, pv.PolyData):
-            found: Foreign = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
-            cell, points = np.atleast_1d(found[0]), np.atleast_2d(found[1])
+            closest: Foreign = self.mesh.find_closest_cell(points, return_closest_point=True)  # type: ignore[arg-type]
+            cell, points = np.atleast_1d(closest[0]), np.atleast_2d(closest[1])
         else:
             cell = np.atleast_1d(self.mesh.find_containing_cell(points))  # type: ignore[arg-type]
         inside = np.repeat(np.flatnonzero(cell >= 0), self.sheets)
@@ -136,18 +136,18 @@ class CellTracer:
         on = cell[inside] + sheet * (len(self.cells.cells) // self.sheets)
         return self.cells.locate(on, points[inside])
 
-    def random(self, count: int, seed: int) -> Places:
+    def random(self, count: int, seed: int) -> CellPlaces:
         """Return random places, uniform in area or volume."""
         if self.cells.k == 3:
             return self.cells.random(count, np.random.default_rng(seed))
         # On a surface one place in each of equal areas along a Hilbert curve, as for roots of fur.
         face, weights = fur.seeds(self.cells.points, self.cells.cells, count, seed=seed)
-        return Places(face, weights.astype(np.float64))
+        return CellPlaces(face, weights.astype(np.float64))
 
     def traced(
-        self, seeds: Places, how: Tracing, wanted: int | None, report: Callable[[int], None]
+        self, seeds: CellPlaces, how: Tracing, wanted: int | None, report: Callable[[int], None]
     ) -> Curves:
-        """Return curves through seeds; where some fail others are drawn until ``wanted`` are there.
+        """Return curves through seeds; where some fail others are drawn, up to ``wanted`` curves.
 
         ``report`` takes the share that is done, out of 100.
         """
@@ -173,16 +173,16 @@ class CellTracer:
 
     def even(
         self,
-        seeds: Places | None,
+        seeds: CellPlaces | None,
         how: Tracing,
         spacing: float,
         report: Callable[[int], None],
     ) -> tuple[Curves, dict[str, float]]:
-        """Return evenly spaced curves, and how even they are; ``report`` as for traced.
+        """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced.
 
         Parameters
         ----------
-        seeds : Places, optional
+        seeds : CellPlaces, optional
         how : Tracing
         spacing : float
             Distance between curves.

@@ -64,12 +64,12 @@ class Faces:
         """
         if rows.dtype.kind != "f":
             return rows[np.where(self.shares > 0.5, *self.nodes.T[::-1])]
-        found = rows[self.nodes[:, 0]]
+        values = rows[self.nodes[:, 0]]
         cut = np.flatnonzero(self.shares)
         share = self.shares[cut].reshape(-1, *[1] * (rows.ndim - 1))
         first, second = (rows[self.nodes[cut, i]] for i in (0, 1))
-        found[cut] = (1 - share) * first + share * second
-        return found
+        values[cut] = (1 - share) * first + share * second
+        return values
 
     def mesh(self) -> pv.PolyData:
         """Return the faces as a mesh in the plane."""
@@ -96,7 +96,7 @@ class _Ring:
     def joined(cls, rings: Sequence[_Ring]) -> _Ring:
         """Return the corners of some faces, one after the other."""
         columns = (
-            np.concatenate([getattr(ring, one.name) for ring in rings]) for one in fields(cls)
+            np.concatenate([getattr(ring, entry.name) for ring in rings]) for entry in fields(cls)
         )
         return cls(*columns)
 
@@ -109,11 +109,11 @@ def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     x, y : ndarray, shape (N,)
         Coordinates of each node.
     ids, there : ndarray, shape (M, K)
-        Nodes of each face, and a mask of those that are there.
+        Nodes of each face, and a mask of the valid ones.
     """
     ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))])
-    own = np.arange(len(x))
-    nodes = np.column_stack([own, own])
+    node = np.arange(len(x))
+    nodes = np.column_stack([node, node])
     places = np.column_stack([x, y])
     return Faces(places, nodes, np.zeros(len(x)), ids[there], ends, np.arange(len(ids)))
 
@@ -121,7 +121,7 @@ def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
 def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     """Return the faces of a globe on a map from -180 to 180 degrees; a region in one piece.
 
-    A face across the date line is cut there, in two parts. A face with one corner at a pole has
+    A face across the date line is cut in two parts. A face with one corner at a pole has
     that corner at the longitudes of both neighbours, and a face around a pole reaches up to it.
 
     Parameters
@@ -131,10 +131,10 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     ids : ndarray of int, shape (M, K)
         Nodes of each face, in the order around it.
     there : ndarray of bool, shape (M, K)
-        Mask of the corners that are there, three in each row at least.
+        Mask of the valid corners, three in each row at least.
     """
     at_pole = np.abs(y) > 90 - AT_POLE
-    # What is not there repeats the corner before.
+    # Missing corners repeat the corner before.
     columns = np.where(there, np.arange(there.shape[1]), there.argmax(axis=1)[:, np.newaxis])
     filled = np.take_along_axis(ids, np.maximum.accumulate(columns, axis=1), axis=1)
     lon: Array = np.unwrap(x[filled], period=360.0, axis=1)
@@ -166,8 +166,8 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     order = np.argsort(of_face, kind="stable")
     every = _Ring.joined(rings).part(order)
     ends = np.concatenate([[0], np.cumsum(np.bincount(of_face, minlength=count))])
-    found = _joined(x, y, every, ends, np.concatenate(faces))
-    return replace(found, places=found.places + np.array([middle, 0.0]))
+    map_faces = _joined(x, y, every, ends, np.concatenate(faces))
+    return replace(map_faces, places=map_faces.places + np.array([middle, 0.0]))
 
 
 def _middle(lon: Array) -> float:
@@ -187,17 +187,17 @@ def _middle(lon: Array) -> float:
 
 
 def _joined(x: Array, y: Array, every: _Ring, ends: Indices, faces: Indices) -> Faces:
-    """Return faces whose corners at one place, of the same nodes, are one point."""
+    """Return faces with their corners at one place, of the same nodes, merged to one point."""
     node = every.nodes[:, 0]
-    own = (every.shares == 0) & (np.abs(every.lon - x[node]) < BEYOND) & (every.lat == y[node])
+    at_node = (every.shares == 0) & (np.abs(every.lon - x[node]) < BEYOND) & (every.lat == y[node])
     rows: Array = np.column_stack(
         [every.nodes, np.round(every.shares, 9), np.round(every.lon, 6), every.lat]
-    )[~own]
+    )[~at_node]
     more, which = np.unique(rows, axis=0, return_inverse=True)
     # A node that is at other places alone is at the first of these.
     target = len(x) + np.arange(len(more))
     _, first = np.unique(more[:, 0], return_index=True)
-    first = first[(more[first, 2] == 0) & ~np.isin(more[first, 0], node[own])]
+    first = first[(more[first, 2] == 0) & ~np.isin(more[first, 0], node[at_node])]
     moved = more[first, 0].astype(np.intp)
     target[first] = moved
     kept = np.delete(np.arange(len(more)), first)
@@ -206,7 +206,7 @@ def _joined(x: Array, y: Array, every: _Ring, ends: Indices, faces: Indices) -> 
     places[moved] = more[first, 3:]
     nodes = np.repeat(np.arange(len(x)), 2).reshape(-1, 2)
     corners = node.copy()
-    corners[~own] = target[np.ravel(which)]
+    corners[~at_node] = target[np.ravel(which)]
     more = more[kept]
     return Faces(
         np.concatenate([places, more[:, 3:]]),

@@ -1,4 +1,4 @@
-"""Meshes of netCDF files: nodes and a table of the nodes of each face, by UGRID or as is usual."""
+"""Meshes of netCDF files: nodes and a table of the nodes of each face, by UGRID or by custom."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Topology:
     nodes, faces : str
         Names of the dimensions of nodes and of faces.
     by : str
-        What says so.
+        Source of these names.
     """
 
     x: str
@@ -85,14 +85,16 @@ def _of_ugrid(
     places = str(attributes.get("node_coordinates", "")).split()
     if not table or len(places) < 2:
         raise ValueError(f"the mesh {name!r} of UGRID has no faces of nodes in a plane")
-    missing = [one for one in (table, *places[:2]) if one not in file.variables]
+    missing = [
+        coordinate for coordinate in (table, *places[:2]) if coordinate not in file.variables
+    ]
     if missing:
         raise ValueError(f"the mesh {name!r} of UGRID names {missing[0]!r}, which is not there")
-    by_letter = {letter_of(one, file[one].attrs): one for one in places}
+    by_letter = {letter_of(coordinate, file[coordinate].attrs): coordinate for coordinate in places}
     x, y = by_letter.get("x", places[0]), by_letter.get("y", places[1])
     dims = [str(dim) for dim in file[table].dims]
-    own = str(attributes.get("face_dimension", ""))
-    faces = own if own in dims else _longer(file, dims)
+    face_dim = str(attributes.get("face_dimension", ""))
+    faces = face_dim if face_dim in dims else _longer(file, dims)
     return Topology(x, y, str(table), str(file[x].dims[0]), faces, "UGRID")
 
 
@@ -110,7 +112,7 @@ def _guessed(
     Raises
     ------
     ValueError
-        If there is such a table alone: it is no image.
+        If the file has such a table alone: it is no image.
     """
     places: dict[str, dict[str, str]] = {}
     for key, variable in file.variables.items():
@@ -121,7 +123,7 @@ def _guessed(
             # Files may have lengths beside degrees, of which either may be all 0.
             if letter not in pair or not np.any(file[pair[letter]].values):
                 pair[letter] = name
-    found, tables = [], []
+    candidates, tables = [], []
     for key, variable in file.variables.items():
         name, dims = str(key), [str(dim) for dim in variable.dims]
         if len(dims) != 2 or min(variable.shape) not in _CORNERS:
@@ -135,16 +137,18 @@ def _guessed(
             tables.append(name)
         for nodes, pair in places.items():
             if len(pair) == 2 and nodes not in dims and _numbers(variable, file.sizes[nodes]):
-                fields = sum({nodes, faces} & {*map(str, one.dims)} != set() for one in
+                fields = sum({nodes, faces} & {*map(str, array.dims)} != set() for array in
                              file.data_vars.values())  # fmt: skip
                 rank = bool(_TABLES.fullmatch(name)), fields, file.sizes[faces]
-                found.append((rank, Topology(pair["x"], pair["y"], name, nodes, faces, "table")))
-    if tables and not found:
+                candidates.append(
+                    (rank, Topology(pair["x"], pair["y"], name, nodes, faces, "table"))
+                )
+    if tables and not candidates:
         raise ValueError(
             f"{tables[0]!r} seems a table of the nodes of faces, which have no x and y: "
             "name them as UGRID does, by node_coordinates"
         )
-    return max(found, key=lambda one: one[0])[1] if found else None
+    return max(candidates, key=lambda entry: entry[0])[1] if candidates else None
 
 
 def _numbers(variable: Foreign, count: int) -> bool:
@@ -153,8 +157,8 @@ def _numbers(variable: Foreign, count: int) -> bool:
         return False
     values = np.asarray(variable.values, dtype=np.float64)
     values = values if values.shape[0] >= values.shape[1] else values.T
-    known = values[np.isfinite(values) & (values >= 0)]
-    if not known.size or np.any(known != np.round(known)) or known.max() > count:
+    numbers = values[np.isfinite(values) & (values >= 0)]
+    if not numbers.size or np.any(numbers != np.round(numbers)) or numbers.max() > count:
         return False
     ordered = np.sort(values, axis=1)
     return bool(np.median((np.diff(ordered, axis=1) > 0).sum(axis=1)) >= min(_CORNERS) - 1)
@@ -192,12 +196,12 @@ def surface(
         Factor of the coordinates.
     degrees : bool
         Whether they are longitude and latitude then. Faces across the meridian at which counting
-        begins anew are cut there.
+        begins anew are cut at it.
 
     Raises
     ------
     ValueError
-        If a face has a node that is not there.
+        If a face has a missing node.
     """
     x, y = (np.ravel(file[name].values).astype(np.float64) * scale for name in (of.x, of.y))
     table = file[of.table]
@@ -221,5 +225,5 @@ def surface(
 
 def _start(rows: Array, count: int) -> int:
     """Return the number of the first node of a table that does not say it."""
-    known = rows[np.isfinite(rows) & (rows >= 0)]
-    return int(known.size and known.min() >= 1 and known.max() == count)
+    numbers = rows[np.isfinite(rows) & (rows >= 0)]
+    return int(numbers.size and numbers.min() >= 1 and numbers.max() == count)

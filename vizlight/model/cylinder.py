@@ -206,7 +206,7 @@ def specular_gradient(
     slope = peak * mean * s / 2
 
     def angle(ee: Array, ll: Array) -> tuple[Array, Array, Array]:
-        """Return derivatives by ee, ll and dot of the angle at the part whose square is ee."""
+        """Return derivatives by ee, ll and dot of the angle at the part with the square ee."""
         near = (ee + x.dot) / (ee * x.ww)
         cut = x.cross * x.cross / (ee * x.ww)
         return near * ll / 2 - cut, near * ee / 2, -near * x.dot - cut
@@ -269,13 +269,13 @@ class _Invariants(_Line):
             by_q * line + by_m * light,
             by_p * light + by_q * eye,
         )
-        found, largest = [], np.finfo(light.dtype).max
-        for part, own, size in zip(parts, (light, eye, line), self.sizes, strict=True):
-            # The value does not depend on lengths: what is along the vector goes, and the rest is
+        gradients, largest = [], np.finfo(light.dtype).max
+        for part, way, size in zip(parts, (light, eye, line), self.sizes, strict=True):
+            # The value does not depend on lengths: the part along the vector goes, and the rest is
             # over its length.
-            across = part - kernels.dot(part, own) * own
+            across = part - kernels.dot(part, way) * way
             with np.errstate(over="ignore"):
                 across = np.where(self.valid, across / np.where(self.valid, size, 1), 0)
             across = np.clip(across, -largest, largest)
-            found.append(across.T.reshape(*self.shape, 3).astype(light.dtype, copy=False))
-        return Gradient(*found)
+            gradients.append(across.T.reshape(*self.shape, 3).astype(light.dtype, copy=False))
+        return Gradient(*gradients)

@@ -3,8 +3,8 @@
 The public functions of this package validate and call them on arrays; the engine's terms
 (:mod:`vizlight.shading.terms`) call them on blocks of arrays, and on symbols that write compiled
 code and GLSL. The bodies hold nothing but arithmetic, comparisons as the first argument of
-``where`` and ``only``, NumPy's functions, and calls of each other. What is vector algebra, that is
-dot products, unit vectors and the part of a vector across a frame, is left to the caller.
+``where`` and ``only``, NumPy's functions, and calls of each other. Vector algebra, that is dot
+products, unit vectors and the part of a vector across a frame, is left to the caller.
 
 Lengths and their squares come from residuals: ``sine`` is the length of wi less its tangential
 part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the public functions.
@@ -73,7 +73,7 @@ def phong(along: Number, sine_i: Number, sine_o: Number, shininess: float) -> Nu
 
 
 def blinn(along: Number, across: Number, shininess: float) -> Number:
-    """Return |h_N|^s from the squared parts of wi + wo; 0 where there is no half vector."""
+    """Return |h_N|^s from the squared parts of wi + wo; 0 without a half vector."""
     whole = along + across
     scale = 1.0 / where(whole > 0.0, whole, 1.0)
     # |h_N|^2 is the share of |wi + wo|^2 that is across, so its power is s / 2.
@@ -131,7 +131,7 @@ def depth_cue(value: Number, scale: Number, cue: Number) -> Number:
 
 
 def color_factor(light: Number, least: Number) -> Number:
-    """Return what a colour of data is multiplied by: its light, from ``least`` to 1."""
+    """Return the factor of a colour of data: its light, from ``least`` to 1."""
     return clamp(light, least, 1.0)
 
 
@@ -140,7 +140,7 @@ KNEE = 0.8
 
 
 def exposed(largest: Number, exposure: Number) -> Number:
-    """Return what light is multiplied by, whose largest channel is given, for an exposure.
+    """Return the factor of light by its largest channel, for an exposure.
 
     With x = exposure * largest the light becomes x up to K = 0.8, and K + (1 - K) (1 - exp(-t)),
     t = (x - K) / (1 - K), above: smooth in its first derivative, rising, and below 1, to two

@@ -174,5 +174,5 @@ def as_frame(frame: ArrayLike) -> Array:
 
 def result(value: Array) -> Array:
     """Return an array unchanged, and a 0-dimensional array as a NumPy scalar."""
-    found: Array = value[()]
-    return found
+    scalar: Array = value[()]
+    return scalar

@@ -153,11 +153,11 @@ def identity(wi: ArrayLike, wo: ArrayLike, normal: ArrayLike, /) -> Array:
 def _three(*vectors: ArrayLike) -> tuple[Array, Array, Array, tuple[int, ...]]:
     """Return three component-first batches of unit vectors and the shape of their batch."""
     names = ("wi", "wo", "normal")
-    given = {name: _check.vectors(name, v, n=3) for name, v in zip(names, vectors, strict=True)}
-    arrays = _check.together(**given)
-    found = []
+    batches = {name: _check.vectors(name, v, n=3) for name, v in zip(names, vectors, strict=True)}
+    arrays = _check.together(**batches)
+    units = []
     for v in arrays:
         row, size = kernels.unit(np.ascontiguousarray(v.reshape(-1, 3).T))
         # A vector without a direction makes NaN of all that follows from it.
-        found.append(np.where(size > 0, row, np.nan))
-    return found[0], found[1], found[2], arrays[0].shape[:-1]
+        units.append(np.where(size > 0, row, np.nan))
+    return units[0], units[1], units[2], arrays[0].shape[:-1]

@@ -246,13 +246,13 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     best = np.empty(beta.shape)
     for at in np.ndindex(beta.shape):
         b, s = float(beta[at]), float(r[at])
-        found = minimize_scalar(
+        minimum = minimize_scalar(
             lambda log, b=b, s=s: sphere_errors(b, s, float(np.exp(log)))[by],
             bounds=(np.log(1e-3), np.log(16.0)),
             method="bounded",
             options={"xatol": 1e-5},
         )
-        best[at] = np.exp(found.x)
+        best[at] = np.exp(minimum.x)
     return result(best)
 
 

@@ -63,13 +63,13 @@ def unit(v: Array) -> tuple[Array, Array]:
 
 
 def unit_rows(vectors: ArrayLike) -> Array:
-    """Return rows as unit vectors in float64; zero where there is no direction."""
+    """Return rows as unit vectors in float64; zero rows stay zero."""
     columns = np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T)
     return unit(columns)[0].T
 
 
 def _length(v: Array) -> tuple[Array, Bools | None]:
-    """Return lengths, and a mask of the vectors whose squares are out of the range of the type."""
+    """Return lengths, and a mask of the vectors with squares out of the range of the type."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         square = dot(v, v)
     info = np.finfo(v.dtype)
@@ -115,8 +115,8 @@ def orthonormalize(v: Array, rtol: float) -> tuple[Array, Indices]:
         good = size > 0
         if j:
             row = _reject(row, frame[:j])
-            # The first projection tells how far the vector is from the span; the second removes
-            # what rounding left.
+            # The first projection tells how far the vector is from the span; the second removes the
+            # rounding left.
             row, distance = unit(row)
             good &= distance > rtol
             row = _reject(row, frame[:j])

@@ -40,8 +40,8 @@ def outer(tangents: Array) -> Array:
     else:
         frame = kernels.orthonormalize(columns, 1e-12)[0]
         weight = np.ones(columns.shape[-1])
-    found = np.einsum("kip,kjp,p->pij", frame, frame, weight)
-    return np.asarray(found.reshape(*rows.shape[:-2], *found.shape[1:]))
+    products = np.einsum("kip,kjp,p->pij", frame, frame, weight)
+    return np.asarray(products.reshape(*rows.shape[:-2], *products.shape[1:]))
 
 
 def principal(products: Array, k: int = 1) -> tuple[Array, Array]:

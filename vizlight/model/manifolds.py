@@ -2,9 +2,9 @@
 
 Each has three methods: ``split`` a unit direction at the manifold, the ``diffuse`` factor D, and
 the ``specular`` factor S. They are written with the dot products of an algebra ``w`` and the
-formulas of :mod:`vizlight.model.formulas`, and take arrays (:class:`Arrays`) and symbols alike: the
-public functions of :mod:`~vizlight.model.reflection` and :mod:`~vizlight.model.cylinder` and the
-engine's terms all call them.
+formulas of :mod:`vizlight.model.formulas`, and take arrays (:class:`ArrayAlgebra`) and symbols
+alike: the public functions of :mod:`~vizlight.model.reflection` and
+:mod:`~vizlight.model.cylinder` and the engine's terms all call them.
 
 x_T and x_N are the tangential and the normal part of x. Numbers in brackets are those of Banks.
 """
@@ -50,7 +50,7 @@ class Highlight(NamedTuple):
 
 
 class Vectors(Protocol):
-    """What manifolds ask of an algebra."""
+    """The operations of an algebra that manifolds need."""
 
     #: |x_N| up to which a direction is along a line.
     least: float
@@ -68,7 +68,7 @@ class Vectors(Protocol):
         """Return the integral G(z) of :mod:`vizlight.model.highlight_integral`."""
 
 
-class Arrays:
+class ArrayAlgebra:
     """The algebra of component-first arrays of one type."""
 
     def __init__(self, kind: FloatType) -> None:
@@ -177,7 +177,7 @@ class Surface:
         return self.w.dot(rest, rest)
 
 
-class Frame:
+class FrameManifold:
     """A k-manifold by an orthonormal frame: |wi_N| stands for N.wi, and it has no sides."""
 
     def __init__(self, w: Vectors, rows: Sequence[Value], exponent: float = 1.0) -> None:
@@ -218,7 +218,7 @@ class Frame:
         return square(a + b for a, b in zip(lit.along, eye.along, strict=True))
 
 
-class Cylinder(Frame):
+class Cylinder(FrameManifold):
     """A line in 3-space as a thin cylinder: Lambert and Blinn averaged over its visible half.
 
     With ``a = |wi_N|``, ``b = |wo_N|``, alpha the angle between the two normal parts, and beta and

@@ -8,7 +8,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.model import frames, kernels
-from vizlight.model.manifolds import Arrays, Frame, Highlight
+from vizlight.model.manifolds import ArrayAlgebra, FrameManifold, Highlight
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -55,7 +55,7 @@ def diffuse(wi: ArrayLike, frame: ArrayLike, /, *, exponent: float = 1.0) -> Arr
     """
     exponent = _check.number("exponent", exponent, low=0.0, high=_check.LARGEST)
     met = Met("frame", frames.as_frame(frame), wi=wi)
-    manifold = Frame(met.algebra, list(met.rows), exponent)
+    manifold = FrameManifold(met.algebra, list(met.rows), exponent)
     (light,) = met.directions
     return met.finish(manifold.diffuse(manifold.split(light), None))
 
@@ -114,23 +114,23 @@ def specular(
     _check.choice("model", model, get_args(SpecularModel))
     shininess = _check.number("shininess", shininess, low=0.0, high=_check.LARGEST)
     met = Met("frame", frames.as_frame(frame), wi=wi, wo=wo)
-    manifold = Frame(met.algebra, list(met.rows))
+    manifold = FrameManifold(met.algebra, list(met.rows))
     lit, eye = (manifold.split(way) for way in met.directions)
     return met.finish(manifold.specular(lit, eye, Highlight(model, shininess)))
 
 
 class Met:
-    """Unit directions at frames, component-first, and what is needed to return their light."""
+    """Unit directions at frames, component-first, with the shape and mask of their light."""
 
     def __init__(self, name: str, rows: Array, **directions: ArrayLike) -> None:
         n = rows.shape[-1]
-        given = {key: _check.vectors(key, value, n=n) for key, value in directions.items()}
-        self.shape, self.rows, columns = frames.batch(name, rows, **given)
+        vectors = {key: _check.vectors(key, value, n=n) for key, value in directions.items()}
+        self.shape, self.rows, columns = frames.batch(name, rows, **vectors)
         units = [kernels.unit(column) for column in columns]
         self.directions, self.sizes = [unit for unit, _ in units], [size for _, size in units]
         # NaN, the length of a vector that is not finite, is not greater than 0 either.
         self.valid: Bools = np.all(np.greater(self.sizes, 0), axis=0)
-        self.algebra = Arrays(self.rows.dtype)
+        self.algebra = ArrayAlgebra(self.rows.dtype)
 
     def finish(self, value: Array) -> Array:
         """Return numbers in the shape of the batch, 0 where a direction has no length."""

@@ -32,8 +32,8 @@ def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
     if which.all():
         return mesh
     rest: Foreign = ~which
-    found: pv.DataSet = mesh.remove_cells(rest, pass_point_ids=False, pass_cell_ids=False)
-    return found
+    part: pv.DataSet = mesh.remove_cells(rest, pass_point_ids=False, pass_cell_ids=False)
+    return part
 
 
 def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
@@ -44,9 +44,9 @@ def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
         return mesh
     # The lowest bit of VTK's flags marks duplicate cells; the others, as of hidden cells, mark no
     # copies.
-    own = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
+    kept = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
     # A structured grid keeps all of its cells.
-    return some_cells(mesh, own) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
+    return some_cells(mesh, kept) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
 
 
 def with_layer(
@@ -61,12 +61,12 @@ def with_layer(
     """
     if GHOST not in mesh.cell_data:
         mesh.cell_data[GHOST] = np.zeros(mesh.n_cells, dtype=np.uint8)
-    own = _Places(np.asarray(mesh.points))
+    places = _Places(np.asarray(mesh.points))
     layers, rest = [], []
     for other in others:
         if not isinstance(other, type(mesh)):
             other = other.cast_to_unstructured_grid()
-        touched = _touched(other, own.of(np.asarray(other.points)) >= 0)
+        touched = _touched(other, places.find(np.asarray(other.points)) >= 0)
         if touched.any():
             layer = some_cells(other, touched)
             layer.cell_data[GHOST] = np.ones(layer.n_cells, dtype=np.uint8)
@@ -85,17 +85,17 @@ class _Places:
         self._low, self._high = np.fmin.reduce(points, axis=0), np.fmax.reduce(points, axis=0)
         self._keys, self._first = np.unique(place_numbers(points), return_index=True)
 
-    def of(self, others: Array) -> Indices:
+    def find(self, others: Array) -> Indices:
         """Return for each of some points the first one at its place, -1 where none is."""
-        found = np.full(len(others), -1)
+        indices = np.full(len(others), -1)
         near = np.flatnonzero(np.all((others >= self._low) & (others <= self._high), axis=1))
         if len(near):
             wanted = others[near]
             keys = place_numbers(wanted)
             at = self._first[np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)]
             # Two places may have one number: the coordinates decide.
-            found[near] = np.where(np.all(self._points[at] == wanted, axis=1), at, -1)
-        return found
+            indices[near] = np.where(np.all(self._points[at] == wanted, axis=1), at, -1)
+        return indices
 
 
 def _touched(mesh: pv.DataSet, touching: Foreign) -> Foreign:
@@ -116,18 +116,19 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     for part in (mesh, *layers):
         together.AddInputData(part)
     together.Update()
-    found = pv.wrap(together.GetOutput())
-    places = np.asarray(found.points)
-    index = np.arange(found.n_points)
-    known = _Places(places).of(places[mesh.n_points :])
-    index[mesh.n_points :] = np.where(known < 0, index[mesh.n_points :], known)
-    every = cell_arrays(found)
+    joined = pv.wrap(together.GetOutput())
+    places = np.asarray(joined.points)
+    index = np.arange(joined.n_points)
+    same = _Places(places).find(places[mesh.n_points :])
+    index[mesh.n_points :] = np.where(same < 0, index[mesh.n_points :], same)
+    every = cell_arrays(joined)
     # A polyhedron has the points of its faces in an array of its own.
-    if isinstance(found, pv.UnstructuredGrid) and (faces := found.GetPolyhedronFaces()) is not None:
-        every.append(faces)
+    polyhedra = joined.GetPolyhedronFaces() if isinstance(joined, pv.UnstructuredGrid) else None
+    if polyhedra is not None:
+        every.append(polyhedra)
     for cells in every:
         # This is VTK's own memory, which is changed in place.
         ids = pv.convert_array(cells.GetConnectivityArray())
         ids[:] = index[ids]
-    found.Modified()
-    return found  # type: ignore[no-any-return]
+    joined.Modified()
+    return joined  # type: ignore[no-any-return]

@@ -24,7 +24,7 @@ from vizlight.filters import lighting
 from vizlight.mesh import normals
 from vizlight.pieces import task
 from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
-from vizlight.pieces.workers import RETRIES, Work
+from vizlight.pieces.workers import RETRIES, RetryingMap
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import required_scene
 from vizlight.shading.options import LightOptions
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Given, Keywords
     from vizlight.pieces.sources import Piece
-    from vizlight.pieces.task import Found, Job
+    from vizlight.pieces.task import Job, PieceSummary
     from vizlight.pieces.workers import Map
     from vizlight.scene import Scene
     from vizlight.scene.presets import AnyScene
@@ -101,9 +101,9 @@ def light(
     Parameters
     ----------
     sources : path, Slabs or sequence of them
-        Files, patterns such as ``"run/*.vtu"``, indices (.pvtu, .pvtp, .vtm), which name the
-        files of pieces, VTKHDF files, whose partitions are pieces, and structured grids (.vti,
-        .vtr, .vts, .pvti, .pvtr, .pvts and :class:`Slabs`), which are cut in slabs.
+        Files, patterns such as ``"run/*.vtu"``, indices (.pvtu, .pvtp, .vtm), which name the files
+        of pieces, VTKHDF files, with a piece for each partition, and structured grids (.vti, .vtr,
+        .vts, .pvti, .pvtr, .pvts and :class:`Slabs`), which are cut in slabs.
     scene : Scene
         Lights, material and view. The ends of a depth cue that are not given are taken from the
         bounding box of all pieces.
@@ -111,7 +111,7 @@ def light(
         Filter of vizlight. Streamlines end where their piece ends, and ``seeds`` counts the seeds
         of each piece.
     contour : str, optional
-        Name of a point array of one component, whose isosurface is lit.
+        Name of a point array of one component, to light an isosurface of it.
     level : float, optional
         Value of the array on the isosurface. Default: the middle of its range over all pieces,
         which costs a first reading.
@@ -126,9 +126,9 @@ def light(
         kind, .pvti, .pvtr and .pvts for grids. The files of the pieces are in a folder beside it
         that has its name without the suffix.
     map : callable, executor or client, default: map
-        What calls a function of each piece: ``map``, one after the other in this process;
-        :class:`vizlight.pieces.Processes`; a ``ProcessPoolExecutor`` or its ``map``; or a
-        ``distributed.Client`` of Dask, whose workers see the same files.
+        Callable that applies a function to each piece: ``map``, one after the other in this
+        process; :class:`vizlight.pieces.Processes`; a ``ProcessPoolExecutor`` or its ``map``; or a
+        ``distributed.Client`` of Dask, with workers that see the same files.
     retries : int, default: 2
         Number of times that a piece is tried again after an error of the operating system.
     slab : float, default: 64.0
@@ -146,7 +146,7 @@ def light(
     Returns
     -------
     Lit
-        Path of the index, and what the pieces have in common.
+        Path of the index, and facts about all pieces.
 
     Raises
     ------
@@ -196,14 +196,14 @@ def light(
         options=options,
         # Streamlines end where their piece ends, and need no cells of others.
         ghost=ghost if filter == "illuminate" else 0,
-        suffix={own: suffix for suffix, own in INDEX.items()}[path.suffix.lower()],
+        suffix={ending: suffix for suffix, ending in INDEX.items()}[path.suffix.lower()],
         # Where it pays for one worker it may not pay for another, and the two would round
         # differently.
         compiled="1" if _compiled.wanted() == "1" else "0",
         # Workers share the processors.
         threads=_pool.workers() if map is builtins.map else 1,
     )
-    work = Work(map, retries, progress_bar)
+    work = RetryingMap(map, retries, progress_bar)
     parts = pieces_of(sources, _check.positive("slab", slab))
     folder = path.with_suffix("")
     # The pieces are written here, and moved to their place when all of them are whole.
@@ -214,25 +214,25 @@ def light(
         targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
         _spare_sources(parts, path, outputs)
-        job, told = _told(parts, job, work)
-        calls = [*zip(parts, [job] * len(parts), targets, told, strict=True)]
-        done: list[Found] = []
-        with report.workers(lambda: sum(one.points for one in done)):
+        job, whole_sides = _with_sides(parts, job, work)
+        calls = [*zip(parts, [job] * len(parts), targets, whole_sides, strict=True)]
+        done: list[PieceSummary] = []
+        with report.workers(lambda: sum(facts.points for facts in done)):
             done += work.each(task.light, calls, "light")
-        full = [(piece, one) for piece, one in zip(parts, done, strict=True) if one.file]
+        full = [(piece, facts) for piece, facts in zip(parts, done, strict=True) if facts.file]
         if not full:
             raise _nothing_found(parts, job, work)
-        first, made = full[0]
+        first, reference = full[0]
         # The index states the arrays of the first piece for all of them.
-        for piece, one in full[1:]:
-            _check_alike(piece, one.arrays | one.grid, first, made.arrays | made.grid)
+        for piece, facts in full[1:]:
+            _check_alike(piece, facts.arrays | facts.grid, first, reference.arrays | reference.grid)
         # Read before the index is replaced.
         earlier = _named_by(path, folder)
-        for _, one in full:
-            (drafts / one.file).replace(folder / one.file)
-        _write_index(path, [one for _, one in full], folder.name, job.name)
+        for _, facts in full:
+            (drafts / facts.file).replace(folder / facts.file)
+        _write_index(path, [facts for _, facts in full], folder.name, job.name)
         # Pieces that only the earlier index named belong to no mesh any more.
-        for name in earlier - {one.file for _, one in full}:
+        for name in earlier - {facts.file for _, facts in full}:
             (folder / name).unlink()
     finally:
         # Drafts of runs that were killed, too.
@@ -282,14 +282,16 @@ def camera_on(
     options: Keywords = {"up": up, "parallel": parallel, "zoom": zoom, "aspect": aspect}
     cameras.camera_on((0, 1) * 3, direction, **options)  # checks them before anything is read
     parts = pieces_of(sources, _check.positive("slab", slab))
-    work = Work(map, RETRIES, progress_bar)
+    work = RetryingMap(map, RETRIES, progress_bar)
     if job.contour is not None and job.level is None:
         pairs = _surveyed(parts, job, work)
-        job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
+        job = dataclasses.replace(
+            job, level=sum(_ends([facts for _, facts in pairs], job.contour)) / 2
+        )
     calls = [(piece, job, direction, up, aspect) for piece in parts]
     # Each worker sends only the few points on which a camera depends.
-    found = work.each(task.outermost, calls, "camera")
-    points = np.concatenate([np.asarray(some, dtype=np.float64) for some in found])
+    outer_points = work.each(task.outermost, calls, "camera")
+    points = np.concatenate([np.asarray(some, dtype=np.float64) for some in outer_points])
     if not len(points):
         raise _nothing_found(parts, job, work)
     return cameras.camera_on(pv.PolyData(points), direction, **options)
@@ -302,18 +304,18 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
         remedy = "lines of all pieces dim one another; light them together"
         raise ValueError(_check.message("bundle", "no such option for pieces", "one", remedy))
     function: Foreign = task.FILTERS[filter_name]
-    known = [*inspect.signature(function).parameters]
+    parameters = [*inspect.signature(function).parameters]
     for name in options:
-        if name not in known or name in ("inplace", "progress_bar"):
-            raise TypeError(unknown_option(filter_name, name, known))
+        if name not in parameters or name in ("inplace", "progress_bar"):
+            raise TypeError(unknown_option(filter_name, name, parameters))
     if filter_name != "illuminate":
         return
     for name in ("tangents", "normals", "conditioned"):
         if options.get(name) is not None and not isinstance(options[name], str | bool):
             expected = "the name of a point array that every piece has"
             raise TypeError(_check.message(name, expected, _check.describe(options[name])))
-    asked = LightOptions.of(options)
-    if asked.facing == "outward":
+    light_options = LightOptions.of(options)
+    if light_options.facing == "outward":
         remedy = "what is closed faces outward by facing='auto'"
         expected = "'auto', 'eye' or 'as given'"
         raise ValueError(_check.message("facing", expected, "'outward'", remedy))
@@ -322,40 +324,40 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
 
 
-def _told(parts: list[Piece], job: Job, work: Work) -> tuple[Job, list[Told | None]]:
-    """Return the job, and what the whole decides of the sides of each piece, where it does."""
-    asked = LightOptions.of(job.options)
-    told: list[Told | None] = [None] * len(parts)
-    sharp = asked.feature_angle == "auto"
-    if not job.ghost or not (asked.facing == "auto" or sharp):
-        return job, told  # without neighbours each piece is a whole
-    # What is lit by tangents alone has no sides.
-    if asked.tangents is not None and asked.conditioned is not True:
-        return job, told
-    found = work.each(task.look, [(piece, job) for piece in parts], "sides")
-    looks = {i: one for i, one in enumerate(found) if one is not None}
+def _with_sides(parts: list[Piece], job: Job, work: RetryingMap) -> tuple[Job, list[Told | None]]:
+    """Return the job, and the sides of each piece where all pieces together decide them."""
+    light_options = LightOptions.of(job.options)
+    decisions: list[Told | None] = [None] * len(parts)
+    sharp = light_options.feature_angle == "auto"
+    if not job.ghost or not (light_options.facing == "auto" or sharp):
+        return job, decisions  # without neighbours each piece is a whole
+    # Pieces lit by tangents alone have no sides.
+    if light_options.tangents is not None and light_options.conditioned is not True:
+        return job, decisions
+    answers = work.each(task.look, [(piece, job) for piece in parts], "sides")
+    looks = {i: look for i, look in enumerate(answers) if look is not None}
     if sharp:
         # The angle is one for all pieces: their common borders would not fit if some were split
         # alone.
         angle = SHARP if looks and sides.creases([*looks.values()]) else None
         job = dataclasses.replace(job, options={**job.options, "feature_angle": angle})
-    if asked.facing == "auto" and looks:
-        for i, one in zip(looks, sides.decided([*looks.values()]), strict=True):
-            told[i] = one
-    return job, told
+    if light_options.facing == "auto" and looks:
+        for i, decision in zip(looks, sides.decided([*looks.values()]), strict=True):
+            decisions[i] = decision
+    return job, decisions
 
 
 def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) -> None:
     """Check that no source would be replaced, or removed as a piece of an earlier run."""
     taken = {output.resolve() for output in (path, *outputs)}
-    folder, own = outputs[0].resolve().parent, _own_pieces(path.stem)
+    folder, pattern = outputs[0].resolve().parent, _own_pieces(path.stem)
     for piece in parts:
-        given = piece.path if isinstance(piece, FilePiece) else piece.source
-        if not isinstance(given, Path):
+        origin = piece.path if isinstance(piece, FilePiece) else piece.source
+        if not isinstance(origin, Path):
             continue
-        source = given.resolve()
+        source = origin.resolve()
         # A source that is named like a piece may be taken for one of an earlier run, and removed.
-        if source in taken or (source.parent == folder and own.fullmatch(source.name)):
+        if source in taken or (source.parent == folder and pattern.fullmatch(source.name)):
             expected = "another name than the sources'"
             raise PieceError(_check.message("out", expected, f"'{path}'"))
 
@@ -367,36 +369,39 @@ def _own_pieces(stem: str) -> re.Pattern[str]:
 
 def _named_by(path: Path, folder: Path) -> set[str]:
     """Return the names of the pieces of an earlier run, in its folder, that its index names."""
-    own = _own_pieces(path.stem)
+    pattern = _own_pieces(path.stem)
     try:
-        found = index_files(path)
+        paths = index_files(path)
     except PieceError:  # there is none, or its pieces are gone
         return set()
-    return {file.name for file in found if file.parent == folder and own.fullmatch(file.name)}
+    return {file.name for file in paths if file.parent == folder and pattern.fullmatch(file.name)}
 
 
-def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
-    """Return the result, and warn once of what the workers warned of."""
-    full = [one for one in done if one.file]
-    points, invalid = sum(one.points for one in full), sum(one.invalid for one in full)
-    names = sorted({name for one in full for name in one.ranges})
+def _result(path: Path, folder: Path, done: Sequence[PieceSummary], job: Job) -> Lit:
+    """Return the result, and repeat each warning of the workers once."""
+    full = [facts for facts in done if facts.file]
+    points, invalid = (
+        sum(facts.points for facts in full),
+        sum(facts.invalid for facts in full),
+    )
+    names = sorted({name for facts in full for name in facts.ranges})
     if invalid:
         _check.warn(f"{unlit(invalid, points)}; the point array '{job.name}_valid' marks them")
-    for note, count in Counter(note for one in full for note in set(one.notes)).items():
+    for note, count in Counter(note for facts in full for note in set(facts.notes)).items():
         # Of the shape of the whole a single piece knows too little.
         if 2 * count > len(full):
             _check.warn(f"{note} ({count} of {len(done)} pieces)")
     # Weighed by cells, the mean is nearly the share of the whole.
-    sharp = sum((one.sharp or 0.0) * one.cells for one in full)
-    sharp /= max(sum(one.cells for one in full), 1)
+    sharp = sum((facts.sharp or 0.0) * facts.cells for facts in full)
+    sharp /= max(sum(facts.cells for facts in full), 1)
     normals.warn_of_edges(sharp, splits=job.suffix == ".vtp")
-    boxes = np.array([one.bounds for one in full])
-    ends = {name: [one.ranges[name] for one in full if name in one.ranges] for name in names}
+    boxes = np.array([facts.bounds for facts in full])
+    ends = {name: [facts.ranges[name] for facts in full if name in facts.ranges] for name in names}
     return Lit(
         path=path,
-        files=tuple(folder / one.file for one in full),
+        files=tuple(folder / facts.file for facts in full),
         points=points,
-        cells=sum(one.cells for one in full),
+        cells=sum(facts.cells for facts in full),
         bounds=tuple(np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0)).tolist()),
         ranges={name: (min(ends[name])[0], max(high for _, high in ends[name])) for name in ends},
         scene=job.scene,
@@ -405,17 +410,17 @@ def _result(path: Path, folder: Path, done: Sequence[Found], job: Job) -> Lit:
     )
 
 
-def _nothing_found(parts: list[Piece], job: Job, work: Work) -> PieceError:
+def _nothing_found(parts: list[Piece], job: Job, work: RetryingMap) -> PieceError:
     """Return the error of pieces without a point to light."""
     if job.contour is None:
         expected = "pieces with something to light"
         return PieceError(_check.message("sources", expected, "no points"))
-    low, high = _ends([one for _, one in _surveyed(parts, job, work)], job.contour)
+    low, high = _ends([facts for _, facts in _surveyed(parts, job, work)], job.contour)
     expected = f"a value between {low:g} and {high:g}"
     return PieceError(_check.message("level", expected, f"{job.level:g}"))
 
 
-def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Job]:
+def _prepared(parts: list[Piece], job: Job, work: RetryingMap) -> tuple[list[Piece], Job]:
     """Return pieces that know their neighbours, and a job without a question left open."""
     cue = job.scene.depth_cue
     open_cue = cue is not None and (cue.front is None or cue.back is None)
@@ -424,9 +429,11 @@ def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Jo
     if not (loose or open_cue or (job.contour is not None and job.level is None)):
         return parts, job
     pairs = _surveyed(parts, job, work)
-    boxes = np.array([one.bounds for _, one in pairs]).reshape(-1, 3, 2)
+    boxes = np.array([facts.bounds for _, facts in pairs]).reshape(-1, 3, 2)
     if job.contour is not None and job.level is None:
-        job = dataclasses.replace(job, level=sum(_ends([one for _, one in pairs], job.contour)) / 2)
+        job = dataclasses.replace(
+            job, level=sum(_ends([facts for _, facts in pairs], job.contour)) / 2
+        )
     # The depth belongs to the isosurface, if there is one, whose level is known by now.
     if open_cue:
         calls = [(piece, job) for piece, _ in pairs]
@@ -435,20 +442,20 @@ def _prepared(parts: list[Piece], job: Job, work: Work) -> tuple[list[Piece], Jo
     return _neighbours([piece for piece, _ in pairs], boxes, job.ghost), job
 
 
-def _surveyed(parts: list[Piece], job: Job, work: Work) -> list[tuple[Piece, Found]]:
-    """Return the pieces with points, which have arrays of the same types, and what is in them."""
+def _surveyed(parts: list[Piece], job: Job, work: RetryingMap) -> list[tuple[Piece, PieceSummary]]:
+    """Return the pieces with points, which have arrays of the same types, and their summaries."""
     calls = [(piece, job.contour) for piece in parts]
-    found = work.each(task.survey, calls, "survey")
-    pairs = [(piece, one) for piece, one in zip(parts, found, strict=True) if one.points]
+    summaries = work.each(task.survey, calls, "survey")
+    pairs = [(piece, facts) for piece, facts in zip(parts, summaries, strict=True) if facts.points]
     if not pairs:
         raise PieceError(_check.message("sources", "pieces with points", "none"))
     first_piece, first = pairs[0]
-    for piece, one in pairs[1:]:
-        _check_alike(piece, one.arrays, first_piece, first.arrays)
-        if one.lines != first.lines and _by_faces(job):
+    for piece, facts in pairs[1:]:
+        _check_alike(piece, facts.arrays, first_piece, first.arrays)
+        if facts.lines != first.lines and _by_faces(job):
             # A whole of both is lit by its faces, and a piece of lines alone by their tangents.
             expected = f"{'lines' if first.lines else 'faces'} as in {first_piece.name}"
-            got, remedy = "lines alone" if one.lines else "faces", "light lines by themselves"
+            got, remedy = "lines alone" if facts.lines else "faces", "light lines by themselves"
             text = _check.message("sources", expected, got, remedy)
             raise PieceError(f"piece {piece.name}: {text}")
     return pairs
@@ -461,61 +468,61 @@ def _by_faces(job: Job) -> bool:
     return job.contour is None and job.filter == "illuminate" and not tangents
 
 
-def _ends(found: Sequence[Found], contour: str) -> tuple[float, float]:
+def _ends(summaries: Sequence[PieceSummary], contour: str) -> tuple[float, float]:
     """Return the range of the contoured array over all pieces."""
-    arrays = found[0].arrays
+    arrays = summaries[0].arrays
     # A key is "point NAME", and the type of several components has their number behind an x.
     names = [key[6:] for key in arrays if key.startswith("point ") and " x " not in arrays[key]]
-    ends = [one.ranges[contour] for one in found if contour in one.ranges]
+    ends = [facts.ranges[contour] for facts in summaries if contour in facts.ranges]
     if contour not in names or not ends:
         expected = f"a point array of one component, {_check.one_of(names)}"
         raise ValueError(_check.message("contour", expected, repr(contour)))
     return min(low for low, _ in ends), max(high for _, high in ends)
 
 
-def _check_alike(piece: Piece, found: Keywords, first: Piece, expected: Keywords) -> None:
+def _check_alike(piece: Piece, arrays: Keywords, first: Piece, expected: Keywords) -> None:
     """Check that a piece has the arrays of the first, and that both are boxes of one grid."""
-    for name in expected | found:
-        here, there = found.get(name), expected.get(name)
+    for name in expected | arrays:
+        here, there = arrays.get(name), expected.get(name)
         if here != there:
-            kind, _, own = name.partition(" ")
-            what = f"{kind} array {own!r}" if own else kind
+            kind, _, array_name = name.partition(" ")
+            what = f"{kind} array {array_name!r}" if array_name else kind
             wanted = f"the {what} of {there}" if there else f"no {what}"
             text = _check.message("sources", f"{wanted} as in {first.name}", here or "none")
             raise PieceError(f"piece {piece.name}: {text}")
 
 
 def _neighbours(parts: list[Piece], boxes: Foreign, ghost: int) -> list[Piece]:
-    """Return the pieces; pieces of files come with the pieces whose boxes touch theirs."""
+    """Return the pieces; pieces of files come with the pieces of boxes that touch theirs."""
     if not ghost:
         return parts
-    found: list[Piece] = []
+    linked: list[Piece] = []
     for i, piece in enumerate(parts):
         if not isinstance(piece, FilePiece):
-            found.append(piece)
+            linked.append(piece)
             continue
         # Boxes that only touch may have points in common on their border.
         touch = np.all((boxes[:, :, 0] <= boxes[i, :, 1]) & (boxes[:, :, 1] >= boxes[i, :, 0]), 1)
         beside = [parts[j] for j in np.flatnonzero(touch) if j != i]
-        own = tuple(one for one in beside if isinstance(one, FilePiece))
-        found.append(dataclasses.replace(piece, beside=own))
-    return found
+        file_pieces = tuple(neighbour for neighbour in beside if isinstance(neighbour, FilePiece))
+        linked.append(dataclasses.replace(piece, beside=file_pieces))
+    return linked
 
 
-def _write_index(path: Path, pieces: Sequence[Found], folder: str, scalars: str) -> Path:
+def _write_index(path: Path, pieces: Sequence[PieceSummary], folder: str, scalars: str) -> Path:
     """Write the file that names lit pieces, which VTK and ParaView read as one mesh."""
     first = pieces[0]
     suffix = Path(first.file).suffix
     # The parallel types of VTK's XML are the serial ones with a P before them.
-    kind = "P" + next(kind for kind, own in SUFFIX.items() if own == suffix)
+    kind = "P" + next(kind for kind, extension in SUFFIX.items() if extension == suffix)
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian")
     # Ghost cells were cut off before the pieces were written.
     grid = ET.SubElement(root, kind, GhostLevel="0")
     for name, data in (("point", "PPointData"), ("cell", "PCellData")):
         element = ET.SubElement(grid, data, {"Scalars": scalars} if name == "point" else {})
-        for own, type_ in first.arrays.items():
-            if own.startswith(f"{name} "):
-                _array(element, own.partition(" ")[2], type_)
+        for key, type_ in first.arrays.items():
+            if key.startswith(f"{name} "):
+                _array(element, key.partition(" ")[2], type_)
     if "points " in first.arrays:
         _array(ET.SubElement(grid, "PPoints"), "Points", first.arrays["points "])
     if kind == "PRectilinearGrid":
@@ -540,10 +547,10 @@ def _write_index(path: Path, pieces: Sequence[Found], folder: str, scalars: str)
 
 
 def _array(parent: ET.Element, name: str, type_: str) -> None:
-    own, _, components = type_.partition(" x ")
+    type_name, _, components = type_.partition(" x ")
     kind = "String"
-    if own != "text":
-        dtype = np.dtype(own)
+    if type_name != "text":
+        dtype = np.dtype(type_name)
         family = {"f": "Float", "i": "Int"}.get(dtype.kind, "UInt")
         kind = f"{family}{8 * dtype.itemsize}"
     ET.SubElement(parent, "PDataArray", type=kind, Name=name, NumberOfComponents=components or "1")

@@ -1,4 +1,4 @@
-"""Pieces of data in files, grids and arrays: how they are found, and how one is read."""
+"""Pieces of data in files, grids and arrays: finding them and reading one."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class FilePiece:
     partition, partitions : int
         Index of the partition, and their number.
     beside : tuple of FilePiece
-        Pieces whose bounding boxes touch this one's.
+        Pieces with bounding boxes that touch this one's.
     """
 
     name: str
@@ -81,8 +81,8 @@ class FilePiece:
         if self.path.suffix.lower() in HDF:
             reader = _informed(self.path)
             reader.UpdatePiece(self.partition, self.partitions, 0)
-            found = pv.wrap(reader.GetOutputDataObject(0))
-            mesh = found[self.partition] if isinstance(found, pv.PartitionedDataSet) else found
+            data = pv.wrap(reader.GetOutputDataObject(0))
+            mesh = data[self.partition] if isinstance(data, pv.PartitionedDataSet) else data
             if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
                 # An error with these words counts the piece as one without points, as parallel
                 # writers make them.
@@ -104,7 +104,7 @@ class FilePiece:
             mesh, others = with_layer(mesh, others, keep=more > 0)
         return mesh
 
-    def own(self, mesh: pv.DataSet) -> pv.DataSet:
+    def owned_part(self, mesh: pv.DataSet) -> pv.DataSet:
         """Return the part of a mesh, read with ghost cells, that belongs to the piece."""
         return own_cells(mesh)
 
@@ -118,7 +118,7 @@ class GridPiece:
     name : str
         Name in messages.
     source : pathlib.Path or Slabs
-        What the nodes are read from.
+        Source of the nodes.
     extent, whole : tuple of 6 int
         First and last node of the piece and of the grid, along x, y and z.
     """
@@ -146,28 +146,28 @@ class GridPiece:
             reader.GetOutputDataObject(0).ReleaseData()
             mesh = without_ghosts(mesh)
         # The box that was read, in nodes of the whole grid.
-        found = mesh.GetExtent()
+        extent = mesh.GetExtent()
         # Over the cells x runs fastest, so that the mask has the axes z, y and x; a flat axis has
         # one layer.
-        outside = np.ones([max(found[i + 1] - found[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
+        outside = np.ones([max(extent[i + 1] - extent[i], 1) for i in (4, 2, 0)], dtype=np.uint8)
         # Nodes of the piece, counted from the first that was read.
-        own = [(self.extent[i] - found[i], self.extent[i + 1] - found[i]) for i in (4, 2, 0)]
-        outside[tuple(slice(low, max(high, 1)) for low, high in own)] = 0
+        inner = [(self.extent[i] - extent[i], self.extent[i + 1] - extent[i]) for i in (4, 2, 0)]
+        outside[tuple(slice(low, max(high, 1)) for low, high in inner)] = 0
         mesh.cell_data[GHOST] = outside.ravel()
         return mesh  # type: ignore[no-any-return]
 
-    def own(self, mesh: Foreign) -> pv.DataSet:
+    def owned_part(self, mesh: Foreign) -> pv.DataSet:
         """See :class:`FilePiece`."""
         # An isosurface is no grid any more, and its triangles have the mark of the cells that they
         # lie in.
         if not hasattr(mesh, "GetExtent"):
             return own_cells(mesh)
         if tuple(mesh.GetExtent()) != self.extent:
-            own = pv.wrap(cropped(mesh, self.extent))
+            part = pv.wrap(cropped(mesh, self.extent))
             # Records are field data, and are carried by hand.
             for name in mesh.field_data:
-                own.field_data[name] = mesh.field_data[name]
-            mesh = own
+                part.field_data[name] = mesh.field_data[name]
+            mesh = part
         mesh.cell_data.pop(GHOST, None)
         return mesh  # type: ignore[no-any-return]
 
@@ -183,7 +183,7 @@ class Slabs:
     arrays : dict of str to array_like
         Point arrays by name, of shape (nz, ny, nx) or (nz, ny, nx, components): memory-mapped
         arrays, Zarr or Dask arrays, h5py datasets that can be pickled, or anything else of that
-        shape whose slices ``[z0:z1]``, and ``[z0:z1, y0:y1]`` of wide grids, are arrays.
+        shape with arrays as its slices ``[z0:z1]``, and ``[z0:z1, y0:y1]`` of wide grids.
     spacing : vector of 3 components, default: (1, 1, 1)
         Distances between the nodes along x, y and z, in the unit of the mesh.
     origin : vector of 3 components, default: (0, 0, 0)
@@ -192,7 +192,7 @@ class Slabs:
     Raises
     ------
     TypeError, ValueError
-        If there is no array, or their shapes do not fit each other.
+        If no array is given, or their shapes do not fit each other.
 
     Notes
     -----
@@ -246,10 +246,10 @@ class Slabs:
         slices, rows = slice(extent[4], extent[5] + 1), slice(extent[2], extent[3] + 1)
         for name, array in self.arrays.items():
             is_mapped = isinstance(array, functools.partial)
-            found: Foreign = array() if is_mapped else array
+            values: Foreign = array() if is_mapped else array
             # Rows are sliced only where some are left out: some arrays know slices along z alone.
-            wide = rows.stop - rows.start < found.shape[1]
-            part = found[slices, rows] if wide else found[slices]
+            wide = rows.stop - rows.start < values.shape[1]
+            part = values[slices, rows] if wide else values[slices]
             if hasattr(part, "compute"):
                 import dask
 
@@ -259,7 +259,7 @@ class Slabs:
             box = np.array(part) if is_mapped else np.asarray(part)
             # The last axis, x, runs fastest in memory, as it does over the points of an image in
             # VTK.
-            mesh.point_data[name] = box.reshape(-1, *found.shape[3:])
+            mesh.point_data[name] = box.reshape(-1, *values.shape[3:])
         return mesh
 
 
@@ -293,29 +293,29 @@ def pieces_of(sources: object, slab: float) -> list[Piece]:
     TypeError, PieceError
         If a source is of no known kind, or a file is missing.
     """
-    given = [sources] if isinstance(sources, str | Path | Slabs) else sources
-    wrong = isinstance(given, Mapping | pv.DataSet | pv.MultiBlock)
-    if wrong or not hasattr(given, "__iter__") or getattr(given, "ndim", 1) == 0:
+    items = [sources] if isinstance(sources, str | Path | Slabs) else sources
+    wrong = isinstance(items, Mapping | pv.DataSet | pv.MultiBlock)
+    if wrong or not hasattr(items, "__iter__") or getattr(items, "ndim", 1) == 0:
         expected = "paths, patterns, or grids as vizlight.pieces.Slabs"
         remedy = "wrap arrays: Slabs({name: array})"
         raise TypeError(_check.message("sources", expected, type(sources).__name__, remedy))
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     taken: set[Path] = set()
-    for source in given:
+    for source in items:
         if isinstance(source, Slabs):
-            found += _boxes(source, source.extent, source.bytes_per_node, slab)
+            pieces += _boxes(source, source.extent, source.bytes_per_node, slab)
         elif isinstance(source, str | Path):
             for path in _paths(source):
                 if path.resolve() in taken:
                     raise PieceError(_check.message("sources", "each file once", f"'{path}' twice"))
                 taken.add(path.resolve())
-                found += _of_file(path, slab)
+                pieces += _of_file(path, slab)
         else:
             expected = "a path, a pattern or a vizlight.pieces.Slabs"
             raise TypeError(_check.message("sources", expected, type(source).__name__))
-    if not found:
+    if not pieces:
         raise PieceError(_check.message("sources", "at least one piece", "none"))
-    return found
+    return pieces
 
 
 def _paths(source: str | Path) -> list[Path]:
@@ -328,9 +328,9 @@ def _paths(source: str | Path) -> list[Path]:
     if not what:
         return [Path(text)]
     if any(sign in text for sign in "*?["):
-        found = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
-        if found:
-            return found
+        matches = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
+        if matches:
+            return matches
         raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
     remedy = f"name its files, as '{text}/*.vtu'" if what == "a folder" else ""
     got = f"{_check.describe(text)} ({what})"
@@ -341,20 +341,20 @@ def _of_file(path: Path, slab: float) -> list[Piece]:
     """Return the pieces of a file."""
     suffix = path.suffix.lower()
     if suffix in INDICES:
-        made = [piece for file in index_files(path) for piece in _of_file(file, slab)]
-        if not made:
+        pieces = [piece for file in index_files(path) for piece in _of_file(file, slab)]
+        if not pieces:
             got = f"'{path}' (it names none)"
             raise PieceError(_check.message("sources", "an index of files", got))
-        return made
+        return pieces
     is_grid = suffix in STRUCTURED
     if suffix in HDF:
         reader = _informed(path)
         reader.UpdatePiece(1 << 20, 1 << 21, 0)  # beyond all partitions: nothing is read
-        found = pv.wrap(reader.GetOutputDataObject(0))
-        is_grid = isinstance(found, pv.ImageData)
-        if isinstance(found, pv.PartitionedDataSet):
+        data = pv.wrap(reader.GetOutputDataObject(0))
+        is_grid = isinstance(data, pv.ImageData)
+        if isinstance(data, pv.PartitionedDataSet):
             # Each partition of a VTKHDF file is a piece.
-            count = found.n_partitions
+            count = data.n_partitions
             return [FilePiece(f"{path}[{i}]", path, i, count) for i in range(count)]
     return [*_boxes(path, *_size(path), slab)] if is_grid else [FilePiece(str(path), path)]
 
@@ -423,23 +423,23 @@ def index_files(path: Path) -> list[Path]:
     except (ET.ParseError, OSError) as error:
         got = f"'{path}' ({error})"
         raise PieceError(_check.message("sources", "an index in XML", got)) from error
-    found = []
+    paths = []
     for element in root.iter():
         # Indices of parallel files name their pieces by one attribute, multiblock files by another.
         name = element.get({"Piece": "Source", "DataSet": "file"}.get(element.tag, ""))
         if name:
-            found.append(path.parent / name)
-            if not found[-1].is_file():
-                text = f"'{path}' names '{found[-1]}' (no such file)"
+            paths.append(path.parent / name)
+            if not paths[-1].is_file():
+                text = f"'{path}' names '{paths[-1]}' (no such file)"
                 raise PieceError(_check.message("sources", "pieces that exist", text))
-    return found
+    return paths
 
 
 def _grid_reader(path: Path) -> Foreign:
     """Return a reader of a structured grid that knows the grid's extent.
 
-    A thread keeps the last one: to find what a file holds a reader may have to go through all of
-    it, which would take longer than to read a slab.
+    A thread keeps the last one: a reader may have to go through a whole file to find its arrays,
+    which would take longer than to read a slab.
     """
     status = path.stat()
     # A file that was written again is another one.
@@ -450,7 +450,7 @@ def _grid_reader(path: Path) -> Foreign:
 
 
 def _informed(path: Path) -> Foreign:
-    """Return a reader of a file in parts that has read what the file holds, but no data."""
+    """Return a reader of a file in parts that has read the description of the file, but no data."""
     reader: Foreign
     if path.suffix.lower() in HDF:
         from vtkmodules.vtkIOHDF import vtkHDFReader

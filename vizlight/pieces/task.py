@@ -1,4 +1,4 @@
-"""What is done with one piece: read it, light it, cut off the ghost cells, write it whole."""
+"""The task of one piece: read it, light it, cut off the ghost cells, write it whole."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ INSIDE = "vizlight_inside"
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """What is done with each piece, the same for all."""
+    """Options of the task, the same for all pieces."""
 
     contour: str | None
     level: float | None
@@ -71,15 +71,15 @@ class Job:
 
 
 @dataclass
-class Found:
-    """What is in a piece, as it is read or as it was lit.
+class PieceSummary:
+    """Summary of a piece, as it is read or as it was lit.
 
     Attributes
     ----------
     points, cells : int
         Numbers of both.
     bounds : tuple of 6 float
-        Bounding box, if there are points.
+        Bounding box; empty without points.
     arrays : dict of str to str
         Type and number of components of each array, by "point NAME" and "cell NAME", of the
         points, and of the mesh.
@@ -113,8 +113,8 @@ class Found:
     notes: list[str] = field(default_factory=list)
 
 
-def survey(piece: Piece, contour: str | None) -> Found:
-    """Return what is in a piece, with the range of one array.
+def survey(piece: Piece, contour: str | None) -> PieceSummary:
+    """Return the summary of a piece, with the range of one array.
 
     Raises
     ------
@@ -124,33 +124,33 @@ def survey(piece: Piece, contour: str | None) -> Found:
     return _described(_read(piece, 0), [contour])
 
 
-def _described(mesh: Foreign, ranged: list[str | None] | None = None) -> Found:
-    """Return what is in a mesh, with the ranges of some point arrays, or of all."""
-    found = Found(points=mesh.n_points, cells=mesh.n_cells)
+def _described(mesh: Foreign, ranged: list[str | None] | None = None) -> PieceSummary:
+    """Return the summary of a mesh, with the ranges of some point arrays, or of all."""
+    summary = PieceSummary(points=mesh.n_points, cells=mesh.n_cells)
     if not mesh.n_points:
-        return found
-    found.bounds, found.lines = tuple(map(float, mesh.bounds)), has_lines_only(mesh)
-    found.arrays["type "] = type(mesh).__name__
+        return summary
+    summary.bounds, summary.lines = tuple(map(float, mesh.bounds)), has_lines_only(mesh)
+    summary.arrays["type "] = type(mesh).__name__
     for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
         for name, array in data.items():
             if name != GHOST:
                 components = "" if array.ndim == 1 else f" x {array.shape[1]}"
                 own_type = "text" if array.dtype.kind == "U" else array.dtype
-                found.arrays[f"{kind} {name}"] = f"{own_type}{components}"
+                summary.arrays[f"{kind} {name}"] = f"{own_type}{components}"
     if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
-        found.arrays["points "] = f"{np.asarray(mesh.points).dtype} x 3"
+        summary.arrays["points "] = f"{np.asarray(mesh.points).dtype} x 3"
     for name in mesh.point_data if ranged is None else set(mesh.point_data) & set(ranged):
         array = mesh.point_data[name]
         if array.dtype.kind in "fiub":
             values = np.asarray(array, dtype=np.float64)
             values = values[np.isfinite(values)]
             if values.size:
-                found.ranges[name] = (float(values.min()), float(values.max()))
+                summary.ranges[name] = (float(values.min()), float(values.max()))
     if hasattr(mesh, "GetExtent"):
-        found.extent = tuple(map(int, mesh.GetExtent()))
+        summary.extent = tuple(map(int, mesh.GetExtent()))
     if isinstance(mesh, pv.ImageData):
-        found.grid = {"Origin": list(mesh.origin), "Spacing": list(mesh.spacing)}
-    return found
+        summary.grid = {"Origin": list(mesh.origin), "Spacing": list(mesh.spacing)}
+    return summary
 
 
 def outermost(piece: Piece, job: Job, *view: Foreign) -> Array:
@@ -170,17 +170,17 @@ def _read(piece: Piece, ghost: int) -> pv.DataSet:
 
 
 def _target(piece: Piece, job: Job, ghost: int) -> pv.DataSet:
-    """Return what of a piece is lit: its mesh, or an isosurface of that."""
+    """Return the lit part of a piece: its mesh, or an isosurface of that."""
     mesh = _read(piece, ghost)
     if job.contour is None or not mesh.n_points:
         return mesh
     return _tried(piece, lambda: _isosurface(mesh, job)) or pv.PolyData()
 
 
-def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
-    """Return what a function reads, None where a piece has no points."""
+def _tried(piece: Piece, reader: Callable[[], T]) -> T | None:
+    """Return the result of a reader, None where a piece has no points."""
     try:
-        return found()
+        return reader()
     except (OSError, ValueError, TypeError, KeyError) as error:
         if isinstance(error, files.FileError) and "(no points)" in str(error):
             return None  # parallel writers make such files
@@ -188,7 +188,7 @@ def _tried(piece: Piece, found: Callable[[], T]) -> T | None:
 
 
 def look(piece: Piece, job: Job) -> sides.Look | None:
-    """Return what a piece tells of the sides of the whole, None where its light has none."""
+    """Return the facts of a piece about the sides of the whole, None where its light has none."""
     mesh = _target(piece, job, job.ghost)
     options = LightOptions.of(job.options)
     if not mesh.n_points or not uses_normals(mesh, options):
@@ -203,8 +203,8 @@ def _others(mesh: pv.DataSet) -> Array:
     return means(mesh, np.asarray(mesh.cell_data[GHOST], dtype=np.float32))
 
 
-def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Found:
-    """Light a piece, of whose sides the whole may have told, and write it to a path.
+def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None) -> PieceSummary:
+    """Light a piece, with sides that the whole may have decided, and write it to a path.
 
     The path has no suffix.
 
@@ -218,20 +218,22 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
         ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
         with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
             warnings.simplefilter("always", UserWarning)
-            # A piece alone does not know what other pieces hide of the sky.
+            # A piece alone does not know which parts of the sky other pieces hide.
             share = job.options.get("occlusion")
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
                 raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
-            lit, sharp = _lit(mesh, piece, job, told)
+            lit, sharp = _lit(mesh, piece, job, whole_sides)
         del mesh
         inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
         done = _described(lit)
         done.sharp = sharp
-        said = [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
+        said = [
+            str(warning.message) for warning in caught if issubclass(warning.category, UserWarning)
+        ]
         # Points that could not be lit are counted without ghost cells, creases over all pieces.
-        known = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
-        done.notes = [text for text in said if not any(part in text for part in known)]
+        counted = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
+        done.notes = [text for text in said if not any(part in text for part in counted)]
         if lit.n_points:
             valid = np.asarray(lit.point_data[f"{job.name}_valid"], dtype=np.bool_)
             done.invalid = int(np.count_nonzero(~valid & ~inside))
@@ -247,19 +249,23 @@ def light(piece: Piece, job: Job, target: Path, told: Told | None = None) -> Fou
 
 
 def _lit(
-    mesh: pv.DataSet, piece: Piece, job: Job, told: Told | None
+    mesh: pv.DataSet, piece: Piece, job: Job, turns: Told | None
 ) -> tuple[Foreign, float | None]:
-    """Return the own part of a piece, lit, and its share of sharp edges where that is known."""
+    """Return the lit part that a piece owns, and its share of sharp edges where that is known."""
     if not mesh.n_points:
         return mesh, None
     lit: Foreign
     if job.filter == "illuminate":
-        if told is not None and isinstance(mesh, pv.UnstructuredGrid) and hull.dimension(mesh) == 3:
-            told = told._replace(side=sides.side_of(_others(mesh)))
-        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=told)
+        if (
+            turns is not None
+            and isinstance(mesh, pv.UnstructuredGrid)
+            and hull.dimension(mesh) == 3
+        ):
+            turns = turns._replace(side=sides.side_of(_others(mesh)))
+        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=turns)
     else:
         lit = streamlines(mesh, job.scene, **job.options)
-    record, made = records.read(lit, job.name), records.made(lit, job.name)
+    record, names = records.read(lit, job.name), records.made(lit, job.name)
     kept = records.read(lit, normals.KEPT)
     sharp = None if kept is None else records.share(kept, "sharp")
     for stale in records.made(lit, normals.KEPT):
@@ -271,17 +277,17 @@ def _lit(
         inside = np.ones(lit.n_points, dtype=np.bool_)
         inside[hull.outer_surface(lit)[1]] = False
         lit.point_data[INSIDE] = inside
-    own = piece.own(lit) if job.filter == "illuminate" else lit
+    part = piece.owned_part(lit) if job.filter == "illuminate" else lit
     valid = f"{job.name}_valid"
     # All pieces of an index have the same arrays, so that each has the mask.
-    if valid not in own.point_data:
-        own.point_data[valid] = np.ones(own.n_points, dtype=np.bool_)
-    if own.n_points:
-        own.set_active_scalars(job.name)
+    if valid not in part.point_data:
+        part.point_data[valid] = np.ones(part.n_points, dtype=np.bool_)
+    if part.n_points:
+        part.set_active_scalars(job.name)
         assert record is not None
         # The arrays are recorded without digests, which would not hold where pieces are joined.
-        records.write(own, job.name, record, dict.fromkeys((*made, valid)))
-    return own, sharp
+        records.write(part, job.name, record, dict.fromkeys((*names, valid)))
+    return part, sharp
 
 
 def _isosurface(mesh: pv.DataSet, job: Job) -> pv.PolyData:

@@ -1,4 +1,4 @@
-"""What works on the pieces: a ``map``, whose calls are tried again, and processes of one's own."""
+"""Workers on the pieces: a ``map`` that repeats failed calls, and processes of one's own."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ RETRIES = 2
 LOST = 3
 
 
-class Work:
-    """What calls functions, each with a piece first, and again after errors of the system.
+class RetryingMap:
+    """A map of functions over pieces that repeats calls after errors of the system.
 
     Parameters
     ----------
     map : callable or object
-        ``map``, or an object with such a method, whose results may be futures.
+        ``map``, or an object with such a method; its results may be futures.
     retries : int
         Number of times that a call is repeated after an error of the operating system.
     show : bool
@@ -60,7 +60,7 @@ class Work:
         self, function: Callable[..., T], calls: Sequence[tuple[Foreign, ...]], what: str
     ) -> list[T]:
         """Return the results of calls in their order; the error of a worker names its piece."""
-        found: list[T] = []
+        values: list[T] = []
         results: Iterator[Foreign] = iter(())
         start: Foreign = getattr(self.map, "map", self.map)
         # Dask takes calls of the same arguments for one.
@@ -75,13 +75,13 @@ class Work:
                             results = iter(start(call, calls, **more))
                         value = next(results)
                         # Dask returns futures, and the map of an executor results.
-                        found.append(value.result() if hasattr(value, "result") else value)
-                    report(len(found))
+                        values.append(value.result() if hasattr(value, "result") else value)
+                    report(len(values))
             finally:
                 if hasattr(self.map, "cancel"):
                     with contextlib.suppress(Exception):  # a cluster that is gone cancels nothing
                         self.map.cancel([*results], force=True)
-        return found
+        return values
 
 
 def repeated(function: Callable[..., T], retries: int, arguments: tuple[Foreign, ...]) -> T:
@@ -117,7 +117,7 @@ def _naming(name: str) -> Iterator[None]:
 
 
 class Processes:
-    """A ``map`` whose calls run in processes on this machine.
+    """A ``map`` that runs its calls in processes on this machine.
 
     Parameters
     ----------
@@ -164,9 +164,9 @@ class Processes:
                     spawn = multiprocessing.get_context("spawn")
                     self._pool = ProcessPoolExecutor(self.count, spawn, _begin, (os.getpid(),))
                 with _main_apart():
-                    found = self._pool.map(function, left)
-                for value in found:
-                    # What is done is not done again when a process ends.
+                    results = self._pool.map(function, left)
+                for value in results:
+                    # Finished calls are not repeated when a process ends.
                     left.pop(0)
                     lost = 0
                     yield value
@@ -201,7 +201,7 @@ def _main_apart() -> Iterator[None]:
     """Keep a script from being run again by each process that it starts.
 
     Processes are spawned, and each would import the script, which need not be guarded by
-    ``if __name__ == "__main__"``: what they call is in this package.
+    ``if __name__ == "__main__"``: the functions that they call are in this package.
     """
     main = sys.modules["__main__"]
     path = getattr(main, "__file__", None)

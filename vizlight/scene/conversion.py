@@ -46,7 +46,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
     """Return the ``pyvista.Property`` of a material; see :meth:`vizlight.Material.to_property`."""
     import pyvista as pv
 
-    given, view = _check_lights(lights, view), as_view(view)
+    lamps, view = _check_lights(lights, view), as_view(view)
     coefficients = {name: values[name] for name in ("ambient", "diffuse", "specular")}
     for name, value in coefficients.items():
         if value > 1:
@@ -54,11 +54,11 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
             raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
     power = values["shininess"]
     # VTK takes its model from the lights and has no switch for it, so that the power must change.
-    if _check_model(model) != vtk_model(given):
-        power = _converted(power, _angle(given, view), model)
+    if _check_model(model) != vtk_model(lamps):
+        power = _converted(power, _angle(lamps, view), model)
     shown = min(power, LARGEST_POWER)
-    _warn_of_error(values["specular"], values["shininess"], given, view, model, shown)
-    made = pv.Property(
+    _warn_of_error(values["specular"], values["shininess"], lamps, view, model, shown)
+    prop = pv.Property(
         **coefficients,
         specular_power=shown,
         # Here the name tells how normals are interpolated, not which model of reflection VTK takes.
@@ -66,10 +66,10 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
         lighting=True,
     )
     # VTK's own setters, because PyVista's round colours to 8 bits.
-    for set_color in (made.SetAmbientColor, made.SetDiffuseColor):
+    for set_color in (prop.SetAmbientColor, prop.SetDiffuseColor):
         set_color(*(values["color"] or WHITE))
-    made.SetSpecularColor(*(values["specular_color"] or WHITE))
-    return made
+    prop.SetSpecularColor(*(values["specular_color"] or WHITE))
+    return prop
 
 
 def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model: str) -> Keywords:
@@ -78,12 +78,12 @@ def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model
         raise TypeError(
             _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
         )
-    given, view = _check_lights(lights, view), as_view(view)
+    lamps, view = _check_lights(lights, view), as_view(view)
     shown = power = float(source.GetSpecularPower())
-    if _check_model(model) != vtk_model(given):
+    if _check_model(model) != vtk_model(lamps):
         # The other way round: VTK's is the model that the power comes from.
-        power = _converted(power, _angle(given, view), "phong" if model == "blinn" else "blinn")
-    _warn_of_error(source.GetSpecular(), power, given, view, model, shown)
+        power = _converted(power, _angle(lamps, view), "phong" if model == "blinn" else "blinn")
+    _warn_of_error(source.GetSpecular(), power, lamps, view, model, shown)
     if tuple(source.GetAmbientColor()) != tuple(source.GetDiffuseColor()):
         _check.warn(
             "the ambient colour of the property differs from its diffuse colour, which is used "
@@ -120,15 +120,15 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     if isinstance(lights, str) or not (several or isinstance(lights, Light) or _is_vtk(lights)):
         expected = "a vizlight.Light, a pyvista.Light or a sequence of them"
         raise TypeError(_check.message("lights", expected, _check.describe(lights)))
-    found: list[Light] = []
+    converted: list[Light] = []
     for light in lights if isinstance(lights, Iterable) else [lights]:
         if _is_vtk(light):
-            found += _fixed(light, view)
+            converted += _fixed(light, view)
         else:
             _check.instance("lights", light, Light, remedy="Light(direction=(1, 1, 1)) makes one")
             assert isinstance(light, Light)
-            found.append(light)
-    return tuple(found)
+            converted.append(light)
+    return tuple(converted)
 
 
 def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
@@ -149,13 +149,13 @@ def _is_vtk(light: object) -> TypeGuard[vtkLight]:
 
 def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     """Return the lights, or the default ones, after checking that they are in 3-space."""
-    given = all_lights(lights, view)
-    for light in given:
+    lamps = all_lights(lights, view)
+    for light in lamps:
         # A headlight has neither, and is in any space.
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
             raise ValueError(_check.message("lights", "vectors of 3 components, as in VTK", n))
-    return given
+    return lamps
 
 
 def _check_model(model: str) -> str:
@@ -255,7 +255,7 @@ def is_light_kit(lights: Iterable[vtkLight], /) -> bool:
 
 
 def _kind(light: vtkLight) -> tuple[float, ...]:
-    """Return what a light is, in numbers; a headlight is at the eye wherever it was put last."""
+    """Return the kind of a light in numbers; a headlight is at the eye wherever it was last put."""
     place = () if light.LightTypeIsHeadlight() else (*light.GetPosition(), *light.GetFocalPoint())
     numbers = (
         light.GetLightType(), light.GetSwitch(), light.GetPositional(), light.GetIntensity(),

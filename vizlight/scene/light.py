@@ -196,7 +196,7 @@ SHOULDER, KEY, FILL = (125.0, 45.0), 0.8, 0.3
 def of_eye(azimuth: float, altitude: float) -> Array:
     """Return a unit direction of the eye's frame: x right, y up, z toward the eye.
 
-    Its angles are in degrees, from right toward up and from there toward the eye.
+    Its angles are in degrees: azimuth from right toward up, altitude toward the eye.
     """
     a, h = math.radians(azimuth), math.radians(altitude)
     return np.array([math.cos(h) * math.cos(a), math.cos(h) * math.sin(a), math.sin(h)])
@@ -205,8 +205,8 @@ def of_eye(azimuth: float, altitude: float) -> Array:
 def default_lights(view: View | None) -> tuple[Light, ...]:
     """Return the lights of a scene that names none: a lamp over the shoulder and one at the eye.
 
-    No normal and no tangent has more than 1 of their diffuse light; see the study of legibility
-    for what can be read in it. A view without a direction has no shoulder: one lamp at the eye.
+    No normal and no tangent has more than 1 of their diffuse light; the study of legibility
+    measures its readers. A view without a direction has no shoulder: one lamp at the eye.
     """
     if view is not None and view.direction is None:
         return (Light.headlight(),)

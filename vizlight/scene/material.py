@@ -25,8 +25,8 @@ class Material:
     Parameters
     ----------
     ambient, diffuse, specular : float, default: 0.3, 0.7, 0.0
-        Coefficients ka, kd and ks, unitless, from 0 to 1e9. White highlights hide what is below
-        them, so that there is none by default; the study of legibility measures both.
+        Coefficients ka, kd and ks, unitless, from 0 to 1e9. White highlights hide colours below
+        them, so the default is none; the study of legibility measures both.
     shininess : float, default: 20.0
         Power of the specular term, from 0 to 1e9.
     color : (r, g, b) or str, optional

@@ -1,8 +1,8 @@
 """Scenes by which a reader reads one thing back: direction, slope, heading, shape or value.
 
 Their lamps turn with the eye, so that a colour means the same from all sides. Colours of lamps have
-one luma, and their mean is white: hue tells what lightness does not. :func:`vizlight.presets.key`
-draws what hue and lightness mean.
+one luma, and their mean is white: hue and lightness tell different things.
+:func:`vizlight.presets.key` draws their meaning.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def direction(view: Eye = None, /) -> Scene:
     ``exponent=2`` hue is twice the angle on the screen exactly, however the tangent lies, but
     readers without green cones tell fewer angles apart; with the usual exponent a tangent that
     leaves the screen by 45 degrees or more shifts the answer by the disc by 5 degrees in the
-    median, 11 at most. For lines, and for tangents on a surface without ``conditioned``, whose
+    median, 11 at most. For lines, and for tangents on a surface without ``conditioned``:
     self-shadow spoils it.
 
     Parameters
@@ -59,7 +59,7 @@ def direction(view: Eye = None, /) -> Scene:
     Returns
     -------
     Scene
-        Scene in whose light no tangent is brighter than white, in any channel of ``rgb``, for any
+        Scene in which no tangent is brighter than white, in any channel of ``rgb``, for any
         exponent of at least 1.
 
     Raises
@@ -138,7 +138,7 @@ def shape(view: Eye = None, /) -> Scene:
     Returns
     -------
     Scene
-        Scene in whose light no normal is brighter than white, in any channel of ``rgb``.
+        Scene in which no normal is brighter than white, in any channel of ``rgb``.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def value(view: Eye = None, /) -> Scene:
     Returns
     -------
     Scene
-        Scene in whose light neither normals nor tangents are brighter than white.
+        Scene in which neither normals nor tangents are brighter than white.
 
     Raises
     ------
@@ -262,7 +262,7 @@ def brightest_tangent(lamps: Sequence[Lamp]) -> float:
 
 
 def hues(count: int, saturation: float) -> Array:
-    """Return colours of luma 1 whose mean is white, as (count, 3), channels from 0.
+    """Return colours of luma 1 with white as their mean, as (count, 3), channels from 0.
 
     Hue is an angle in the plane of no luma; with a saturation of 1 a channel of some hue is 0.
     """
@@ -295,7 +295,7 @@ def _of_lines(lamps: Sequence[Lamp], view: Eye) -> Scene:
 
 
 def _scene(lamps: Sequence[Lamp], brightest: float, view: Eye) -> Scene:
-    """Return the scene of lamps, whose brightest light becomes white."""
+    """Return the scene of lamps; their brightest light becomes white."""
     lights = []
     for toward, channels in lamps:
         # The largest channel is in the intensity, since a colour ends at 1.
@@ -313,12 +313,12 @@ def _scene(lamps: Sequence[Lamp], brightest: float, view: Eye) -> Scene:
     return Scene(lights=lights, material=material, view=_view(view))
 
 
-def _view(given: Eye) -> View | None:
+def _view(eye: Eye) -> View | None:
     """Return a view or None as it is, or the view of a camera or of a plotter's camera."""
     # A plotter has a camera; a view or a camera has none.
-    of_plotter: vtkCamera | None = getattr(given, "camera", None)
+    of_plotter: vtkCamera | None = getattr(eye, "camera", None)
     try:
-        return as_view(cast("vtkCamera", given) if of_plotter is None else of_plotter)
+        return as_view(cast("vtkCamera", eye) if of_plotter is None else of_plotter)
     except TypeError:
         expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
-        raise TypeError(_check.message("view", expected, _check.describe(given))) from None
+        raise TypeError(_check.message("view", expected, _check.describe(eye))) from None

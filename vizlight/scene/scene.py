@@ -52,7 +52,7 @@ class Scene:
         Material of the lit manifold. Default: ``Material()``.
     view : View or pyvista.Camera, optional
         View of the scene, required for a depth cue. Without a view the highlight is left out, and
-        what else depends on the eye, such as lights that follow the view, is as from
+        anything else that depends on the eye, such as lights that follow the view, is as from
         :meth:`View.isometric`.
     ambient_intensity : float, default: 1.0
         Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9.
@@ -61,11 +61,11 @@ class Scene:
     depth_cue : DepthCue, optional
         Fading of the light with depth. Default: none.
     exposure : float, optional
-        Factor of the light that is shown, above 0 and up to 1e9. With it the array ``rgb`` is
-        there, and holds the exposed light: the factor times the light up to 0.8, above that with a
-        soft knee that stays below 1, with the same chromaticity. ``luminance`` and the terms stay
-        as they are. :func:`vizlight.shading.display.exposure_of` returns a factor. Default: none,
-        the light is shown as it is.
+        Factor of the light that is shown, above 0 and up to 1e9. With it the result has the array
+        ``rgb`` of the exposed light: the factor times the light up to 0.8, above that with a soft
+        knee that stays below 1, with the same chromaticity. ``luminance`` and the terms stay as
+        they are. :func:`vizlight.shading.display.exposure_of` returns a factor. Default: none, the
+        light is shown as it is.
 
     Raises
     ------
@@ -220,12 +220,12 @@ class Scene:
         Parameters
         ----------
         plotter : pyvista.Plotter
-            Plotter, whose active renderer is read. If its camera is not set yet, it is set as
+            Plotter; its active renderer is read. If its camera is not set yet, it is set as
             ``show`` would set it.
         actor : pyvista.Actor, optional
-            Actor of the plotter, whose material the scene takes, and whose light then matches VTK's
-            within 3 of 255 under perspective. VTK computes the highlight of a lone headlight
-            as if the eye were at infinity: the view of the scene is then parallel. An actor that is
+            Actor of the plotter that gives the scene its material; its light then matches VTK's
+            within 3 of 255 under perspective. VTK computes the highlight of a lone headlight as if
+            the eye were at infinity: the view of the scene is then parallel. An actor that is
             coloured by data gives no colour of the material: its picture is the data colours times
             the light without highlight, plus the highlight.
         model : {"phong", "blinn"}, default: "phong"
@@ -292,14 +292,14 @@ def _of_actor(
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if mapper is None or not hasattr(actor, "GetProperty"):
         raise TypeError(_check.message("actor", "a pyvista.Actor", _check.describe(actor)))
-    own = drawn = actor.GetProperty()
+    actor_property = drawn = actor.GetProperty()
     if mapper.GetScalarVisibility():
-        drawn = type(own)()
-        drawn.DeepCopy(own)
+        drawn = type(actor_property)()
+        drawn.DeepCopy(actor_property)
         # Where data colour an actor its own colour is not drawn; SetColor sets all of its colours,
         # so the highlight's is put back.
         drawn.SetColor(1.0, 1.0, 1.0)
-        drawn.SetSpecularColor(*own.GetSpecularColor())
+        drawn.SetSpecularColor(*actor_property.GetSpecularColor())
     return Material.from_property(drawn, lights=lights, view=view, model=model)
 
 
@@ -309,11 +309,11 @@ def _fields(
     kind: type[Scene] | type[Light] | type[Material] | type[View] | type[DepthCue],
 ) -> Keywords:
     """Return the keyword arguments of a class, which validates their values, from a dict."""
-    known = [field.name for field in dataclasses.fields(kind)]
-    expected = f"a dict of {', '.join(known)}"
+    names = [field.name for field in dataclasses.fields(kind)]
+    expected = f"a dict of {', '.join(names)}"
     if not isinstance(values, Mapping):
         raise TypeError(_check.message(name, expected, _check.describe(values)))
     for key in values:
-        if key not in known:
+        if key not in names:
             raise ValueError(_check.message(name, expected, repr(key)))
     return dict(values)

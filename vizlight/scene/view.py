@@ -36,8 +36,8 @@ class View:
         view unless ``parallel=True``.
     direction : vector of n components, optional
         Direction toward the eye, of any length except 0. Without a position the view is parallel
-        and depth is measured from the origin; with a position, depth is measured from there
-        along this axis.
+        and depth is measured from the origin; with a position, depth is measured from it along this
+        axis.
     parallel : bool, optional
         Whether the view is parallel. Default: True if no position is given, otherwise False.
     up : vector of n components, optional
@@ -141,7 +141,7 @@ class View:
         # Seen along z, z cannot be up: y takes its place.
         up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else unit(self.up)
         if n == 3:
-            # The two cross products take from up what of it lies along the view.
+            # The two cross products remove the part of up that lies along the view.
             right = unit(np.cross(up, toward))
             return np.stack([right, np.cross(toward, right), toward])
         up = unit(_across(up, toward[np.newaxis]))
@@ -159,7 +159,7 @@ class View:
         Parameters
         ----------
         camera : pyvista.Camera or vtkCamera
-            Camera, whose current position, direction and up are read.
+            Camera; its current position, direction and up are read.
 
         Returns
         -------
@@ -260,7 +260,7 @@ def as_view(view: View | vtkCamera | None) -> View | None:
 
 
 def _no_camera(name: str, expected: str, value: object) -> str:
-    """Return the message for what is no camera; a plotter has one."""
+    """Return the message for a value that is no camera; a plotter has one."""
     remedy = "pass its .camera" if is_camera(getattr(value, "camera", None)) else ""
     return _check.message(name, expected, _check.describe(value), remedy)
 
@@ -280,7 +280,7 @@ def unit(vector: VectorLike) -> Array:
 
 
 def _across(vector: Array, rows: Array) -> Array:
-    """Return what of a vector stands across orthonormal rows."""
+    """Return the part of a vector across orthonormal rows."""
     # Twice, since cancellation lays bare a rest along the rows.
     for _ in range(2):
         vector = vector - rows.T @ (rows @ vector)

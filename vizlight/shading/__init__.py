@@ -1,1 +1,1 @@
-"""From a scene to numbers: what is needed, what may be cheaper, and the engine that runs it."""
+"""From a scene to numbers: the plan of the terms, their cheaper forms, and the engine."""

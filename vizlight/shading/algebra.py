@@ -1,4 +1,4 @@
-"""What the terms ask of an algebra, and what all algebras share."""
+"""The operations that the terms need of an algebra, and those that all algebras share."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Lamp:
 
 
 class Operations(Vectors, Protocol):
-    """What the terms ask of an algebra, beside what all algebras share."""
+    """The operations of an algebra that the terms need, beside those that all algebras share."""
 
     def has(self, name: str) -> bool:
-        """Return whether an input is there."""
+        """Return whether an input is given."""
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
         """Return an input at the point: a vector, or a number, perhaps of one lamp."""
@@ -57,10 +57,10 @@ class Operations(Vectors, Protocol):
         """Return a unit vector and the length that the vector had."""
 
     def need(self, test: Value) -> None:
-        """Take points where a test does not hold for points without light."""
+        """Mark points that fail the test as unlit."""
 
     def known(self, x: Value) -> None:
-        """Take points where a number is NaN for points without light."""
+        """Mark points where a number is NaN as unlit."""
 
     def present(self, x: Value, distance: Value | None) -> Value:
         """Return x, and 0 where the distance of its cause is 0."""
@@ -72,7 +72,7 @@ class Operations(Vectors, Protocol):
         """Return the sum of a total over the lamps, None before the first, and a value."""
 
     def put(self, name: str, value: Value) -> None:
-        """Take a value for a result."""
+        """Store a value as a result."""
 
     def largest(self, rgb: Value) -> Value:
         """Return the largest channel of a colour."""
@@ -182,18 +182,17 @@ class Algebra(Operations):
     def frame(self, name: str, k: int) -> list[Value]:
         """Return orthonormal rows that span k vectors: Gram-Schmidt, each projected twice."""
         rows: list[Value] = []
-        for given in self.vectors(name, k):
-            v, size = self.unit(given)
+        for vector in self.vectors(name, k):
+            v, size = self.unit(vector)
             self.need(size > 0.0)
-            # Twice is enough (Kahan): after the first projection what is left may still lean
-            # toward the rows by the rounding that cancellation has laid bare.
+            # Twice is enough (Kahan): after the first projection the rest may still lean toward the
+            # rows by the rounding that cancellation has laid bare.
             for again in range(2 if rows else 0):
                 for row in rows:
                     v = v - self.dot(row, v) * row
                 v, size = self.unit(v)
                 if not again:
-                    # What is left of a dependent vector is rounding, whose direction means
-                    # nothing.
+                    # The rest of a dependent vector is rounding; its direction means nothing.
                     self.need(size > self.apart(v))
             rows.append(v)
         return [self.work(v) for v in rows]
@@ -203,8 +202,8 @@ class Algebra(Operations):
         scene, material = self.plan.scene, self.plan.scene.material
         # A highlight does not take the diffuse colour: without a specular colour it has the lamp's
         # alone.
-        own = material.specular_color if term == "specular" else material.color
-        rgb = np.multiply(own or WHITE, coefficient)
+        tint = material.specular_color if term == "specular" else material.color
+        rgb = np.multiply(tint or WHITE, coefficient)
         if term == "ambient":
             rgb = rgb * (scene.ambient_color or WHITE)
         return self.vector(rgb.tolist())

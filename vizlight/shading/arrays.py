@@ -43,7 +43,7 @@ class Shading:
     rgb : ndarray, shape (N, 3), or None
         Colour where the scene has one, or an exposure; without an exposure not clipped at 1.
     plan : Plan
-        What was computed.
+        Plan that was run.
     seconds : float
         Wall time of the run.
     """
@@ -81,14 +81,14 @@ class Shading:
         )
 
     def arrays(self) -> dict[str, Raw]:
-        """Return the arrays that there are."""
+        """Return the arrays that are not None."""
         return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
 
     def part(self, _: int, rows: Slice, /) -> Shading:
         """Return the light of some points, with a share of the time."""
         share = (rows.stop - rows.start) / max(self.luminance.size, 1)
-        own: Keywords = {name: array[rows] for name, array in self.arrays().items()}
-        return dataclasses.replace(self, **own, seconds=self.seconds * share)
+        parts: Keywords = {name: array[rows] for name, array in self.arrays().items()}
+        return dataclasses.replace(self, **parts, seconds=self.seconds * share)
 
 
 def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading) -> None:
@@ -101,12 +101,12 @@ def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading)
     # One truth that broadcasts where the whole block has light.
     valid = np.True_ if w.valid is None else w.valid
     at = slice(rows.start * m, rows.stop * m)
-    for name, value in (*w.made.items(), ("valid", valid)):
-        own = getattr(output, name)[at]
+    for name, value in (*w.results.items(), ("valid", valid)):
+        target = getattr(output, name)[at]
         # Points of one row stand one after the other.
         # Arrays of the algebra have the component first, those of a mesh the point: one transposed
         # write.
-        view = own if m == 1 else own.reshape(-1, m, *own.shape[1:])
+        view = target if m == 1 else target.reshape(-1, m, *target.shape[1:])
         view.T[...] = value
 
 
@@ -121,7 +121,7 @@ class Arrays(Algebra):
         super().__init__(plan)
         self.inputs, self.rows, self.type = inputs, rows, plan.dtype.type
         self.valid: Bools | None = None
-        self.made: dict[str, Value] = {}
+        self.results: dict[str, Value] = {}
         self._shares: dict[str, Array] = {}
 
     # Inputs and numbers.
@@ -148,7 +148,7 @@ class Arrays(Algebra):
         return self._columns("points")
 
     def has(self, name: str) -> bool:
-        """Return whether an input is there."""
+        """Return whether an input is given."""
         return getattr(self.inputs, name) is not None
 
     def read(self, name: str, lamp: Lamp | None = None) -> Value:
@@ -185,7 +185,7 @@ class Arrays(Algebra):
     def difference(self, position: Vector, *, wide: bool = False) -> Value:
         """Return a position less the points.
 
-        float32 points in float32 work: the position is split into two float32 numbers, whose
+        float32 points in float32 work: the position is split into two float32 numbers, so that
         differences lose nothing to the distance from the origin.
         """
         points, at = self._points, self.vector(position, wide=True)
@@ -227,13 +227,13 @@ class Arrays(Algebra):
     # Points without light.
 
     def need(self, test: Value) -> None:
-        """Take points where a test does not hold for points without light."""
+        """Mark points that fail the test as unlit."""
         # Most blocks have no such point; none then carries a mask through the terms.
         if not test.all():
             self.valid = test if self.valid is None else self.valid & test
 
     def known(self, x: Value) -> None:
-        """Take points where a number is NaN for points without light."""
+        """Mark points where a number is NaN as unlit."""
         self.need(~np.isnan(x))
 
     def present(self, x: Value, distance: Value | None) -> Value:
@@ -258,8 +258,8 @@ class Arrays(Algebra):
         return rgb.max(axis=0)
 
     def put(self, name: str, value: Value) -> None:
-        """Take a value for a result."""
-        self.made[name] = value
+        """Store a value as a result."""
+        self.results[name] = value
 
 
 def columns(rows: ArraySource, block: Slice, work: DTypeLike = np.float32) -> Array:

@@ -1,8 +1,8 @@
 """Light as a screen shows it: on colours of data, and on anything else.
 
 Colours of data keep their chromaticity, so that they can be read by their bar: light multiplies
-them by one number from 0.3 to 1, and there is no highlight. Every way to show data colours derives
-from :func:`for_colors` and :func:`on_colors`, or is the same formula as GLSL.
+them by one number from 0.3 to 1, without a highlight. Every way to show data colours derives from
+:func:`for_colors` and :func:`on_colors`, or is the same formula as GLSL.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 #: Least ambient coefficient, and least light, of colours of data.
 LEAST = 0.3
-#: Colour of what is not data, in bytes, and as channels from 0 to 1.
+#: Colour of missing data, in bytes, and as channels from 0 to 1.
 NO_DATA_BYTE = 128
 NO_DATA = (NO_DATA_BYTE / 255,) * 3
 #: Name of that colour beside a scalar bar.
@@ -56,10 +56,10 @@ def numerals(numbers: Sequence[float]) -> list[str]:
 
 
 def for_colors(scene: Scene) -> Scene:
-    """Return the scene whose luminance is the light on colours of data.
+    """Return the scene with the light on colours of data as its luminance.
 
     Lights, ambient light and depth cue of a colour count by their luma; the material has no
-    highlight, and its ambient coefficient is 0.3 at least. There is no exposure, which
+    highlight, and its ambient coefficient is 0.3 at least. The scene has no exposure, which
     :func:`exposed` applies to the luminance.
 
     Parameters
@@ -119,7 +119,7 @@ def exposure_of(light: ArrayLike, /) -> float:
     Parameters
     ----------
     light : array_like, shape (N,) or (N, 3)
-        Luminance, or colours, whose luma counts. What is not finite is left out.
+        Luminance, or colours, which count by their luma. Values that are not finite are left out.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def on_colors(colors: Bytes, light: Array, valid: Bools | None = None) -> Bytes:
     light : ndarray, shape (N,)
         Luminance by the scene of :func:`for_colors`.
     valid : ndarray of bool, shape (N,), optional
-        False for points without light, which have the colour of what is not data.
+        False for points without light, which have the colour of missing data.
 
     Returns
     -------
@@ -183,7 +183,7 @@ def on_colors(colors: Bytes, light: Array, valid: Bools | None = None) -> Bytes:
 
 
 def displayable(rgb: ArrayLike, /) -> Array:
-    """Return colours whose light may exceed white, with the same chromaticity in a screen's range.
+    """Return colours brighter than white in a screen's range, with the same chromaticity.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def displayable(rgb: ArrayLike, /) -> Array:
 
     Notes
     -----
-    Live light, pages, glTF files and pictures show what has no colours of data by this rule;
+    Live light, pages, glTF files and pictures show meshes without colours of data by this rule;
     colours of data are never brighter than themselves, see :func:`vizlight.tint`.
 
     Examples

@@ -91,7 +91,7 @@ def plan(
     components: bool = False,
     precision: Precision | None = None,
 ) -> Plan:
-    """Return what the light of a scene needs.
+    """Return the plan of the light of a scene.
 
     Parameters
     ----------
@@ -138,8 +138,8 @@ def plan(
         n, k, normals, base_tangents or 0, shadowed, fur,
         two_sided=_check.boolean("two_sided", two_sided),
     )  # fmt: skip
-    made = decide(scene, layout, ShadingOptions.of(locals()), dtype)
-    return dataclasses.replace(made, code=loops.why_not(made) or loops.WHERE_IT_PAYS)
+    decided = decide(scene, layout, ShadingOptions.of(locals()), dtype)
+    return dataclasses.replace(decided, code=loops.why_not(decided) or loops.WHERE_IT_PAYS)
 
 
 @named
@@ -201,9 +201,10 @@ def shade(
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal, such as the points of a fibre:
-        N = M repeat. Tangents have N rows or M. What depends on the row alone is computed once.
+        N = M repeat. Tangents have N rows or M. Values that depend on the row alone are computed
+        once.
     block : int, optional
-        Number of rows in a block. Default: what suits the caches, see :attr:`Plan.block`.
+        Number of rows in a block. Default: a number that suits the caches, see :attr:`Plan.block`.
     progress : callable, optional
         Function that is called from the caller's thread as ``progress(points done, N)`` after
         each block.
@@ -276,7 +277,7 @@ def run(
     scene : Scene
         Scene in the space of the points, before ``inputs.origin`` was subtracted.
     options : ShadingOptions
-        How light is computed.
+        Options of the light.
     block, progress
         As for :func:`shade`.
 
@@ -303,20 +304,20 @@ def run(
         precision: Precision = "float32" if inputs.narrow else "float64"
         options = dataclasses.replace(options, precision=precision)
     # Only the structure of the inputs decides, not their values, so that all blocks share one plan.
-    made = decide(scene, inputs.layout, options)
+    decided = decide(scene, inputs.layout, options)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
     # Compiled code where numba is there and the points are many enough to pay for its start-up.
-    code, reason = loops.prepare(made, inputs)
-    made = dataclasses.replace(made, compiled=code is not None, code=reason or loops.IN_WORDS)
-    shading = Shading.of(made, count)
+    code, reason = loops.prepare(decided, inputs)
+    decided = dataclasses.replace(decided, compiled=code is not None, code=reason or loops.IN_WORDS)
+    shading = Shading.of(decided, count)
     light = shade_block if code is None else code.shade_block
-    step = _step(made, inputs) if block is None else _check.integer("block", block, low=1)
+    step = _step(decided, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: Slice) -> int:
         # Overflow and NaN of single points are wanted: the terms mark them instead of warning.
         with np.errstate(all="ignore"):
-            light(made, rows, inputs, shading)
+            light(decided, rows, inputs, shading)
         return int(rows.stop) * repeat
 
     for done in _pool.run(work, _pool.blocks(inputs.rows, step)):
@@ -324,8 +325,8 @@ def run(
             progress(done, count)
     # The compiler may have failed at the first block, which NumPy then has lit.
     if code is not None and (reason := _compiled.why_not()):
-        made = dataclasses.replace(made, compiled=False, code=reason)
-    shading = dataclasses.replace(shading, plan=made, seconds=time.perf_counter() - start)
+        decided = dataclasses.replace(decided, compiled=False, code=reason)
+    shading = dataclasses.replace(shading, plan=decided, seconds=time.perf_counter() - start)
     if (observer := _OBSERVER.get()) is not None:
         # An open report looks at each run, whichever filter began it.
         observer(inputs, scene, shading, options)
@@ -355,7 +356,7 @@ def depth_range(
     Returns
     -------
     near, far : float
-        Depths in the unit of the points; (inf, -inf) if there is no point.
+        Depths in the unit of the points; (inf, -inf) without points.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class ArraySource(Protocol):
 
 
 class Layout(NamedTuple):
-    """What a plan needs to know of the inputs.
+    """Facts about the inputs that a plan needs.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Layout(NamedTuple):
     k : int or None
         Number of tangents per point; None for a surface that is given by its normals.
     normals : bool
-        Whether there are normals.
+        Whether normals are given.
     base : int
         Number of base tangents per point, 0 for none.
     shadowed : bool
@@ -120,9 +120,9 @@ class ShadingInputs:
     occlusion : ArraySource, shape (N,), optional
         Share of the ambient light that reaches the points.
     dimensions : ArraySource, shape (N,), optional
-        What each point is lit as, where a mesh in 3-space has cells of several kinds: 2 by its
-        normal, 1 as a line by its tangent, 0 as a point that faces the eye. What a point is not lit
-        by has any length but 0.
+        Dimension as which each point is lit, where a mesh in 3-space has cells of several kinds: 2
+        by its normal, 1 as a line by its tangent, 0 as a point that faces the eye. The vector that
+        is not used has any length but 0.
     two_sided : bool, default: False
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
     line_field : bool, default: False
@@ -130,10 +130,10 @@ class ShadingInputs:
     repeat : int, default: 1
         Number of points, one after the other, that share a normal.
     origin : vector of n components, optional
-        What was subtracted from the points, where differences would lose digits.
+        Vector that was subtracted from the points, where differences would lose digits.
     cells : callable, optional
-        Function that returns the segments or triangles between whose points the light is
-        interpolated, shape (C, 2) or (C, 3).
+        Function that returns the segments or triangles over which the light is interpolated, shape
+        (C, 2) or (C, 3).
     sides : callable, optional
         Function that returns the normals as they are interpolated between the points.
     """
@@ -167,7 +167,7 @@ class ShadingInputs:
 
     @property
     def layout(self) -> Layout:
-        """What a plan needs to know."""
+        """Layout of the inputs, which a plan needs."""
         n, mixed = int(self.points.shape[1]), self.dimensions is not None
         # A mesh of several kinds of cells has the plan of a surface; the tangent of its lines comes
         # beside it.
@@ -188,8 +188,8 @@ class ShadingInputs:
     def narrow(self) -> bool:
         """Whether the vectors have no more digits than float32."""
         # Points do not count: their differences to lights and eye lose no digits in either type.
-        given = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
-        return bool(given) and all(kind in (np.float16, np.float32) for kind in given)
+        dtypes = [rows.dtype for rows in (self.tangents, self.normals) if rows is not None]
+        return bool(dtypes) and all(kind in (np.float16, np.float32) for kind in dtypes)
 
     def of_faces(self) -> ShadingInputs:
         """Return inputs that light all points by their normals, where some are not on faces."""
@@ -214,27 +214,27 @@ class ShadingInputs:
         if rest:
             raise ValueError(_check.message("repeat", f"a divisor of {count} points", self.repeat))
         # Tangents may be shared by the points of a row, or each point has its own.
-        for name, given, counts in (
+        for name, array, counts in (
             ("tangents", self.tangents, {count, rows}),
             ("base_tangents", self.base_tangents, {rows}),
         ):
-            if given is not None:
-                _check_tangents(name, tuple(given.shape), counts, n)
+            if array is not None:
+                _check_tangents(name, tuple(array.shape), counts, n)
         _check.boolean("two_sided", self.two_sided)
         _check.number("fur", self.fur, low=0.0, high=1.0)
         if (self.fur_height is None) == bool(self.fur):
             raise ValueError(
                 _check.message("fur_height", "fur_height and fur= together", "one of them")
             )
-        for name, given, expected in (
+        for name, array, expected in (
             ("normals", self.normals, (rows, n)),
             ("fur_height", self.fur_height, (count,)),
             ("transmittance", self.transmittance, (count, lights)),
             ("occlusion", self.occlusion, (count,)),
             ("dimensions", self.dimensions, (count,)),
         ):
-            if given is not None and tuple(given.shape) != expected:
-                got = f"shape {tuple(given.shape)}"
+            if array is not None and tuple(array.shape) != expected:
+                got = f"shape {tuple(array.shape)}"
                 raise ValueError(_check.message(name, f"shape {expected}", got))
         if self.shadow is not None:
             got = f"shape {tuple(self.shadow.shape)}" if self.normals is not None else "no normals"
@@ -255,7 +255,7 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     """
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]
-        # To check the values of what is made on demand would be to make all of it at once.
+        # To check the values of an array that is made on demand would make all of it at once.
         return source
     return _check.reals(name, value)
 

@@ -4,7 +4,7 @@ The algebra :class:`Loop` writes the text, which depends on the structure of a p
 numbers are two lists, ``g`` in the type of the work and ``h`` in float64. Arrays are flat,
 constants have the type of the work, sums keep their order. Points out of the common range are
 marked, and lit by NumPy's :func:`~vizlight.shading.arrays.shade_block`: a vector that is not finite
-or whose square has no digits, nearly dependent tangents, a lamp or the eye at the point.
+or with a square that has no digits, nearly dependent tangents, a lamp or the eye at the point.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ MOST_FADING = 1e9
 #: Seconds that compiled code saves per point: of the whole, and for each light.
 SAVED, SAVED_PER_LIGHT = 10e-9, 15e-9
 
-#: What a plan says of its code once compiled code has run, and before.
+#: Words of a plan about its code once compiled code has run, and before.
 IN_WORDS = "compiled for these terms and types (numba), unusual points by NumPy"
 WHERE_IT_PAYS = "where the number of points pays for its start-up (see vizlight doctor)"
 
-#: Seconds that compiled code would have saved so far, by what most texts depend on.
+#: Seconds that compiled code would have saved so far, by the key of most texts.
 _MISSED: dict[tuple[object, ...], float] = {}
 #: Up to this many lamps of a kind are written out; more are a loop.
 UNROLLED = 4
@@ -80,8 +80,8 @@ def why_not(plan: Plan) -> str:
     return ""
 
 
-class Program(NamedTuple):
-    """The text of a loop, and the numbers that it is given.
+class LoopProgram(NamedTuple):
+    """The text of a loop, and the tables of its numbers.
 
     Attributes
     ----------
@@ -91,13 +91,13 @@ class Program(NamedTuple):
         points in a vector.
     kinds : dict
         Types in which the loop reads its inputs, by name.
-    given : tuple of ndarray
+    tables : tuple of ndarray
         Numbers, wide numbers, columns of lamps, table of a cylinder's integral.
     """
 
     source: str
     kinds: dict[str, str]
-    given: tuple[Array, Array, NDArray[np.int64], Array]
+    tables: tuple[Array, Array, NDArray[np.int64], Array]
 
     @property
     def kernel(self) -> _compiled.Kernel[..., None]:
@@ -134,34 +134,34 @@ class Program(NamedTuple):
         if np.isnan(light.sum()):
             _light_again(plan, at, np.flatnonzero(np.isnan(light)), part, output)
 
-    def _run(self, read: list[Array], made: list[Array], count: int) -> None:
+    def _run(self, read: list[Array], outputs: list[Array], count: int) -> None:
         """Run the kernel on rows in multiples of LANES, so that all go through the same code.
 
         The compiler's code for the rest of a vector rounds otherwise, and the light of a point
         would depend on how points are cut into blocks.
         """
-        numbers, whole = self.given, count - count % LANES
+        numbers, whole = self.tables, count - count % LANES
         if whole:
             self.kernel(
                 *(a[: a.size // count * whole] for a in read),
                 *numbers,
-                *(a[: a.size // count * whole] for a in made),
+                *(a[: a.size // count * whole] for a in outputs),
             )
         if whole == count:
             return
-        # The rest is filled up with points of ones to one full multiple, and what they give is
+        # The rest is filled up with points of ones to one full multiple, and their light is
         # dropped.
-        widths = [a.size // count for a in (*read, *made)]
-        rest = [np.ones(w * LANES, a.dtype) for w, a in zip(widths, (*read, *made), strict=True)]
-        for own, a, w in zip(rest, read, widths, strict=False):
-            own[: a.size - w * whole] = a[w * whole :]
+        widths = [a.size // count for a in (*read, *outputs)]
+        rest = [np.ones(w * LANES, a.dtype) for w, a in zip(widths, (*read, *outputs), strict=True)]
+        for buffer, a, w in zip(rest, read, widths, strict=False):
+            buffer[: a.size - w * whole] = a[w * whole :]
         self.kernel(*rest[: len(read)], *numbers, *rest[len(read) :])
-        for own, a, w in zip(rest[len(read) :], made, widths[len(read) :], strict=True):
-            a[w * whole :] = own[: a.size - w * whole]
+        for buffer, a, w in zip(rest[len(read) :], outputs, widths[len(read) :], strict=True):
+            a[w * whole :] = buffer[: a.size - w * whole]
 
 
 @lru_cache(maxsize=64)
-def program(plan: Plan, kinds: tuple[tuple[str, str], ...]) -> Program:
+def program(plan: Plan, kinds: tuple[tuple[str, str], ...]) -> LoopProgram:
     """Return the program of a plan.
 
     Parameters
@@ -172,15 +172,15 @@ def program(plan: Plan, kinds: tuple[tuple[str, str], ...]) -> Program:
 
     Returns
     -------
-    Program
+    LoopProgram
     """
     w = Loop(plan, dict(kinds))
     light(w, plan)
     return w.program()
 
 
-def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
-    """Return the compiled form of a plan for some inputs, and why there is none.
+def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[LoopProgram | None, str]:
+    """Return the compiled form of a plan for some inputs, and the reason if none is used.
 
     Parameters
     ----------
@@ -189,10 +189,10 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
 
     Returns
     -------
-    program : Program or None
+    program : LoopProgram or None
         None where NumPy lights the points.
     reason : str
-        Why, in words; empty where there is a compiled form.
+        Reason in words; empty with a compiled form.
     """
     reason = _compiled.why_not() or why_not(plan) or _beyond(plan)
     if reason:
@@ -208,9 +208,9 @@ def prepare(plan: Plan, inputs: ShadingInputs) -> tuple[Program | None, str]:
     _MISSED[sort] = missed + saved
     if _compiled.could_pay(saved, missed):
         # Equal plans have equal texts, so that one compilation serves all meshes of a kind.
-        made = program_of(plan, inputs)
-        if made.kernel.pays(missed + saved - made.kernel.missed, counted=True):
-            return made, ""
+        candidate = program_of(plan, inputs)
+        if candidate.kernel.pays(missed + saved - candidate.kernel.missed, counted=True):
+            return candidate, ""
     return None, _compiled.why_not() or f"{inputs.count} points do not pay for its start-up"
 
 
@@ -248,7 +248,7 @@ def _kernel(source: str) -> _compiled.Kernel[..., None]:
 
 
 def _sort(plan: Plan) -> tuple[object, ...]:
-    """Return what tells most texts apart, for the account of what each would have saved."""
+    """Return a key that tells most texts apart, to account for the time each would have saved."""
     models = frozenset(h.model for h in plan.highlights)
     near = sum(light.position is not None for light in plan.scene.lights)
     sizes = (plan.n, plan.k, plan.dtype, len(plan.scene.lights), near)
@@ -256,19 +256,19 @@ def _sort(plan: Plan) -> tuple[object, ...]:
     return (*sizes, models, plan.surface, plan.conditioned, plan.terms, *colors)
 
 
-def program_of(plan: Plan, inputs: ShadingInputs) -> Program:
+def program_of(plan: Plan, inputs: ShadingInputs) -> LoopProgram:
     """Return the program that lights some inputs by a plan."""
     work = "f4" if plan.dtype == np.float32 else "f8"
     kinds = []
     for name, source in inputs.arrays().items():
         if name != "points" or plan.needs_points:
-            # In float32 where nothing is lost by it.
+            # In float32 where no digit is lost by it.
             narrow = source.dtype == np.float32 or (source.dtype == np.float16 and work == "f4")
             kinds.append((name, work if name in SHARES else "f4" if narrow else "f8"))
-    # What was asked for may hold arrays; of it the terms read whether they are kept.
+    # The options may hold arrays; the terms read of them only whether they are kept.
     # Plans that differ in nothing else are then equal, and share a text.
-    asked = ShadingOptions(components=plan.components)
-    bare = dataclasses.replace(plan, options=asked, compiled=False, code="")
+    options = ShadingOptions(components=plan.components)
+    bare = dataclasses.replace(plan, options=options, compiled=False, code="")
     return program(bare, tuple(kinds))
 
 
@@ -283,12 +283,12 @@ def _flat(source: ArraySource | Raw | None, kind: str) -> Array:
 def _parts(rows: Slice, inputs: ShadingInputs) -> Iterator[tuple[Slice, ShadingInputs]]:
     """Yield the places of one point of each row, and their inputs as arrays."""
     repeat, count, sources = inputs.repeat, inputs.count, inputs.arrays()
-    # What all points of a fibre share is read once for all of them.
+    # Inputs that all points of a fibre share are read once for all of them.
     shared: Keywords = {name: x[rows] for name, x in sources.items() if x.shape[0] != count}
     for j in range(repeat):
         at = rows if repeat == 1 else slice(rows.start * repeat + j, rows.stop * repeat, repeat)
-        own: Keywords = {name: x[at] for name, x in sources.items() if name not in shared}
-        yield at, dataclasses.replace(inputs, repeat=1, **shared, **own)
+        separate: Keywords = {name: x[at] for name, x in sources.items() if name not in shared}
+        yield at, dataclasses.replace(inputs, repeat=1, **shared, **separate)
 
 
 def _light_again(
@@ -297,9 +297,9 @@ def _light_again(
     """Light some points of a block by NumPy."""
     rows: Keywords = {name: source[:][odd] for name, source in part.arrays().items()}
     few = dataclasses.replace(part, **rows)
-    own = Shading.of(plan, len(odd))
-    shade_block(plan, slice(0, len(odd)), few, own)
-    for name, values in own.arrays().items():
+    relit = Shading.of(plan, len(odd))
+    shade_block(plan, slice(0, len(odd)), few, relit)
+    for name, values in relit.arrays().items():
         getattr(output, name)[at][odd] = values
 
 
@@ -375,7 +375,7 @@ class Loop(Writer):
     # Inputs and numbers.
 
     def has(self, name: str) -> bool:
-        """Return whether an input is there."""
+        """Return whether an input is given."""
         return name in self.kinds
 
     def _row(self, name: str, start: int, count: int, width: int) -> Components:
@@ -402,9 +402,9 @@ class Loop(Writer):
         """Return a number of the plan; a lamp's numbers count from its own first one."""
         if isinstance(value, Symbol):
             return value
-        own = self.numbers if self.lamp is None else self.lamp
-        own[array].append(float(value))
-        text = f"{array}{'' if self.lamp is None else '_'}{len(own[array]) - 1}"
+        numbers = self.numbers if self.lamp is None else self.lamp
+        numbers[array].append(float(value))
+        text = f"{array}{'' if self.lamp is None else '_'}{len(numbers[array]) - 1}"
         return Symbol(self, text, "f8" if array == "h" else self.type)
 
     def wide(self, value: Value) -> Value:
@@ -449,12 +449,12 @@ class Loop(Writer):
         square = self.dot(v, v)
         self.squares.setdefault(square.kind, []).append(square.text)
         # One division, then products: a processor divides several times more slowly.
-        one = self.literal(1.0, square.kind)
-        inverse = self.named(f"{one} / sqrt({square.text})", square.kind)
+        unity = self.literal(1.0, square.kind)
+        inverse = self.named(f"{unity} / sqrt({square.text})", square.kind)
         return v * inverse, _Length(self, (square * inverse).text, square.kind)
 
     def apart(self, v: Value) -> Value:
-        """Return four times what NumPy takes for dependent, so that NumPy decides what is near."""
+        """Return four times NumPy's limit of dependent vectors, for NumPy to decide near cases."""
         del v
         return self.number(4 * frames.default_rtol(self.n, self.plan.dtype))
 
@@ -462,8 +462,8 @@ class Loop(Writer):
         """Return G(z) of a cylinder by its table."""
         inverse, cells = highlight_integral.table(shininess)
         self.table = cells.astype(self.plan.dtype).ravel()
-        given = f"{self.number(cells.shape[1]).text}, {self.number(inverse).text}"
-        return self.named(f"integral_({z.text}, table, {given})", self.type)
+        arguments = f"{self.number(cells.shape[1]).text}, {self.number(inverse).text}"
+        return self.named(f"integral_({z.text}, table, {arguments})", self.type)
 
     # Points that NumPy lights.
 
@@ -511,15 +511,15 @@ class Loop(Writer):
             kinds.setdefault(tuple(self.lines), []).append((lamp.number, self.lamp))
             most = max(most, self.count)
         self.lines, self.names, self.count, self.lamp = lines, names, most, None
-        for text, found in kinds.items():
-            self._place("\n".join(text), found)
+        for text, members in kinds.items():
+            self._place("\n".join(text), members)
 
     def _place(self, text: str, lamps: list[tuple[int, dict[str, list[float]]]]) -> None:
         """Write the lamps of a kind, with the places of their numbers."""
-        start = {array: len(own) for array, own in self.numbers.items()}
-        width = {array: len(own) for array, own in lamps[0][1].items()}
-        for _, own in lamps:
-            for array, values in own.items():
+        start = {array: len(entry) for array, entry in self.numbers.items()}
+        width = {array: len(entry) for array, entry in lamps[0][1].items()}
+        for _, entry in lamps:
+            for array, values in entry.items():
                 self.numbers[array] += values
         # g_3 is number 3 of a lamp's own: a loop finds it by the lamp's turn m, text that is
         # written out by a place of its own.
@@ -568,8 +568,8 @@ class Loop(Writer):
             self.puts.append(f"{place} = LOST if odd else {text}" if name == "luminance" else
                              f"{place} = {text}")  # fmt: skip
 
-    def program(self) -> Program:
-        """Return what was written."""
+    def program(self) -> LoopProgram:
+        """Return the program that was written."""
         self.check()
         body = [*self.sums, *self.lines, *self.puts]
         # Numbers are read from their arrays once, before the loop over the points.
@@ -588,10 +588,10 @@ class Loop(Writer):
         ]
         kind = self.plan.dtype
         # One number at least, so that the arrays have a type.
-        given = (
+        tables = (
             np.array(self.numbers["g"] or [0], kind),
             np.array(self.numbers["h"] or [0], np.float64),
             np.array(self.columns or [0], np.int64),
             self.table,
         )
-        return Program(prelude(self.type) + "\n".join(text), self.kinds, given)
+        return LoopProgram(prelude(self.type) + "\n".join(text), self.kinds, tables)

@@ -45,8 +45,8 @@ class Bundle:
         Number of voxels along the longest side of the bounding box of the lines, from 4 to 1024.
         Memory grows with its third power. A voxel is at least two diameters wide.
     lines : pyvista.DataSet or pyvista.MultiBlock, optional
-        Lines that dim what is lit, such as a surface among them. Default: all lines of the mesh
-        that is lit, which dim its surfaces as well.
+        Lines that dim the lit mesh, such as a surface among them. Default: all lines of the lit
+        mesh, which dim its surfaces as well.
 
     Raises
     ------
@@ -113,26 +113,26 @@ class Options:
     DECIDED: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
-    def of(cls, given: Mapping[str, Given]) -> Self:
+    def of(cls, values: Mapping[str, Given]) -> Self:
         """Return the options among the values of a function's parameters, ``locals()``."""
         fields = dataclasses.fields(cls)  # type: ignore[arg-type]
-        return cls(**{field.name: given[field.name] for field in fields if field.name in given})
+        return cls(**{field.name: values[field.name] for field in fields if field.name in values})
 
     def changed(self) -> Keywords:
         """Return the options that differ from their defaults."""
-        found = {}
+        changes = {}
         for field in dataclasses.fields(self):  # type: ignore[arg-type]
             value, default = getattr(self, field.name), field.default
             # Types are compared too, since 1, 1.0 and True are equal, and arrays are not compared
             # at all.
             if value is not default and not (type(value) is type(default) and value == default):
-                found[field.name] = value
-        return found
+                changes[field.name] = value
+        return changes
 
 
 @dataclass(frozen=True, kw_only=True)
 class ShadingOptions(Options):
-    """How light is computed at the points, whatever arrays describe them.
+    """Options of light at points, whatever arrays describe them.
 
     The fields are keywords of :func:`vizlight.shading.engine.shade`.
     """
@@ -161,7 +161,7 @@ class ShadingOptions(Options):
 
 @dataclass(frozen=True, kw_only=True)
 class LightOptions(ShadingOptions):
-    """What a filter lights on a mesh, and how.
+    """Options of the light of a mesh by a filter.
 
     The fields are keywords of :func:`vizlight.illuminate`.
     """
@@ -188,10 +188,10 @@ class LightOptions(ShadingOptions):
 def checked_bundle(value: object) -> bool | Bundle:
     """Return False or a bundle, which a record holds as a dict."""
     if isinstance(value, Mapping):
-        known = [field.name for field in dataclasses.fields(Bundle)]
-        if not set(value) <= set(known):
+        names = [field.name for field in dataclasses.fields(Bundle)]
+        if not set(value) <= set(names):
             got = _check.describe(sorted(map(str, value)))
-            raise ValueError(_check.message("bundle", f"a dict of {', '.join(known)}", got))
+            raise ValueError(_check.message("bundle", f"a dict of {', '.join(names)}", got))
         value = Bundle(**value)
     if isinstance(value, Bundle):
         return value

@@ -1,4 +1,4 @@
-"""What is computed for a scene: the terms that it needs and nothing else, also in words."""
+"""The plan of a scene: the terms that it needs and nothing else, also in words."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ BLOCK_BYTES = 3 << 19
 #: Least power at which |h_N|^q may be computed from the tangential part alone: a lower one is too
 #: steep at 0.
 LEAST_POWER = 2.0
-#: A line of words, and whether it is of what is computed or of what is skipped.
+#: A line of words, and whether its term is computed or skipped.
 Line = tuple[str, str]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What is computed for each point of a mesh; made by :func:`vizlight.shading.engine.plan`.
+    """Terms that are computed for each point of a mesh; see :func:`vizlight.shading.engine.plan`.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Plan:
     scene : Scene
         Scene with a view, lights that follow it fixed, and without lights that have no effect.
     options : ShadingOptions
-        Options that were asked for.
+        Options of the caller.
     exponent : float
         Exponent of the diffuse term.
     model : {"phong", "blinn", "cylinder"}
@@ -60,7 +60,7 @@ class Plan:
     conditioned : bool
         Whether tangents inherit the self-shadow of the surface that the normals belong to.
     base : int
-        Dimension of the manifold in which the tangents lie and whose brightness is a factor, 0 for
+        Dimension of the manifold in which the tangents lie, with its brightness as a factor; 0 for
         none.
     base_exponent : float
         Exponent of that factor.
@@ -76,12 +76,12 @@ class Plan:
     diffuse, specular : bool
         Whether the term is computed.
     unseen : bool
-        Whether the scene has no view: there is no highlight, and what else depends on the eye is
-        as in :meth:`vizlight.View.isometric`.
+        Whether the scene has no view: it has no highlight, and other terms that depend on the eye
+        are as in :meth:`vizlight.View.isometric`.
     compiled : bool
         Whether compiled code has lit the points (extra ``fast``).
     code : str
-        What runs the plan, or why it is not compiled code, in words.
+        Code that runs the plan, or the reason why it is not compiled, in words.
     """
 
     n: int
@@ -159,7 +159,7 @@ class Plan:
         return max(BLOCK_BYTES // (self.n * self.k * self.dtype.itemsize), 1)
 
     def explain(self) -> str:
-        """Return what is computed, what is skipped and why, one line each."""
+        """Return one line for each term that is computed or skipped, with the reason."""
         parts = (_manifold, _diffuse, _specular, _lights, _factors, _results)
         lines = [line for part in parts for line in part(self)]
         # "compute" comes before "skip"; lines of one kind keep their order.
@@ -251,7 +251,7 @@ def _lights(plan: Plan) -> Iterator[Line]:
 
 
 def _factors(plan: Plan) -> Iterator[Line]:
-    """Yield what multiplies the light of each light."""
+    """Yield descriptions of the factors of each light."""
     if plan.conditioned:
         side = "t = d/r in place" if plan.shadowed else plan.cosine
         yield "compute", f"self-shadow: {side} of the surface's normals, a factor for each light"
@@ -335,7 +335,7 @@ def decide(
 
 
 def _highlights(scene: Scene, model: Model) -> tuple[Highlight, ...]:
-    """Return how the highlight of each light is computed.
+    """Return the highlight of each light.
 
     Where light and eye are at infinity all points share the half vector. Blinn's model then needs
     no split of the eye.
@@ -383,7 +383,7 @@ def _exponent(options: ShadingOptions, k: int, n: int) -> float:
 
 def _precision(dtype: DTypeLike) -> FloatType:
     for kind in (np.dtype(np.float32), np.dtype(np.float64)):
-        # Comparison refuses what is no type.
+        # Comparison refuses anything but a type.
         if isinstance(dtype, str | type | np.dtype) and kind == dtype:
             return kind
     raise ValueError(_check.message("dtype", "float32 or float64", _check.describe(dtype)))
@@ -413,7 +413,7 @@ def _check_layout(layout: Layout, options: ShadingOptions) -> None:
 
 
 def not_a_line(got: str) -> str:
-    """Return the message for a cylinder's light on what is not a line in 3-space."""
+    """Return the message for a cylinder's light on anything but lines in 3-space."""
     remedy = "use model='blinn' for other manifolds"
     return _check.message("model", "lines in 3-space for 'cylinder'", got, remedy)
 

@@ -1,4 +1,4 @@
-"""What is kept of a result: the names of its arrays, and the record of how it was made."""
+"""Results that are kept: the names of the arrays, and the record of how they were made."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
     from vizlight.shading.engine import Shading
 
-#: What JSON holds: the scene, the options and facts about the result.
+#: Contents of a record in JSON: the scene, the options and facts about the result.
 Record: TypeAlias = dict[str, object]
 
 #: Largest number of values of an array that is written out in full.
@@ -50,7 +50,7 @@ def arrays_of(
     occlusion : ndarray, shape (N,), optional
         Share of the ambient light that reaches a point.
     valid : bool
-        Whether the array of the points that could be lit is there even if all could.
+        Whether the mask of lit points is returned even if all points could be lit.
     """
     parts: dict[str, Raw] = {}
     if shading.diffuse is not None and shading.specular is not None:
@@ -116,7 +116,7 @@ def plain(options: object) -> Record:
     """Return options, a dataclass or a dict, as values that JSON can hold."""
     if not isinstance(options, Mapping):
         names = [field.name for field in dataclasses.fields(options)]  # type: ignore[arg-type]
-        # What a filter decides by itself could not be passed to it again.
+        # Options that a filter decides by itself could not be passed to it again.
         decided = options.DECIDED if isinstance(options, Options) else ()
         options = {name: getattr(options, name) for name in names if name not in decided}
     return {str(name): _plain(value) for name, value in options.items()}

@@ -1,4 +1,4 @@
-"""Symbols: what stands for numbers and vectors where the terms leave a program behind.
+"""Symbols stand for numbers and vectors where the terms leave a program behind.
 
 NumPy's functions and operators accept a symbol (NEP 13), so that the terms and the formulas need no
 second notation: each operation is written down as a statement, and its result is a new symbol.
@@ -48,7 +48,7 @@ class Symbol:
         return self.writer.select(self, yes, no)
 
     def power(self, deficit: Value, exponent: Value) -> Value:
-        """Return this number of [0, 1], whose deficit is 1 less it, to a power of 0 or more."""
+        """Return this number x of [0, 1], with 1 - x as its deficit, to a power of 0 or more."""
         return self.writer.power(self, deficit, exponent)
 
 
@@ -89,13 +89,13 @@ for _name in ("gt", "ge", "lt", "le"):
 
 
 class Language(Protocol):
-    """What a program is written in."""
+    """The language of a program."""
 
     def statement(self, name: str, text: str, kind: str) -> str:
         """Return the statement that gives a name to an expression."""
 
     def kind(self, *args: Value) -> str:
-        """Return the kind of what is made of some values."""
+        """Return the kind of a result of some values."""
 
     def literal(self, value: float, kind: str) -> str:
         """Return a number as the language writes it where another kind is met."""
@@ -111,7 +111,7 @@ class Language(Protocol):
 
 
 class Writer(Algebra, Language):
-    """What programs share: statements, each written once."""
+    """Writer of the statements of a program, each once."""
 
     #: First letters of the names of a program.
     prefix = "v"
@@ -123,19 +123,18 @@ class Writer(Algebra, Language):
         self.count = 0
 
     def present(self, x: Value, distance: Value | None) -> Value:
-        """Return x: what becomes of points at their lamp or eye is decided at the end."""
+        """Return x: points at their lamp or eye are handled at the end."""
         del distance
         return x
 
     def sound(self, x: Value, other: float) -> Value:
-        """Return x: what becomes of points without light is decided at the end."""
+        """Return x: points without light are handled at the end."""
         del other
         return x
 
     def named(self, text: str, kind: str) -> Value:
         """Return the symbol of an expression, which is written once."""
-        # The text of an expression tells which it is: what two terms have in common is computed
-        # once.
+        # The text of an expression tells which it is: a common part of two terms is computed once.
         if (text, kind) not in self.names:
             self.count += 1
             name = f"{self.prefix}{self.count}"
@@ -144,7 +143,7 @@ class Writer(Algebra, Language):
         return self.names[text, kind]
 
     def operation(self, sign: str, a: Value, b: Value) -> Value:
-        """Write an operation of two values; what multiplies by 1 or adds 0 is not written."""
+        """Write an operation of two values; factors of 1 and summands of 0 are left out."""
         if sign == "*":
             # A test times a value is the value where the test holds.
             for test, value in ((a, b), (b, a)):
@@ -165,7 +164,7 @@ class Writer(Algebra, Language):
 
 
 def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[str]:
-    """Return the lines that other lines need, of a program whose names are given once.
+    """Return the lines that other lines need, of a program that defines each name once.
 
     Parameters
     ----------
@@ -174,7 +173,7 @@ def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[st
     declared : str
         Pattern of a statement that gives a name, with the name as its group.
     roots : iterable of str
-        Texts whose names are needed.
+        Texts with the names that are needed.
 
     Returns
     -------
@@ -184,8 +183,8 @@ def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[st
     kept = []
     # From the last line up, as a line that is needed makes the names in it needed.
     for line in reversed(list(lines)):
-        given = re.match(declared, line)
-        if given is None or given[1] in words:
+        declaration = re.match(declared, line)
+        if declaration is None or declaration[1] in words:
             kept.append(line)
             words.update(re.findall(r"\w+", line))
     return kept[::-1]

@@ -2,10 +2,9 @@
 
 :func:`light` is a plain function. It asks an algebra ``w`` (:mod:`vizlight.shading.algebra`) for
 numbers, inputs and a handful of vector operations; all else is arithmetic, the formulas of
-:mod:`vizlight.model.formulas`, and what a manifold reflects (:mod:`vizlight.model.manifolds`).
-Under :class:`vizlight.shading.arrays.Arrays` its values are NumPy arrays, and the light is there
-when it returns. Only what a plan needs is asked for: an ``if`` on the plan is a term that is not
-computed.
+:mod:`vizlight.model.formulas`, and the reflection of manifolds (:mod:`vizlight.model.manifolds`).
+Under :class:`vizlight.shading.arrays.Arrays` its values are NumPy arrays, and the light is computed
+when it returns. Only values that a plan needs are read: an ``if`` on the plan skips a term.
 
 Directions point away from the point: wi to the lamp, wo to the eye; x_T and x_N are the tangential
 and the normal part of x. Sources: Banks, *Illumination in Diverse Codimensions* (numbers in
@@ -22,7 +21,7 @@ from numpy import absolute
 
 from vizlight.model import formulas
 from vizlight.model.formulas import where
-from vizlight.model.manifolds import Cylinder, Frame, Surface
+from vizlight.model.manifolds import Cylinder, FrameManifold, Surface
 from vizlight.scene.light import NO_ATTENUATION
 
 if TYPE_CHECKING:
@@ -42,11 +41,12 @@ def light(w: Algebra, plan: Plan) -> None:
     w : Algebra
     plan : Plan
     """
-    # What all lamps share is taken once: frames, the direction to the eye, the way through fur.
+    # Values that all lamps share are taken once: frames, the direction to the eye, the way through
+    # fur.
     normal = w.direction("normals") if w.has("normals") else None
     base = None
     if plan.base:
-        base = Frame(w, w.frame("base_tangents", plan.base), plan.base_exponent)
+        base = FrameManifold(w, w.frame("base_tangents", plan.base), plan.base_exponent)
     wo, distance_o = w.eye() if plan.needs_eye else (None, None)
     shape = _shape(w, plan, normal, wo)
     # Only for its sides: the cosine that conditions tangents has no exponent.
@@ -69,7 +69,7 @@ def light(w: Algebra, plan: Plan) -> None:
         # such sign.
         if normal is not None:
             cosine = lit.up if plan.surface else w.dot(normal, wi)
-        # f: what of the lamp's light reaches the point.
+        # f: the share of the lamp's light that reaches the point.
         f = w.number(lamp.intensity)
         if distance is not None:
             if lamp.attenuation != NO_ATTENUATION:
@@ -92,7 +92,7 @@ def light(w: Algebra, plan: Plan) -> None:
         # place.
         if base is not None:
             f = f * base.diffuse(base.split(wi), None)
-        # D and S: what the manifold reflects of it.
+        # D and S: the shares of it that the manifold reflects.
         passed = shadow if plan.surface else None
         if plan.diffuse:
             # Of a surface in a cos-theta shadow, t is the diffuse term: the cosine is in it
@@ -156,18 +156,18 @@ def _share(w: Algebra, name: str, lamp: Lamp) -> Value:
     return share
 
 
-def _shape(w: Algebra, plan: Plan, normal: Value, wo: Value) -> Surface | Frame:
-    """Return what a point is lit as."""
+def _shape(w: Algebra, plan: Plan, normal: Value, wo: Value) -> Surface | FrameManifold:
+    """Return the manifold as which a point is lit."""
     if plan.line_exponent is not None:
         return Mixed(w, plan, normal, wo)
     if plan.surface:
         return Surface(w, normal, plan.exponent, both=plan.two_sided)
     rows = w.frame("tangents", plan.k)
-    return (Cylinder if plan.model == "cylinder" else Frame)(w, rows, plan.exponent)
+    return (Cylinder if plan.model == "cylinder" else FrameManifold)(w, rows, plan.exponent)
 
 
 class Mixed(Surface):
-    """Faces, lines and single points of one mesh, by the dimension of what each point is lit as.
+    """Faces, lines and single points of one mesh; each point is lit by its own dimension.
 
     A fragment between a point of a line and one of a face is the line's.
     """
@@ -184,7 +184,7 @@ class Mixed(Surface):
         # 0.99, not 0.5: values interpolated from a line (1) to a face (2) are the line's until the
         # face.
         self.on_line = absolute(dimension - 1.0) < 0.99
-        self.line = Frame(w, w.frame("tangents", 1), exponent)
+        self.line = FrameManifold(w, w.frame("tangents", 1), exponent)
 
     def split(self, x: Value) -> Split:
         """Split a unit direction."""

@@ -1,4 +1,4 @@
-"""Light between the points of a mesh: what interpolation of the light at the points leaves out.
+"""Light between the points of a mesh, and the error of interpolating the light at the points.
 
 The reference is the light of interpolated vectors, as a fragment shader computes it: normals and
 tangents are interpolated linearly over a segment or a triangle, as VTK interpolates any array,
@@ -46,11 +46,11 @@ class Places(NamedTuple):
 
 
 def measurable(inputs: ShadingInputs) -> bool:
-    """Return whether light between the points follows from what the inputs hold at the points."""
-    # What only the points have, such as their share of a shadow, is not known between them.
-    given = inputs.shadow is None and inputs.fur_height is None
-    given = given and inputs.transmittance is None and inputs.occlusion is None
-    return given and inputs.repeat == 1
+    """Return whether light between the points follows from the inputs at the points."""
+    # Inputs of the points alone, such as their share of a shadow, are not known between them.
+    plain = inputs.shadow is None and inputs.fur_height is None
+    plain = plain and inputs.transmittance is None and inputs.occlusion is None
+    return plain and inputs.repeat == 1
 
 
 class Between:
@@ -61,9 +61,9 @@ class Between:
     inputs : ShadingInputs
         Arrays of the mesh, for which :func:`measurable` holds.
     scene : Scene
-        Scene whose depth cue, if it has one, has both ends.
+        Scene; its depth cue, if any, has both ends.
     options : ShadingOptions
-        How light is computed. ``precision`` has no effect: places are lit in float64.
+        Options of the light. ``precision`` has no effect: places are lit in float64.
 
     Attributes
     ----------
@@ -92,12 +92,12 @@ class Between:
         self._sides = None if inputs.sides is None else inputs.sides()
         self.facts: Array = np.empty((len(self.points), 0))
         if inputs.normals is not None:
-            given: ArraySource = inputs.normals
+            normals: ArraySource = inputs.normals
             # Normals are interpolated before they are turned, as the side that is seen may change
             # within a cell.
             if self._sides is not None:
-                given, self.facts = self._sides.normals, self._sides.facts
-            self.vectors["normals"] = kernels.unit_rows(_rows(given))[:, np.newaxis]
+                normals, self.facts = self._sides.normals, self._sides.facts
+            self.vectors["normals"] = kernels.unit_rows(_rows(normals))[:, np.newaxis]
         self._unit = set(self.vectors)
         self.scales: dict[str, float] = {}
         for name in ("tangents", "base_tangents"):
@@ -108,19 +108,19 @@ class Between:
                 if frames.shape[1] == 1 and are_unit(frames[:, 0]):
                     self._unit.add(name)
 
-    def at(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
+    def interpolated_at(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
         """Return the points, the vectors and the facts on which sides depend, at places."""
-        points, found, facts = self._interpolated(places)
-        for name in self._unit & found.keys():
-            found[name] = kernels.unit_rows(found[name][:, 0])[:, np.newaxis]
-        return points, found, facts
+        points, vectors, facts = self._interpolated(places)
+        for name in self._unit & vectors.keys():
+            vectors[name] = kernels.unit_rows(vectors[name][:, 0])[:, np.newaxis]
+        return points, vectors, facts
 
     def _interpolated(self, places: Places) -> tuple[Array, dict[str, Array], Array]:
-        found: dict[str, Array] = {}
+        vectors: dict[str, Array] = {}
         for name, rows in self.vectors.items():
             mean = mean_spaces if self._unsigned(name) else interpolated
-            found[name] = mean(rows, places)
-        return interpolated(self.points, places), found, interpolated(self.facts, places)
+            vectors[name] = mean(rows, places)
+        return interpolated(self.points, places), vectors, interpolated(self.facts, places)
 
     def _unsigned(self, name: str) -> bool:
         """Return whether vectors stand for lines or spaces, on which no sign depends."""
@@ -138,7 +138,7 @@ class Between:
         return normals if self._sides is None else self._sides.turned(normals, facts, points)
 
     def extend(self, places: Places) -> None:
-        """Make points of places, after those that there are."""
+        """Add points at places, after the present ones."""
         points, vectors, facts = self._interpolated(places)
         self.points = np.concatenate([self.points, points])
         self.facts = np.concatenate([self.facts, facts])
@@ -148,24 +148,26 @@ class Between:
     def light(self, places: Places) -> Array:
         """Return luminance and colour at places, shape (M, 1) or (M, 4)."""
         count = len(places.weights)
-        found = np.empty((count, 4 if self.scene.colored else 1))
+        values = np.empty((count, 4 if self.scene.colored else 1))
         for block in _pool.blocks(count, BLOCK):
-            points, vectors, facts = self.at(Places(places.corners[block], places.weights[block]))
-            own: dict[str, ArraySource] = {
+            points, vectors, facts = self.interpolated_at(
+                Places(places.corners[block], places.weights[block])
+            )
+            arrays: dict[str, ArraySource] = {
                 name: rows.reshape(len(rows), -1) for name, rows in vectors.items()
             }
             if "normals" in vectors:
-                own["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
-            own["points"] = points
-            inputs = dataclasses.replace(self.inputs, **own)  # type: ignore[arg-type]
-            # What is lit here measures an error, and is no run that a report counts.
+                arrays["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
+            arrays["points"] = points
+            inputs = dataclasses.replace(self.inputs, **arrays)  # type: ignore[arg-type]
+            # Light here measures an error, and is no run that a report counts.
             with engine.observed(None):
                 lit = engine.run(inputs, self.scene, self.options)
-            found[block] = columns(lit)
-        return found
+            values[block] = columns(lit)
+        return values
 
     def peaks(self, cells: Indices) -> list[Array]:
-        """Return where each light's highlight may peak in cells, as weights of their corners.
+        """Return the places in cells where each light's highlight may peak, as weights of corners.
 
         Parameters
         ----------
@@ -187,20 +189,20 @@ class Between:
         scene = self.scene if moved is None else self.scene.moved([-x for x in moved])
         rows = self.points[cells]
         if lines:
-            given = self.vectors["tangents"][cells, 0]
+            vectors = self.vectors["tangents"][cells, 0]
         else:
             at = cells.ravel()
             normals = self.vectors["normals"][at, 0]
             turned = self.turned(kernels.unit_rows(normals), self.facts[at], self.points[at])
             # The lengths stay: normals of added points are shorter, and the weights depend on that.
             length = np.linalg.norm(normals, axis=1, keepdims=True)
-            given = (length * turned).reshape(rows.shape)
+            vectors = (length * turned).reshape(rows.shape)
         if lines and self.inputs.line_field:
             # Signs mean nothing: all are turned as the first.
-            with_first = np.einsum("msn,mn->ms", given, given[:, 0])
-            given = np.where(with_first < 0, -1.0, 1.0)[..., np.newaxis] * given
+            with_first = np.einsum("msn,mn->ms", vectors, vectors[:, 0])
+            vectors = np.where(with_first < 0, -1.0, 1.0)[..., np.newaxis] * vectors
         solve = _across if lines else _toward_half
-        found = []
+        peak_weights = []
         for light in scene.lights:
             if light.intensity > 0:
                 weights = np.full(cells.shape, 1 / cells.shape[1])
@@ -210,9 +212,9 @@ class Between:
                     middle = np.einsum("ms,msn->mn", weights, rows)
                     # The sum of both unit directions; its length is of no account.
                     half = _toward(light.seen_from(view), middle) + _toward(view, middle)
-                    weights = solve(given, half)
-                found.append(weights)
-        return found
+                    weights = solve(vectors, half)
+                peak_weights.append(weights)
+        return peak_weights
 
 
 def interpolated(rows: Array, places: Places) -> Array:
@@ -245,13 +247,13 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     _, k, n = frames.shape
     m, s = places.weights.shape
     if k > 1:
-        found = np.empty((m, k, n))
+        spaces = np.empty((m, k, n))
         for block in _pool.blocks(m, BLOCK >> 2):
             rows = frames[places.corners[block]]
             square = np.einsum("ms,mskn,mskl->mnl", places.weights[block], rows, rows)
             # The eigenvectors of the k largest eigenvalues, which stand last.
-            found[block] = np.linalg.eigh(square)[1][:, :, n - k :].swapaxes(1, 2)
-        return found
+            spaces[block] = np.linalg.eigh(square)[1][:, :, n - k :].swapaxes(1, 2)
+        return spaces
     parts = [places.weights[:, i : i + 1] * frames[places.corners[:, i], 0] for i in range(s)]
     if s == 2:
         # Of two vectors the second is turned over where they point apart.
@@ -272,8 +274,8 @@ def mean_spaces(frames: Array, places: Places) -> Array:
 def columns(shading: Shading, rows: Rows = slice(None)) -> Array:
     """Return luminance and colour of points, shape (N, 1) or (N, 4)."""
     light = shading.luminance[rows, np.newaxis]
-    found = light if shading.rgb is None else np.hstack([light, shading.rgb[rows]])
-    return np.asarray(found, dtype=np.float64)
+    values = light if shading.rgb is None else np.hstack([light, shading.rgb[rows]])
+    return np.asarray(values, dtype=np.float64)
 
 
 def random_places(
@@ -333,7 +335,7 @@ def measure(
     Parameters
     ----------
     inputs, scene, options
-        What is lit, as for :class:`Between`.
+        Inputs, scene and options of the light, as for :class:`Between`.
     shading : Shading
         Light of the points.
     cells : ndarray of int, shape (M, s)
@@ -364,17 +366,17 @@ def measure(
 
 def _taken(inputs: ShadingInputs, rows: Indices) -> ShadingInputs:
     """Return the inputs of some points."""
-    own: dict[str, ArraySource] = {}
+    arrays: dict[str, ArraySource] = {}
     for name in ("points", "normals", "tangents", "base_tangents"):
-        given: ArraySource | None = getattr(inputs, name)
-        if given is not None:
-            own[name] = np.asarray(given[:])[rows]
+        source: ArraySource | None = getattr(inputs, name)
+        if source is not None:
+            arrays[name] = np.asarray(source[:])[rows]
     sides = inputs.sides and inputs.sides()
     if sides is not None:
         sides = sides._replace(normals=sides.normals[rows], facts=sides.facts[rows])
     return dataclasses.replace(
         inputs,
-        **own,  # type: ignore[arg-type]
+        **arrays,  # type: ignore[arg-type]
         sides=None if sides is None else lambda: sides,
     )
 
@@ -400,14 +402,14 @@ def _rows(rows: ArraySource) -> Array:
 
 def _frames(rows: ArraySource, n: int) -> tuple[Array, float]:
     """Return frames: of one vector divided by a scale, orthonormal ones of several."""
-    found = _rows(rows)
-    found = found.reshape(len(found), -1, n)
-    if found.shape[1] > 1:
-        return orthonormalize(found)[0], 1.0
-    largest = float(np.abs(found).max(initial=0, where=np.isfinite(found))) or 1.0
+    vectors = _rows(rows)
+    vectors = vectors.reshape(len(vectors), -1, n)
+    if vectors.shape[1] > 1:
+        return orthonormalize(vectors)[0], 1.0
+    largest = float(np.abs(vectors).max(initial=0, where=np.isfinite(vectors))) or 1.0
     # The lengths of unit vectors are kept to rounding.
     scale = 1.0 if 0.5 < largest < 2 else largest
-    return np.asarray(np.nan_to_num(found / scale, posinf=0.0, neginf=0.0)), scale
+    return np.asarray(np.nan_to_num(vectors / scale, posinf=0.0, neginf=0.0)), scale
 
 
 def _dots(a: Array, b: Array) -> Array:

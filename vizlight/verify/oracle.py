@@ -30,7 +30,7 @@ WHITE = (1.0, 1.0, 1.0)
 TINY = 1e-300
 
 
-class Lit(NamedTuple):
+class OracleLight(NamedTuple):
     """Light of one point, in the numbers of the oracle.
 
     Attributes
@@ -52,7 +52,7 @@ class Lit(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """What the lights of one point share: unit vectors, exponents and options."""
+    """Values that the lights of one point share: unit vectors, exponents and options."""
 
     normal: Vector | None
     frame: list[Vector]
@@ -123,7 +123,7 @@ class Oracle:
         two_sided: bool = False,
         fur: float = 0.0,
         apart: float = 1e-14,
-    ) -> Lit:
+    ) -> OracleLight:
         """Return the light of one point.
 
         Parameters
@@ -135,7 +135,7 @@ class Oracle:
         normal : vector or None
             Normal of any length.
         scene : Scene
-            Scene whose depth cue, if it has one, has both ends.
+            Scene; its depth cue, if any, has both ends.
         base_tangents, fur_height, shadow, transmittance, occlusion, model, exponent, conditioned, two_sided, fur
             Options of :func:`vizlight.shading.engine.shade`, for one point.
         apart : float
@@ -143,16 +143,16 @@ class Oracle:
 
         Returns
         -------
-        Lit
+        OracleLight
             Light of the point; NaN where the point cannot be lit.
         """  # noqa: E501
         at, n, view = self.vector(point), len(point), scene.view
         frames = self._frames(tangents, base_tangents, normal, apart)
         if frames is None or not _placed(point, scene):
             dark = self.number(math.nan)
-            return Lit(dark, (dark,) * (3 if scene.colored else 0), dark, dark, dark)
+            return OracleLight(dark, (dark,) * (3 if scene.colored else 0), dark, dark, dark)
         frame, base, up = frames
-        # Without a view the eye is along (1, ..., 1), and there is no highlight.
+        # Without a view the eye is along (1, ..., 1), without a highlight.
         eye = View.isometric(n) if view is None else view
         # A surface of n-space has n - 1 tangents, which its normal stands for.
         place = _Place(
@@ -186,10 +186,10 @@ class Oracle:
     ) -> list[list[Vector]] | None:
         """Return orthonormal frames, empty for None; None if rows are dependent or all are None."""
         normals = None if normal is None else [normal]
-        given = [() if rows is None else rows for rows in (tangents, base_tangents, normals)]
-        made = [self.orthonormal(rows, apart) for rows in given]
-        whole = list(map(len, made)) == list(map(len, given))
-        return made if whole and (made[0] or made[2]) else None
+        row_sets = [() if rows is None else rows for rows in (tangents, base_tangents, normals)]
+        frames = [self.orthonormal(rows, apart) for rows in row_sets]
+        whole = list(map(len, frames)) == list(map(len, row_sets))
+        return frames if whole and (frames[0] or frames[2]) else None
 
     def _power(self, k: int, n: int, exponent: float | str) -> Real:
         if isinstance(exponent, str):
@@ -264,11 +264,11 @@ class Oracle:
 
     def _sum(
         self, at: Vector, scene: Scene, parts: Sequence[tuple[Light, Real, Real]], occlusion: Real
-    ) -> Lit:
+    ) -> OracleLight:
         """Return the sum of the lights, given both terms of each for a white material."""
         material, zero = scene.material, self.number(0.0)
         ambient = self.number(material.ambient) * scene.ambient_intensity * occlusion
-        parts = [(one, material.diffuse * d, material.specular * s) for one, d, s in parts]
+        parts = [(lamp, material.diffuse * d, material.specular * s) for lamp, d, s in parts]
         diffuse = sum((d for _, d, _ in parts), zero)
         specular = sum((s for _, _, s in parts), zero)
         rgb: list[Real] = []
@@ -276,8 +276,8 @@ class Oracle:
             color, gloss = material.color or WHITE, material.specular_color or WHITE
             for i, tint in enumerate(scene.ambient_color or WHITE):
                 # The light's own colour tints both terms, and the material has a colour for each.
-                own = ((one.color or WHITE, color[i] * d + gloss[i] * s) for one, d, s in parts)
-                rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in own))
+                terms = ((lamp.color or WHITE, color[i] * d + gloss[i] * s) for lamp, d, s in parts)
+                rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in terms))
         luminance, *rgb = self._faded([ambient + diffuse + specular, *rgb], at, scene)
         if scene.exposure is not None and rgb:
             most = max(rgb) * scene.exposure
@@ -286,7 +286,7 @@ class Oracle:
             bent = 1 - (1 - knee) * self.exp(-(most - knee) / (1 - knee))
             share = bent / most if most > knee else self.number(1.0)
             rgb = [value * scene.exposure * share for value in rgb]
-        return Lit(luminance, tuple(rgb), ambient, diffuse, specular)
+        return OracleLight(luminance, tuple(rgb), ambient, diffuse, specular)
 
     def _faded(self, values: list[Real], at: Vector, scene: Scene) -> list[Real]:
         """Return luminance, red, green and blue with the depth cue."""
@@ -457,16 +457,16 @@ class Oracle:
         """Return an orthonormal frame of rows, without those that depend on the ones before."""
         frame: list[Vector] = []
         for row in rows:
-            own = self.unit(self.vector(row))
-            if own is not None and frame:
-                rest = self.rest(own, frame)
+            unit = self.unit(self.vector(row))
+            if unit is not None and frame:
+                rest = self.rest(unit, frame)
                 size = self.hypot(*rest)
-                own = self.unit(rest) if size > apart else None
-                if own is not None and size < 0.5:
+                unit = self.unit(rest) if size > apart else None
+                if unit is not None and size < 0.5:
                     # A second pass removes what rounding left of the frame.
-                    own = self.unit(self.rest(own, frame))
-            if own is not None:
-                frame.append(own)
+                    unit = self.unit(self.rest(unit, frame))
+            if unit is not None:
+                frame.append(unit)
         return frame
 
 

@@ -21,7 +21,7 @@ def relief_ratio(
     """Return t of a node of a height field, its ray cut at every plane of nodes.
 
     Within the four cells around the node, where all of them have a surface and contain the ray's
-    start, the solid is what lies below the plane through the node. Elsewhere, between two cuts, the
+    start, the solid is the space below the plane through the node. Elsewhere, between two cuts, the
     height of the surface above the ray is a quadratic, known from three places.
 
     Parameters
@@ -54,14 +54,14 @@ def relief_ratio(
     near, flat = _beside(x, y, z, place, normal, start, along, endless=end is None, wall=wall)
     highest = max(float(np.nanmax(z) - start[2]), 0.0)
     if end is None or along[2] > highest:
-        # There is no solid above the highest node.
+        # No solid is above the highest node.
         cut = highest / along[2]
         along, near = along * cut, near / cut if cut else math.inf
     bounds = ((x, start[0], along[0]), (y, start[1], along[1]), ([base], start[2], along[2]))
     # Shares of the ray at which it crosses a plane of nodes, or the base.
     cuts = [(np.asarray(at) - first) / step for at, first, step in bounds if step]
-    known = np.concatenate([[0.0, 1.0, near], *cuts])
-    ends = np.unique(known[(known >= 0) & (known <= 1)])
+    shares = np.concatenate([[0.0, 1.0, near], *cuts])
+    ends = np.unique(shares[(shares >= 0) & (shares <= 1)])
     low, high = ends[:-1], ends[1:]
     three = start + np.stack([low, (low + high) / 2, high])[..., np.newaxis] * along
     middle = three[1]
@@ -81,7 +81,7 @@ def relief_ratio(
     # Where no cell has a surface the ray is outside of the solid.
     share = _positive(*np.where(np.isfinite(f), parts, -1.0))
     share[~(middle[:, 2] > base)] = 0
-    # What is within the four cells is below the plane instead.
+    # The part within the four cells is below the plane instead.
     share[high <= near] = 0
     inside = float(share @ (high - low)) * math.hypot(*along) + flat
     # t = d / r, and 1 where r is less than d (cos-theta, section 3).
@@ -92,9 +92,9 @@ def _beside(
     x: Array, y: Array, z: Array, place: Array, normal: Array, start: Array, along: Array, *,
     endless: bool, wall: bool,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return where a ray leaves the four cells around its node, as a share of it.
+    """Return the place where a ray leaves the four cells around its node, as a share of it.
 
-    Second comes the length of what is below the node's plane before that.
+    Second comes the length below the node's plane before that place.
     """
     share = math.inf
     spans = []
@@ -139,17 +139,17 @@ def _above(
 
 def _positive(first: Array, middle: Array, last: Array) -> Array:
     """Return the share of [0, 1] where the quadratics through three places are positive."""
-    # The quadratic is first + one s + two s^2, through the three values at s = 0, 1/2 and 1.
-    two, one = 2 * (first - 2 * middle + last), 4 * middle - 3 * first - last
-    # q / two and first / q are both roots, without the difference in which digits cancel.
-    q = -0.5 * (one + np.copysign(np.sqrt(np.maximum(one * one - 4 * two * first, 0)), one))
+    # The quadratic is first + b s + a s^2, through the values at s = 0, 1/2 and 1.
+    a, b = 2 * (first - 2 * middle + last), 4 * middle - 3 * first - last
+    # q / a and first / q are both roots, without the difference in which digits cancel.
+    q = -0.5 * (b + np.copysign(np.sqrt(np.maximum(b * b - 4 * a * first, 0)), b))
     with np.errstate(all="ignore"):
-        roots = np.clip(np.nan_to_num(np.stack([q / two, first / q]), nan=0.0), 0, 1)
-    roots[:, one * one < 4 * two * first] = 0
-    ends = np.sort(np.concatenate([np.zeros((1, len(one))), roots, np.ones((1, len(one)))]), axis=0)
+        roots = np.clip(np.nan_to_num(np.stack([q / a, first / q]), nan=0.0), 0, 1)
+    roots[:, b * b < 4 * a * first] = 0
+    ends = np.sort(np.concatenate([np.zeros((1, len(b))), roots, np.ones((1, len(b)))]), axis=0)
     # Between two roots the sign in the middle is the sign throughout.
     at = (ends[:-1] + ends[1:]) / 2
-    return np.asarray(np.sum(np.diff(ends, axis=0) * (first + at * (one + at * two) > 0), axis=0))
+    return np.asarray(np.sum(np.diff(ends, axis=0) * (first + at * (b + at * a) > 0), axis=0))
 
 
 def solid_ratio(

@@ -69,7 +69,7 @@ class Run:
     invalid : int
         Number of points that could not be lit.
     bright : int
-        Number of points whose luminance, or a channel of whose colour, is above 1.
+        Number of points with a luminance, or a channel of colour, above 1.
     disagreed : int
         Number of points of the sample that only one of the two implementations could light.
     bound : float
@@ -83,7 +83,7 @@ class Run:
     visible : float
         Share of those places that are off by more than 1/255.
     unmeasured : str
-        What of the error between the points is not measured and why, in words; empty if all is.
+        Part of the error between the points that is not measured and why, in words; empty if none.
     tinted : bool
         Whether it is the light that :func:`vizlight.tint` puts on colours, of points that a filter
         lit before.
@@ -221,9 +221,9 @@ def _lines(run: Run) -> list[str]:
         text = "  no sample: error unknown"
     if not math.isnan(run.bound):
         text += f"; stated bound {run.bound:.2g}"
-    found = [f"{text}; {run.invalid} invalid"]
+    lines = [f"{text}; {run.invalid} invalid"]
     if run.disagreed:
-        found.append(
+        lines.append(
             f"  {run.disagreed} points of the sample are valid in only one of the two "
             "implementations"
         )
@@ -236,10 +236,10 @@ def _lines(run: Run) -> list[str]:
             text += f"; {_percent(run.visible)} are off by more than 1/255"
         if run.visible > unseen(run.places):
             text += "; vizlight.refine to 1/255 leaves only places where the light jumps"
-        found.append(text)
+        lines.append(text)
     if run.unmeasured:
-        found.append(f"  not measured between points: {run.unmeasured}")
-    return found
+        lines.append(f"  not measured between points: {run.unmeasured}")
+    return lines
 
 
 def _confident(share: float) -> str:
@@ -275,7 +275,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     Report
         Report to print after the filters ran, with the attributes ``points``, ``terms``,
         ``seconds``, ``bytes``, ``error``, ``between``, ``invalid``, ``runs``, one for each mesh
-        that was lit, and ``skies``, what is known of each sky.
+        that was lit, and ``skies``, the facts of each sky.
 
     Raises
     ------
@@ -295,8 +295,9 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     fragment shader computes it. It is computed by the engine in float64. It is not measured for
     fur, for cast shadows, for light inside a bundle, and for points without cells, and the report
     says so where it is not. Filters that other threads call are not recorded, nor light by the
-    workers of ``pieces.light(..., map=)``, whose points the report counts. What a reader can read
-    back from the picture is another question: :func:`vizlight.legibility` measures it.
+    workers of ``pieces.light(..., map=)``, although the report counts its points.
+    :func:`vizlight.legibility` measures another question: which values a reader can read back from
+    the picture.
 
     Examples
     --------
@@ -307,20 +308,20 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     >>> report.error < 1e-5
     True
     """
-    made = Report(
+    opened = Report(
         sample=_check.integer("sample", sample, low=0), seed=_check.integer("seed", seed, low=0)
     )
     start = time.perf_counter()
-    with assigned(_ACTIVE, made), observed(note):
+    with assigned(_ACTIVE, opened), observed(note):
         try:
-            yield made
+            yield opened
         finally:
-            made.seconds += time.perf_counter() - start
+            opened.seconds += time.perf_counter() - start
 
 
 @contextlib.contextmanager
 def _checking() -> Iterator[Report | None]:
-    """Give the open report, if there is one; the time of a check is not a cost of the light."""
+    """Give the open report, if any; the time of a check is not a cost of the light."""
     active, start = _ACTIVE.get(), time.perf_counter()
     yield active
     if active is not None:
@@ -340,8 +341,8 @@ def _largest(off: Array) -> tuple[float, float]:
     return float(off.max()), float(np.sqrt(np.mean(off * off)))
 
 
-def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
-    """Add a run of the engine to the open report, if there is one."""
+def note(inputs: ShadingInputs, scene: Scene, shading: Shading, options: ShadingOptions) -> None:
+    """Add a run of the engine to the open report, if any."""
     with _checking() as active:
         if active is None:
             return
@@ -349,17 +350,17 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
         drawn = np.sort(_drawn(active, count, count))
         # A tangent counts as dependent from the same share on as in the type of the engine.
         apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
-        reference = [_reference(given, int(i), scene, options, apart) for i in drawn]
+        reference = [_reference(inputs, int(i), scene, options, apart) for i in drawn]
         got = between.columns(shading, drawn)
         true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(got.shape)
-        valid, known = shading.valid[drawn], np.isfinite(true[:, 0])
+        valid, finite = shading.valid[drawn], np.isfinite(true[:, 0])
         # Points that one of both calls invalid have no difference; they are counted as disagreed.
-        both = valid & known
+        both = valid & finite
         off = np.abs(got[both] - true[both]).max(axis=1, initial=0.0)
         places: Array = np.empty(0)
-        if given.cells is not None and active.sample and between.measurable(given):
+        if inputs.cells is not None and active.sample and between.measurable(inputs):
             places = between.measure(
-                given, scene, options, shading, given.cells(), count=active.sample,
+                inputs, scene, options, shading, inputs.cells(), count=active.sample,
                 seed=active.seed,
             )  # fmt: skip
         largest, mean = _largest(places)
@@ -376,34 +377,34 @@ def note(given: ShadingInputs, scene: Scene, shading: Shading, options: ShadingO
             seconds=shading.seconds,
             bytes=sum(array.nbytes for array in results if array is not None),
             invalid=shading.invalid,
-            disagreed=int(np.count_nonzero(valid != known)),
+            disagreed=int(np.count_nonzero(valid != finite)),
             places=len(places),
             between=largest,
             between_rms=mean,
             visible=float(np.mean(places > VISIBLE)) if len(places) else math.nan,
             tinted=_TINTED.get(),
-            unmeasured=_unmeasured(given, shading, len(places)) if active.sample else "",
+            unmeasured=_unmeasured(inputs, shading, len(places)) if active.sample else "",
         )
 
 
-def _add(active: Report, off: Array, **known: Foreign) -> None:
-    """Add a run with the errors of a sample and what else is known."""
+def _add(active: Report, off: Array, **facts: Foreign) -> None:
+    """Add a run with the errors of a sample and other facts."""
     off = off[np.isfinite(off)]
     error, rms = _largest(off)
-    active.runs.append(Run(sample=off.size, error=error, rms=rms, **known))
+    active.runs.append(Run(sample=off.size, error=error, rms=rms, **facts))
 
 
-def _unmeasured(given: ShadingInputs, shading: Shading, places: int) -> str:
-    """Return what of the error between the points was not measured, and why."""
-    if given.shadow is not None:
+def _unmeasured(inputs: ShadingInputs, shading: Shading, places: int) -> str:
+    """Return the part of the error between the points that was not measured, and why."""
+    if inputs.shadow is not None:
         return SHADOWED
-    if given.repeat > 1 or given.fur_height is not None:
+    if inputs.repeat > 1 or inputs.fur_height is not None:
         return "fur, which light passes on a way of its own at each place"
-    if given.transmittance is not None or given.occlusion is not None:
+    if inputs.transmittance is not None or inputs.occlusion is not None:
         return "light inside a bundle, or in the shade of the sky, whose shares the points have"
     if not places:
         return "points without cells between them, or cells without light"
-    k = given.layout.k
+    k = inputs.layout.k
     if k is not None and k > 1 and "specular" in shading.plan.terms:
         return (
             "the peaks of highlights, which have no closed form for several tangents per point: "
@@ -416,7 +417,7 @@ def note_ratio(
     t: Array, valid: Bools, seconds: float, size: int, reference: Callable[[int, int], float],
     effort: int,
 ) -> None:  # fmt: skip
-    """Add a cos-theta shadow to the open report, if there is one.
+    """Add a cos-theta shadow to the open report, if any.
 
     Parameters
     ----------
@@ -467,16 +468,16 @@ def noted_sky(points: int) -> Iterator[Callable[[Sequence[Record]], None]]:
 
 def _of_sky(record: Record) -> str:
     """Return the errors of a sky in words."""
-    found = "  error unknown"
+    text = "  error unknown"
     error, requested = record["error"], record["requested"]
     if isinstance(error, float) and isinstance(requested, float):
-        found = f"  error {error:.2g} or less at 95 of 100 points, as estimated"
+        text = f"  error {error:.2g} or less at 95 of 100 points, as estimated"
         if error > requested:
-            found += f" ({requested:g} was requested)"
-    found += f", {record['method']}"
+            text += f" ({requested:g} was requested)"
+    text += f", {record['method']}"
     if "between" in record:
-        found += f"; between the points {record['between']:.2g} or less at 95 of 100 places"
-    return found
+        text += f"; between the points {record['between']:.2g} or less at 95 of 100 places"
+    return text
 
 
 def note_bands(
@@ -538,16 +539,16 @@ def paused() -> contextlib.AbstractContextManager[None]:
 
 
 def _reference(
-    given: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
-) -> oracle.Lit:
+    inputs: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
+) -> oracle.OracleLight:
     """Return the light of one point by the oracle."""
-    count, n = given.points.shape
+    count, n = inputs.points.shape
 
     def numbers(rows: ArraySource | None) -> list[float] | None:
         if rows is None:
             return None
         # Points of a fibre share rows, which are fewer.
-        at = i if rows.shape[0] == count else i // given.repeat
+        at = i if rows.shape[0] == count else i // inputs.repeat
         values: list[float] = np.asarray(rows[at : at + 1], dtype=np.float64).ravel().tolist()
         return values
 
@@ -555,31 +556,34 @@ def _reference(
         flat = numbers(rows)
         return None if flat is None else [flat[j : j + n] for j in range(0, len(flat), n)]
 
-    point, tangents = numbers(given.points), vectors(given.tangents)
+    point, tangents = numbers(inputs.points), vectors(inputs.tangents)
     assert point is not None
-    normal: Sequence[float] | None = numbers(given.normals)
-    if given.dimensions is not None:
-        dimension = numbers(given.dimensions)
+    normal: Sequence[float] | None = numbers(inputs.normals)
+    if inputs.dimensions is not None:
+        dimension = numbers(inputs.dimensions)
         # A point alone is lit as if it faced the eye.
         if dimension == [0]:
             normal = oracle.FLOATS.toward(scene.view or View.isometric(n), point)[0]
         # A point of a line is lit by its tangent, and any other by its normal.
         tangents, normal = (tangents, None) if dimension == [1] else (None, normal)
-    (height,), (occlusion,) = numbers(given.fur_height) or [0.0], numbers(given.occlusion) or [1.0]
+    (height,), (occlusion,) = (
+        numbers(inputs.fur_height) or [0.0],
+        numbers(inputs.occlusion) or [1.0],
+    )
     return oracle.light(
         point,
         tangents,
         normal,
         scene,
-        base_tangents=vectors(given.base_tangents),
+        base_tangents=vectors(inputs.base_tangents),
         fur_height=height,
-        shadow=numbers(given.shadow),
-        transmittance=numbers(given.transmittance),
+        shadow=numbers(inputs.shadow),
+        transmittance=numbers(inputs.transmittance),
         occlusion=occlusion,
         model=options.model,
         exponent=options.exponent,
         conditioned=bool(options.conditioned),
-        two_sided=given.two_sided,
-        fur=given.fur,
+        two_sided=inputs.two_sided,
+        fur=inputs.fur,
         apart=apart,
     )

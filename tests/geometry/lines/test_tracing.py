@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from vizlight import _compiled
-from vizlight.geometry.lines.simplices import Places, Simplices
+from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import Flow, Tracing, trace
 
 RANDOM = np.random.default_rng(7)
@@ -58,9 +58,9 @@ def test_random_places_are_uniform_and_walks_are_straight(make, measure):
 def test_a_walk_around_a_box_comes_back():
     """Unfolded, four faces are a strip of length 4, whose ends meet."""
     mesh = box()
-    middle = mesh.positions(Places(np.arange(12), np.full((12, 3), 1 / 3)))
+    middle = mesh.positions(CellPlaces(np.arange(12), np.full((12, 3), 1 / 3)))
     cell = int(np.argmax(middle[:, 0]))
-    start = Places(np.array([cell]), np.array([[0.2, 0.3, 0.5]]))
+    start = CellPlaces(np.array([cell]), np.array([[0.2, 0.3, 0.5]]))
     end, inside = mesh.walk(start, np.array([[0.0, 4.0, 0.0]]))
     assert inside.all()
     np.testing.assert_allclose(mesh.positions(end), mesh.positions(start), atol=1e-12)
@@ -71,7 +71,7 @@ def test_cells_without_extent_and_sides_of_three_cells_end_a_walk():
     fan = Simplices(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 1, 5]]))
     assert np.all(fan.neighbours[:3, 2] == -1)
     assert np.all(fan.neighbours[3] == -1)
-    start = Places(np.array([0]), np.full((1, 3), 1 / 3))
+    start = CellPlaces(np.array([0]), np.full((1, 3), 1 / 3))
     end, inside = fan.walk(start, np.array([[0.0, -5.0, 0.0]]))
     assert not inside.any()
     np.testing.assert_allclose(fan.positions(end)[0], [1 / 3, 0, 0], atol=1e-12)
@@ -101,7 +101,7 @@ def orbit_error(make, step):
     cell = np.arange(len(mesh.cells))
     radius = np.linalg.norm((mesh.points[mesh.cells].mean(axis=1) - middle)[:, :2], axis=1)
     cell = cell[np.abs(radius - 0.3) < 0.1][:20]
-    seeds = Places(cell, np.full((len(cell), mesh.k + 1), 1 / (mesh.k + 1)))
+    seeds = CellPlaces(cell, np.full((len(cell), mesh.k + 1), 1 / (mesh.k + 1)))
     curves = trace(flow, seeds, dataclasses.replace(HOW, step=step, max_length=1.0))
     away = (mesh.positions(curves.places) - middle)[:, :2]
     radius = np.linalg.norm(away, axis=1)

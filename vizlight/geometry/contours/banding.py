@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Indices, Slice
-    from vizlight.geometry.contours.spacing import Steps
+    from vizlight.geometry.contours.spacing import LuminanceSteps
 
     Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
@@ -58,7 +58,7 @@ class Bands:
         Indices of the end points of contour segments.
     line_levels : ndarray of float64, shape (S,)
         Luminance of each contour segment.
-    steps : Steps
+    steps : LuminanceSteps
         Luminance of contours and bands.
     error : float
         Largest luminance error: the bound of a closed form, else the error measured at the centre
@@ -73,7 +73,7 @@ class Bands:
     patch: Indices
     lines: Indices
     line_levels: Array
-    steps: Steps
+    steps: LuminanceSteps
     error: float
 
     @property
@@ -160,7 +160,7 @@ def cut(
     points: Array,
     triangles: Indices,
     values: Array,
-    steps: Steps,
+    steps: LuminanceSteps,
     /,
     *,
     patch: Indices | None = None,
@@ -177,7 +177,7 @@ def cut(
         Indices of corners.
     values : ndarray, shape (T, 3) or (P,)
         Luminance at the corners, which may differ between both sides of a crease, or at the points.
-    steps : Steps
+    steps : LuminanceSteps
         Luminance of contours and bands.
     patch : ndarray of int, shape (T,), optional
         Index of the smooth part that each triangle belongs to. The triangles at an edge that
@@ -200,10 +200,10 @@ def cut(
     Notes
     -----
     A value in (edges[k-1], edges[k]] belongs to band k. Contour points keep the order of the levels
-    along an edge even where the luminance is not monotone there, so that each triangle is cut into
-    one polygon per band. All triangles at an edge have all its contour points as corners, whichever
-    side they come from: a closed surface stays closed. Triangles without contour points are taken
-    over as they are.
+    along an edge even where the luminance is not monotone, so that each triangle is cut into
+    one polygon per band. All triangles at an edge share all its contour points as corners, from
+    whichever side they come: a closed surface stays closed. Triangles without contour points are
+    taken over as they are.
     """
     # Nothing is brighter than the last edge of the steps: as a level it would cross nothing.
     levels = steps.edges[: max(len(steps.edges) - 1, 1)]
@@ -224,12 +224,12 @@ def cut(
     count = len(points)
     used, lookup = _compact(corners, count + len(new))
     old = np.searchsorted(used, count)
-    made = np.concatenate([points[used[:old]], new[used[old:] - count]])
+    cut_points = np.concatenate([points[used[:old]], new[used[old:] - count]])
     lines = lookup[lines]
     # A segment from a point to itself, or one with an end that no polygon uses, is none.
     kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
     cut_bands = Bands(
-        points=made,
+        points=cut_points,
         offsets=offsets,
         corners=corners,
         band=band,
@@ -243,7 +243,7 @@ def cut(
     return cut_bands, triangle
 
 
-def none(steps: Steps, error: float = 0.0) -> Bands:
+def none(steps: LuminanceSteps, error: float = 0.0) -> Bands:
     """Return the bands of a surface without polygons."""
     empty, _ = cut(np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty((0, 3)), steps)
     return dataclasses.replace(empty, error=error)
@@ -328,24 +328,24 @@ def _pieces(
 def _touched(
     triangles: Indices, values: Array, levels: Array, patch: Indices
 ) -> tuple[Indices, Bools]:
-    """Return the band of each triangle's first corner, and which triangles are not left whole.
+    """Return the band of each triangle's first corner, and a mask of the triangles that are cut.
 
-    These have contour points on their edges, or too few corners.
+    Those have contour points on their edges, or repeated corners.
     """
     lowest = np.empty(len(triangles), np.intp)
-    own = np.empty((len(triangles), 3), np.bool_)
+    crossed_sides = np.empty((len(triangles), 3), np.bool_)
     touched = np.empty(len(triangles), np.bool_)
     for start in range(0, len(triangles), BLOCK):
         rows = slice(start, start + BLOCK)
         bands = np.searchsorted(levels, at_corners(values, triangles, rows), side="left")
         lowest[rows] = bands[:, 0]
-        own[rows] = bands != np.roll(bands, -1, axis=1)
+        crossed_sides[rows] = bands != np.roll(bands, -1, axis=1)
         a, b, c = triangles[rows].T
-        touched[rows] = (a == b) | (b == c) | (c == a) | own[rows].any(axis=1)
-    if np.any(patch != patch[:1]) and np.any(own):
+        touched[rows] = (a == b) | (b == c) | (c == a) | crossed_sides[rows].any(axis=1)
+    if np.any(patch != patch[:1]) and np.any(crossed_sides):
         # At a crease the contour points of one side are corners on the other one, too.
         codes = edge_codes(triangles, int(triangles.max(initial=0)) + 1)
-        touched |= np.isin(codes, codes[own]).any(axis=1)
+        touched |= np.isin(codes, codes[crossed_sides]).any(axis=1)
     return lowest, touched
 
 
@@ -446,8 +446,8 @@ def _crossed(
 
     def above(rows: Indices, places: Array) -> Array:
         side = of_side[rows]
-        found = luminance(ends[side, 0], ends[side, 1], places, patch[side])
-        return found - levels[level[rows], np.newaxis]
+        brightness = luminance(ends[side, 0], ends[side, 1], places, patch[side])
+        return brightness - levels[level[rows], np.newaxis]
 
     rising = values[:, 0] < values[:, 1]
     top, bottom = (pick(values, axis=1)[of_side] - levels[level] for pick in (np.max, np.min))
@@ -511,8 +511,8 @@ def _rooted(
         done = (f1 == 0) | (width <= np.where(jumps, NARROW, WIDTH))
         # A jump as near to a corner as it is searched is at the corner.
         end = np.where(np.minimum(x1, x2) == 0, 0, np.where(np.maximum(x1, x2) == 1, 1, x1))
-        found = np.where(jumps & (width <= NARROW), end, np.where(np.abs(f1) <= np.abs(f2), x1, x2))
-        share[which[done]] = found[done]
+        root = np.where(jumps & (width <= NARROW), end, np.where(np.abs(f1) <= np.abs(f2), x1, x2))
+        share[which[done]] = root[done]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
             # Chandrupatla's test, whether inverse quadratic interpolation stays between the ends;
@@ -536,8 +536,8 @@ def _walk(
 ) -> tuple[Indices, ...]:  # fmt: skip
     """Walk around each triangle; the points of one band are a polygon in the order of the walk.
 
-    Returns columns of triangle, band, position, point and the level crossed there, or -1 without
-    a crossing. A point on a contour has two rows, one for each of its bands.
+    Returns columns of triangle, band, position, point and the crossed level, -1 for no crossing. A
+    point on a contour has two rows, one for each of its bands.
     """
     rows = []
     every, nothing = np.arange(len(corner)), np.full(len(corner), -1)
@@ -554,20 +554,21 @@ def _walk(
         # Contour points are stored once per edge, and its other triangle meets them in the other
         # order.
         index = np.where(forward, index, last[tri] - 1 - step)
-        # Only the contours of the own side of a crease lead to another band.
-        own = of_side[index] == side[tri, slot]
-        passed = np.cumsum(own)
-        # The sum runs through all triangles: what it was before each one's own points is taken off.
+        # Only the contours of the triangle's own side of a crease lead to another band.
+        same_side = of_side[index] == side[tri, slot]
+        passed = np.cumsum(same_side)
+        # The sum runs through all triangles: the sum before each triangle's own points is
+        # subtracted.
         passed -= np.append(0, passed)[np.searchsorted(tri, tri)]
         sign = np.where(band[tri, (slot + 1) % 3] > band[tri, slot], 1, -1)
         after = band[tri, slot] + sign * passed
         position = slot * span + 2 * (step + 1)
-        crossed = np.where(own, level[index], -1)
+        crossed = np.where(same_side, level[index], -1)
         rows.append([tri, after, position, vertex[index], crossed])
         # A contour point is the last of the band that it ends and the first of the one that it
         # begins.
         before = [tri, after - sign, position - 1, vertex[index], np.full(len(tri), -1)]
-        rows.append([column[own] for column in before])
+        rows.append([column[same_side] for column in before])
     return tuple(np.concatenate(part) for part in zip(*rows, strict=True))
 
 

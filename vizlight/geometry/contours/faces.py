@@ -77,7 +77,7 @@ class Borders(NamedTuple):
     starts : ndarray of int, shape (r + 1,)
         First vertex of each ring, and the end.
     sharp : ndarray of bool, shape (n,)
-        Whether colours jump there.
+        Mask of the vertices at which colours jump.
     """
 
     points: Array
@@ -182,13 +182,13 @@ def _segments(labels: NDArray[np.int32], corners: Indices) -> tuple[Indices, Ind
     face: list[Indices] = []
     bits = np.array([1, 2, 4, 8])
     for place in range(4):
-        own = labels[:, place]
-        new = own > 0
+        label = labels[:, place]
+        new = label > 0
         for before in range(place):
-            new &= labels[:, before] != own
+            new &= labels[:, before] != label
         rows = np.flatnonzero(new)
-        own = own[rows]
-        inside = labels[rows] == own[:, np.newaxis]
+        label = label[rows]
+        inside = labels[rows] == label[:, np.newaxis]
         code = inside @ bits
         for number, ways in WAYS.items():
             here = np.flatnonzero(code == number)
@@ -201,7 +201,7 @@ def _segments(labels: NDArray[np.int32], corners: Indices) -> tuple[Indices, Ind
                     swap = not inside[here[0], a]
                     pair = corners[picked][:, [b, a] if swap else [a, b]]
                     ends.append(pair)
-                face.append(own[here].astype(np.intp))
+                face.append(label[here].astype(np.intp))
     return np.concatenate(firsts), np.concatenate(lasts), np.concatenate(face)
 
 
@@ -257,9 +257,9 @@ def _smoothed(points: Array, sharp: Bools, starts: Indices) -> Array:
 
 
 def _spread(borders: Borders, padded: NDArray[np.int32], scale: int) -> tuple[Array, Array]:
-    """Return the vertices of borders, those beneath later faces moved into them, and by how much.
+    """Return the vertices of borders, moved into later faces that cover them, and the distances.
 
-    Vertices are in samples, what they are moved by in pixels.
+    Vertices are in samples, distances in pixels.
     """
     points, starts = borders.points, borders.starts
     span = np.maximum(np.minimum(np.diff(starts), 4 * scale) // 3, 1)
@@ -280,8 +280,8 @@ def _spread(borders: Borders, padded: NDArray[np.int32], scale: int) -> tuple[Ar
         moved[left[covered]] = reach
         left = left[~covered]
     # The least of five that follow each other: a border without teeth takes few vertices.
-    one = np.ones_like(span)
-    least = np.minimum.reduce([moved[_shifted(starts, step * one)] for step in range(-2, 3)])
+    unit = np.ones_like(span)
+    least = np.minimum.reduce([moved[_shifted(starts, step * unit)] for step in range(-2, 3)])
     moved = np.where(hidden, least, 0.0)
     return points + scale * moved[:, np.newaxis] * out, moved
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Indices, VectorLike
     from vizlight.geometry.contours.refinement import Luminance
-    from vizlight.geometry.contours.spacing import Levels, Steps
+    from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 
 __all__ = ["Bands", "Laminae", "sphere", "truncus", "virtual_light"]
 
@@ -148,12 +148,12 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
     total = np.zeros(3)
     # A headlight is where the eye is.
     light = eye if getattr(light, "is_headlight", False) else light
-    for name, given in (("light", light), ("eye", eye)):
-        position = getattr(given, "position", None)
-        if position is not None and not getattr(given, "parallel", False):
+    for name, light_or_eye in (("light", light), ("eye", eye)):
+        position = getattr(light_or_eye, "position", None)
+        if position is not None and not getattr(light_or_eye, "parallel", False):
             total += _check.unit(name, axial.triple(name, position) - middle)
         else:
-            total += _check.unit(name, getattr(given, "direction", given))
+            total += _check.unit(name, getattr(light_or_eye, "direction", light_or_eye))
     # Halfway between opposite directions there is no direction.
     if math.hypot(*total) < 1e-12:
         expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
@@ -170,7 +170,7 @@ def _options(segments: int | None, form: Form) -> int | None:
 class _Latitudes:
     """Luminance of a sphere as a function of q, sin^2 of half the angle to the light."""
 
-    def __init__(self, light: axial.Source, solid: primitives.Sphere) -> None:
+    def __init__(self, light: axial.ShapeLight, solid: primitives.Sphere) -> None:
         self.light, self.solid = light, solid
         near, radius = light.distance, solid.radius
         # A light on or inside the sphere has all of its outside behind the horizon, as at R/d = 1.
@@ -210,7 +210,11 @@ class _Latitudes:
 
 
 def _round(
-    latitudes: _Latitudes, steps: Steps, places: Array, wanted: Levels, segments: int | None
+    latitudes: _Latitudes,
+    steps: LuminanceSteps,
+    places: Array,
+    wanted: Levels,
+    segments: int | None,
 ) -> tuple[int, float]:
     """Return the number of points per circle and the resulting luminance error."""
     if segments is not None:
@@ -243,7 +247,9 @@ def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
     return angle, np.where(step == 0, contour[piece], -1)
 
 
-def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error: float) -> Bands:
+def _bands(
+    latitudes: _Latitudes, steps: LuminanceSteps, places: Array, count: int, error: float
+) -> Bands:
     """Return the closed surface: caps at both poles and strips between circles."""
     solid, toward = latitudes.solid, latitudes.light.toward
     if solid.empty:
@@ -284,7 +290,7 @@ def _bands(latitudes: _Latitudes, steps: Steps, places: Array, count: int, error
     )
 
 
-def _laminae(latitudes: _Latitudes, steps: Steps, places: Array, count: int) -> Laminae:
+def _laminae(latitudes: _Latitudes, steps: LuminanceSteps, places: Array, count: int) -> Laminae:
     """Return filled circles of the lit side, and their mirror images for the unlit side."""
     inside = places > 0
     lit = places[inside]
@@ -410,7 +416,7 @@ def truncus(
     return _ruled_bands(side, steps, places, segments)
 
 
-def shade(light: axial.Source, center: Array) -> Luminance:
+def shade(light: axial.ShapeLight, center: Array) -> Luminance:
     """Return the function of points and normals that gives the luminance under one light."""
 
     def luminance(points: Array, normals: Array) -> Array:
@@ -428,7 +434,7 @@ def shade(light: axial.Source, center: Array) -> Luminance:
 class _Rulings:
     """Luminance of the side of a frustum as a function of the angle around its axis."""
 
-    def __init__(self, light: axial.Source, solid: primitives.Frustum) -> None:
+    def __init__(self, light: axial.ShapeLight, solid: primitives.Frustum) -> None:
         self.light, self.solid = light, solid
         self.first, self.second = axial.frame(solid.axis, light.toward)
         slope = solid.radii[1] - solid.radii[0]
@@ -462,7 +468,7 @@ class _Rulings:
         return np.asarray(self.solid.center + half + radius * ring)
 
 
-def _ruled_bands(side: _Rulings, steps: Steps, places: Array, segments: int) -> Bands:
+def _ruled_bands(side: _Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Bands:
     """Return the closed surface: strips between rulings, and one polygon per end."""
     (first, second), height = side.solid.radii, side.solid.height
     if max(first, second) == 0:
@@ -513,7 +519,7 @@ def _ruled_bands(side: _Rulings, steps: Steps, places: Array, segments: int) -> 
     )
 
 
-def _chords(side: _Rulings, steps: Steps, places: Array, segments: int) -> Laminae:
+def _chords(side: _Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Laminae:
     """Return the chords through both rulings of each contour, and the two ends."""
     inside = (places > 0) & (places < np.pi)
     lit = places[inside]

@@ -24,7 +24,7 @@ LEAST = 20
 ROUNDED = 0.1
 #: Colours that differ by less than this, as a share of the error, are one for the palette.
 BIN = 0.35
-#: Rounds in which specks join what is beside them.
+#: Rounds in which specks join the face beside them.
 ROUNDS = 4
 #: Neighbours of a sample, and the number of those of its colour below which it is a speck.
 AROUND = [(down, right) for down in (-1, 0, 1) for right in (-1, 0, 1) if down or right]
@@ -41,9 +41,9 @@ class Palette(NamedTuple):
     Attributes
     ----------
     centres : ndarray, shape (K, c)
-        Colours whose bisectors are the borders of faces; the first is the background's.
+        Colours; their bisectors are the borders of faces. The first is the background's.
     colors : ndarray, shape (K, c)
-        Colours in which faces are painted: of each the middle of what it stands for.
+        Colours in which faces are painted: the middle of the samples of each.
     labels : ndarray of int32, shape (rows, columns)
         Number of the colour of each sample.
     error : float
@@ -57,7 +57,7 @@ class Palette(NamedTuple):
 
 
 def palette_of(samples: Array, background: Array, error: float) -> Palette:
-    """Return few colours of which one is near to each sample.
+    """Return a few colours such that each sample is near one of them.
 
     Parameters
     ----------
@@ -75,11 +75,11 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     rows, columns, channels = samples.shape
     flat = samples.reshape(-1, channels)
     shown = np.flatnonzero(np.any(flat != background.astype(flat.dtype), axis=1))
-    own = flat[shown].astype(np.float32)
+    foreground = flat[shown].astype(np.float32)
     labels = np.zeros(rows * columns, dtype=np.int32)
     if not len(shown):
         return Palette(background[np.newaxis], background[np.newaxis], labels.reshape(rows, -1), 0)
-    centres, number = nearest_colors(own, error)
+    centres, number = nearest_colors(foreground, error)
     # From dark to light, and none that no sample has.
     count = np.bincount(number, minlength=len(centres))
     order = np.argsort(centres.sum(axis=1), kind="stable")
@@ -87,47 +87,46 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     rank = np.zeros(len(centres), dtype=np.int32)
     rank[order] = np.arange(1, len(order) + 1)
     labels[shown] = rank[number]
-    low, high = _extremes(own, labels[shown], len(order) + 1)
+    low, high = _extremes(foreground, labels[shown], len(order) + 1)
     colors = np.concatenate([background[np.newaxis], (low + high)[1:] / 2])
-    found = float(np.max((high - low)[1:]) / 2)
+    largest_error = float(np.max((high - low)[1:]) / 2)
     kept = np.concatenate([background[np.newaxis], centres[order]])
     _settle(labels.reshape(rows, columns), samples, kept, error)
-    return Palette(kept, colors, labels.reshape(rows, columns), found)
+    return Palette(kept, colors, labels.reshape(rows, columns), largest_error)
 
 
-def nearest_colors(own: Array, error: float) -> tuple[Array, Indices]:
-    """Return colours of which one is near to each sample, and which.
+def nearest_colors(samples: Array, error: float) -> tuple[Array, Indices]:
+    """Return colours such that each sample is near one of them, and the index of that colour.
 
     Parameters
     ----------
-    own : ndarray, shape (N, c)
-        Samples.
+    samples : ndarray, shape (N, c)
     error : float
         Largest difference of a channel.
     """
-    some, count = np.unique(own[::FEWER], axis=0, return_counts=True)
+    some, count = np.unique(samples[::FEWER], axis=0, return_counts=True)
     common = np.argsort(-count, kind="stable")[:MOST_FLAT]
     common = common[count[common] > max(FLAT * count.sum(), LEAST)]
-    number = np.full(len(own), -1)
-    flat = np.zeros((0, own.shape[1]))
-    # What has one colour, but for rounding, over a large part keeps it.
+    number = np.full(len(samples), -1)
+    flat = np.zeros((0, samples.shape[1]))
+    # A large part of one colour, but for rounding, keeps it.
     for color in some[common]:
         if not np.any(np.all(np.abs(flat - color) < 2 * ROUNDED, axis=1)):
-            number[np.all(np.abs(own - color) < ROUNDED, axis=1)] = len(flat)
+            number[np.all(np.abs(samples - color) < ROUNDED, axis=1)] = len(flat)
             flat = np.concatenate([flat, color[np.newaxis]])
     rest = np.flatnonzero(number < 0)
     if not len(rest):
         return flat, number
-    centres, nearest = (_even if own.shape[1] == 1 else _net)(own[rest], error)
+    centres, nearest = (_even if samples.shape[1] == 1 else _net)(samples[rest], error)
     number[rest] = len(flat) + nearest
     return np.concatenate([flat, centres]), number
 
 
 def _settle(labels: NDArray[np.int32], samples: Array, centres: Array, error: float) -> None:
-    """Give samples that touch few others of their colour the nearest colour beside them.
+    """Give samples that touch few others of their own colour the nearest colour beside them.
 
     Where colours change within a pixel, faces would be specks that nobody sees. A corner of a face
-    whose colour is unlike those around it stays.
+    stays if its colour differs clearly from those around it.
     """
     limit = (JUMP * error) ** 2
     for _ in range(ROUNDS):
@@ -151,19 +150,19 @@ def _settle(labels: NDArray[np.int32], samples: Array, centres: Array, error: fl
         labels[row, column] = best
 
 
-def _even(own: Array, error: float) -> tuple[Array, Indices]:
+def _even(samples: Array, error: float) -> tuple[Array, Indices]:
     """Return evenly spaced levels of one channel, and the nearest to each sample."""
-    low, high = float(own.min()), float(own.max())
+    low, high = float(samples.min()), float(samples.max())
     count = max(int(np.ceil((high - low) / (2 * error))), 1)
     width = (high - low) / count or 1.0
-    number = np.clip((own[:, 0] - low) / width, 0, count - 1).astype(np.intp)
+    number = np.clip((samples[:, 0] - low) / width, 0, count - 1).astype(np.intp)
     return low + width * (np.arange(count)[:, np.newaxis] + 0.5), number
 
 
-def _net(own: Array, error: float) -> tuple[Array, Indices]:
+def _net(samples: Array, error: float) -> tuple[Array, Indices]:
     """Return colours that cover those of samples, and the nearest to each sample."""
     size = BIN * error
-    cells = np.floor(own / size).astype(np.int64)
+    cells = np.floor(samples / size).astype(np.int64)
     base = cells.min(axis=0)
     cells -= base
     spans = cells.max(axis=0) + 1
@@ -178,7 +177,7 @@ def _net(own: Array, error: float) -> tuple[Array, Indices]:
     number = nearest[inverse, 0]
     # Samples of a bin that is not on one side of all bisectors have each their own.
     near = np.flatnonzero((away[:, 1] - away[:, 0] < np.sqrt(3) * size)[inverse])
-    number[near] = tree.query(own[near], workers=-1)[1]
+    number[near] = tree.query(samples[near], workers=-1)[1]
     return centres, number
 
 
@@ -207,13 +206,13 @@ def _cover(points: Array, reach: float) -> Indices:
     return np.array(chosen)
 
 
-def _extremes(own: Array, number: Indices, count: int) -> tuple[Array, Array]:
+def _extremes(samples: Array, number: Indices, count: int) -> tuple[Array, Array]:
     """Return the least and the largest channels of the samples of each number from 1."""
     order = np.argsort(number, kind="stable")
     starts = np.searchsorted(number[order], np.arange(1, count))
-    blank = np.zeros((1, own.shape[1]))
+    blank = np.zeros((1, samples.shape[1]))
     low, high = (
-        np.concatenate([blank, part.reduceat(own[order], starts, axis=0)])
+        np.concatenate([blank, part.reduceat(samples[order], starts, axis=0)])
         for part in (np.minimum, np.maximum)
     )
     return low, high

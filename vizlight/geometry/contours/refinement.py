@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.contours.banding import Bands
-    from vizlight.geometry.contours.spacing import Levels, Steps
+    from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
     from vizlight.geometry.solids.triangle_mesh import Mesh
 
     Luminance = Callable[[Array, Array], Array]
@@ -89,9 +89,9 @@ def draw(
     if not len(mesh.triangles):
         # A solid without volume has no luminance; its steps still have to be valid.
         return banding.none(spacing.steps(levels, low or 0.0, low or 0.0))
-    made = refine(LitSolid(open_apexes(mesh), luminance), levels, low=low, progress=progress)
-    made = _close_apexes(made, mesh)
-    return dataclasses.replace(made, points=mesh.world(made.points))
+    bands = refine(LitSolid(open_apexes(mesh), luminance), levels, low=low, progress=progress)
+    bands = _close_apexes(bands, mesh)
+    return dataclasses.replace(bands, points=mesh.world(bands.points))
 
 
 def refine(
@@ -118,10 +118,10 @@ def refine(
     for turn in range(ROUNDS + 1):
         limit = _allowed(levels, steps)
         # Triangles that stay as they were come first, with the error that they have.
-        count, known = len(surface.triangles), len(error)
-        bands, triangle = surface.cut(steps, known)
-        pieces = np.append(pieces, np.bincount(triangle, minlength=count)[known:])
-        error = np.append(error, np.zeros(count - known))
+        count, measured = len(surface.triangles), len(error)
+        bands, triangle = surface.cut(steps, measured)
+        pieces = np.append(pieces, np.bincount(triangle, minlength=count)[measured:])
+        error = np.append(error, np.zeros(count - measured))
         np.maximum.at(error, triangle, surface.measure(bands, triangle, limit))
         chosen = np.flatnonzero(error > limit)
         if progress is not None:
@@ -131,14 +131,14 @@ def refine(
         same = surface.split(chosen)
         # The first of the triangles are those that stay, in the order of these indices.
         error, pieces = error[same], pieces[same]
-        found = _steps(surface, levels, low).edges
+        edges = _steps(surface, levels, low).edges
         share = STILL * steps.error
-        if len(found) != len(steps.edges) or np.abs(steps.edges - found).max() > share:
-            # New points are brighter than all before: other steps, by which nothing is known.
+        if len(edges) != len(steps.edges) or np.abs(steps.edges - edges).max() > share:
+            # New points are brighter than all before: the steps change, and with them all errors.
             steps = _settled(surface, levels, low)
             error, pieces = error[:0], pieces[:0]
     # The last cut was of the new triangles only.
-    if known:
+    if measured:
         bands, _ = surface.cut(steps)
     worst, bound = float(error.max(initial=0)), spacing.allowed(levels)
     if bound is not None and worst > bound:
@@ -146,7 +146,7 @@ def refine(
     return dataclasses.replace(bands, error=worst)
 
 
-def _allowed(levels: Levels, steps: Steps) -> float:
+def _allowed(levels: Levels, steps: LuminanceSteps) -> float:
     """Return the error beyond which a triangle is split."""
     bound = spacing.allowed(levels)
     if bound is None:
@@ -154,14 +154,14 @@ def _allowed(levels: Levels, steps: Steps) -> float:
     return steps.error + KEPT * (bound - steps.error)
 
 
-def _steps(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
+def _steps(surface: LitTriangles, levels: Levels, low: float | None) -> LuminanceSteps:
     """Return the steps between the lowest and the highest luminance at the points."""
     values = surface.values
     bottom = float(values.min()) if low is None else low
     return spacing.steps(levels, bottom, float(values.max()))
 
 
-def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
+def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> LuminanceSteps:
     """Split the triangles with a highlight inside that their corners miss; return the steps.
 
     If there are many triangles, only the brightest are searched. The highest luminance of all,
@@ -185,7 +185,7 @@ def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Steps:
         if not above.any():
             break
         same = surface.split(rows[above])
-        # What was found of the triangles that stay as they were still holds.
+        # The errors of the triangles that stay as they were still hold.
         searched = len(same) if few else 0
     return steps
 
@@ -216,11 +216,11 @@ class LitTriangles:
         self.patch = np.broadcast_to(np.intp(0), len(triangles))
         used = np.zeros(len(points), np.bool_)
         used[triangles] = True
-        found = self.light(points[used])
+        brightness = self.light(points[used])
         # Points that no triangle uses must not take part in the lowest and the highest luminance.
         #: Luminance at the points, or at the corners of triangles.
-        self.values = np.full(len(points), found.min(initial=np.inf))
-        self.values[used] = found
+        self.values = np.full(len(points), brightness.min(initial=np.inf))
+        self.values[used] = brightness
 
     def light(self, places: Array, patch: Indices | None = None) -> Array:  # noqa: ARG002
         """Return the luminance of places, which are rows of points, on given patches."""
@@ -230,20 +230,20 @@ class LitTriangles:
         """Return points at fractions of edges."""
         return banding.chord(self.points, a, b, share)
 
-    def at(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
+    def on_edges(self, a: Indices, b: Indices, share: Array, patch: Indices) -> Array:
         """Return the luminance at fractions (N, m) of edges, with the normals of one side."""
         count = share.shape[1]
         places = self.place(np.repeat(a, count), np.repeat(b, count), share.ravel())
         return self.light(places, np.repeat(patch, count)).reshape(share.shape)
 
-    def cut(self, steps: Steps, first: int = 0) -> tuple[Bands, Indices]:
-        """Return the bands of all triangles from one on, and the triangle of each polygon."""
-        made, triangle = banding.cut(
+    def cut(self, steps: LuminanceSteps, first: int = 0) -> tuple[Bands, Indices]:
+        """Return the bands of the triangles from an index on, and the triangle of each polygon."""
+        bands, triangle = banding.cut(
             self.points, self.triangles[first:],
             self.values[first:] if self.values.ndim == 2 else self.values, steps,
-            patch=self.patch[first:], place=self.place, luminance=self.at,
+            patch=self.patch[first:], place=self.place, luminance=self.on_edges,
         )  # fmt: skip
-        return made, first + triangle
+        return bands, first + triangle
 
     def split(self, chosen: Indices) -> Indices:
         """Halve the edges of chosen triangles, and split their neighbours to match.
@@ -280,9 +280,9 @@ class LitTriangles:
         steps = np.array([(i, j) for i in range(GRID) for j in range(GRID - i)]) + 0.5
         weights = np.column_stack([steps, GRID + 0.5 - steps.sum(axis=1)]) / (GRID + 0.5)
         places = weights @ self.points[self.triangles[rows]]
-        found = self.near(places.reshape(-1, places.shape[-1]), np.repeat(rows, len(steps)))
+        brightness = self.near(places.reshape(-1, places.shape[-1]), np.repeat(rows, len(steps)))
         lit = np.all(self.lit[self.triangles[rows]], axis=1)
-        return np.where(lit, found.reshape(len(rows), -1).max(axis=1), -np.inf)
+        return np.where(lit, brightness.reshape(len(rows), -1).max(axis=1), -np.inf)
 
     def near(self, places: Array, triangle: Indices) -> Array:  # noqa: ARG002
         """Return the luminance on the exact surface at places near some triangles."""
@@ -318,9 +318,9 @@ class LitTriangles:
             corner = corner + WITHIN * toward
             inside = [corner + share * (1 - WITHIN) * edge for share in ALONG]
             rows = np.arange(first, last)
-            of = np.concatenate([rows, np.tile(np.repeat(rows, size), len(ALONG))])
-            found = self.near(np.concatenate([middle, *inside]), triangle[of])
-            miss = np.abs(found - bands.values[of])
+            polygon = np.concatenate([rows, np.tile(np.repeat(rows, size), len(ALONG))])
+            brightness = self.near(np.concatenate([middle, *inside]), triangle[polygon])
+            miss = np.abs(brightness - bands.values[polygon])
             sides = miss[len(rows) :].reshape(len(ALONG), -1).max(axis=0)
             worst[rows] = np.maximum(miss[: len(rows)], np.maximum.reduceat(sides, offsets))
             first = last
@@ -372,8 +372,8 @@ class LitSolid(LitTriangles):
     def light(self, places: Array, patch: Indices | None = None) -> Array:
         """Return the luminance of places on given surfaces."""
         assert patch is not None
-        found = triangle_mesh.normals_of(self.mesh, places, patch)
-        return np.asarray(self.luminance(self.mesh.world(places), found), dtype=np.float64)
+        normals = triangle_mesh.normals_of(self.mesh, places, patch)
+        return np.asarray(self.luminance(self.mesh.world(places), normals), dtype=np.float64)
 
     def near(self, places: Array, triangle: Indices) -> Array:
         """Return the luminance on the exact surface at places near some triangles."""
@@ -391,7 +391,7 @@ class LitSolid(LitTriangles):
 def open_apexes(mesh: Mesh) -> Mesh:
     """Return the mesh with a small hole at the apex of each cone, with one point per ruling.
 
-    Where a solid touches itself there, each of its points at the apex gets its own hole.
+    Where a solid touches itself at an apex, each of its points at the apex gets its own hole.
     """
     for patch, apex in mesh.surfaces.apexes:
         count = len(mesh.points)
@@ -410,13 +410,13 @@ def open_apexes(mesh: Mesh) -> Mesh:
         new = count + place.reshape(2, -1)
         way = mesh.points[ends % count] - apex
         rim = apex + APEX * way / np.sqrt(np.einsum("ij,ij->i", way, way))[:, np.newaxis]
-        # What is left of a triangle without its tip has four corners, and is two triangles.
-        made = np.stack([new[0], b, c], axis=1), np.stack([new[0], c, new[1]], axis=1)
+        # A triangle without its tip has four corners, and becomes two triangles.
+        halves = np.stack([new[0], b, c], axis=1), np.stack([new[0], c, new[1]], axis=1)
         kept = ~start.any(axis=1)
         owner = mesh.patch[rows]
         mesh = mesh.replace(
             points=np.concatenate([mesh.points, rim]),
-            triangles=np.concatenate([mesh.triangles[kept], *made]),
+            triangles=np.concatenate([mesh.triangles[kept], *halves]),
             patch=np.concatenate([mesh.patch[kept], owner, owner]),
         )
     return mesh

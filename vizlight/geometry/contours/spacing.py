@@ -27,7 +27,7 @@ CHORDS, LEAST, MORE = 0.05, 0.01, 1.05
 
 
 @dataclass(frozen=True)
-class Steps:
+class LuminanceSteps:
     """Steps of luminance between two bounds.
 
     Attributes
@@ -49,8 +49,8 @@ class Steps:
 
     def band(self, luminance: Array) -> Indices:
         """Return the band of each luminance: 0 up to the lowest, k in (edges[k-1], edges[k]]."""
-        found = np.searchsorted(self.edges, luminance, side="left")
-        return np.minimum(found, len(self.edges) - 1)
+        index = np.searchsorted(self.edges, luminance, side="left")
+        return np.minimum(index, len(self.edges) - 1)
 
 
 def check(levels: object) -> None:
@@ -91,17 +91,17 @@ def allowed(levels: object) -> float | None:
     return None
 
 
-def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) -> Steps:
+def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) -> LuminanceSteps:
     """Return the steps between the lowest and the highest luminance.
 
     Parameters
     ----------
     levels : int, float or sequence of float
         Number n of equal steps (int), allowed error e (float) or luminance of the contours
-        (sequence). For an allowed error the number of steps is the smallest whose half step is at
+        (sequence). For an allowed error the number of steps is the smallest with a half step of at
         most e, or up to 5 % more unless ``exact``, since 1 to 5 % of e are reserved for contours
-        drawn as chords. It is 1 more where the smallest number, below 20, would leave less than
-        1 %. Contours outside the bounds are ignored.
+        drawn as chords. It is 1 more where the smallest number, below 20, would leave less than 1
+        %. Contours outside the bounds are ignored.
     low, high : float
         Bounds of the luminance.
     exact : bool, default: False
@@ -109,7 +109,7 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
 
     Returns
     -------
-    Steps
+    LuminanceSteps
         Luminance of contours and bands.
 
     Raises
@@ -138,11 +138,11 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
             raise ValueError(_check.message("levels", expected, repr(levels)))
         edges = np.linspace(low, high, _count(ratio, exact) + 1)
     else:
-        given = np.unique(np.asarray(levels, dtype=np.float64))
-        inside = given[(given > low) & (given < high)]
+        contours = np.unique(np.asarray(levels, dtype=np.float64))
+        inside = contours[(contours > low) & (contours < high)]
         edges = np.concatenate([[low], inside, [high]])
     middle = edges[:-1] + np.diff(edges) / 2
-    return Steps(edges, np.concatenate([edges[:1], middle]))
+    return LuminanceSteps(edges, np.concatenate([edges[:1], middle]))
 
 
 def _count(ratio: float, exact: bool) -> int:

@@ -1,17 +1,17 @@
 """Light inside a bundle of lines: the lines as a medium of thin cylinders.
 
 A line of diameter d takes from light of direction w the share ``d |w x t|`` per length of line and
-area across w, and what is left of the light is the exponential of minus the sum on its way (Beer
-and Lambert). The sum is taken on a grid in the light's own frame: each piece of a line is spread
-over the 8 voxels around it, the voxels are summed along the light, and the sum is read at a point
-from the 8 voxels around that. All lengths are in voxels.
+area across w, and the share of the light that is left is the exponential of minus the sum on its
+way (Beer and Lambert). The sum is taken on a grid in the light's own frame: each piece of a line is
+spread over the 8 voxels around it, the voxels are summed along the light, and the sum is read at a
+point from the 8 voxels around that. All lengths are in voxels.
 
-Two corrections are in closed form. A point of a line does not shade itself: what both halves of
-its line add to its depth in the mean follows from the hat function of the voxels, from the
-direction of each half and from the place where it ends. A long straight line adds 1/3. And lines
-are spread at random within a voxel, so the mean of the exponential is above the exponential of the
-mean, which a factor ``1 + d / 4`` of the depth makes up for: it stands for the lines, d wide, that
-lie in one another's shadow.
+Two corrections are in closed form. A point of a line does not shade itself: the mean share of both
+halves of its line in its depth follows from the hat function of the voxels, from the direction of
+each half and from the place where it ends. A long straight line adds 1/3. And lines are spread at
+random within a voxel, so the mean of the exponential is above the exponential of the mean, which a
+factor ``1 + d / 4`` of the depth makes up for: it stands for the lines, d wide, that lie in one
+another's shadow.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["Medium", "Targets", "directions", "medium"]
 
 
 #: Mean square of the hat function of voxels across a line, and numbers of lengths and of angles in
-#: the table of what half a line adds to its own depth.
+#: the table of the depth that half a line adds to its own.
 ACROSS, LENGTHS, ANGLES = 2 / 3, 65, 65
 #: Least side of a voxel in diameters.
 LEAST_VOXEL = 2.0
@@ -75,8 +75,8 @@ class Targets(NamedTuple):
     ----------
     places : ndarray of float32, shape (3, N)
         Places of the points.
-    known : ndarray of bool, shape (N,)
-        Whether a point is finite; others are not dimmed.
+    finite : ndarray of bool, shape (N,)
+        Mask of the finite points; others are not dimmed.
     vectors : ndarray of float32, shape (3, N), or None
         Unit tangents of lines or unit normals of a surface.
     halves : ndarray of float32, shape (2, 3, N), or None
@@ -86,7 +86,7 @@ class Targets(NamedTuple):
     """
 
     places: Array
-    known: Bools
+    finite: Bools
     vectors: Array | None = None
     halves: Array | None = None
 
@@ -118,12 +118,12 @@ class Targets(NamedTuple):
         """Return the points in another order."""
         return Targets(
             np.take(self.places, order, axis=1),
-            self.known[order],
+            self.finite[order],
             None if self.vectors is None else np.take(self.vectors, order, axis=1),
             None if self.halves is None else np.take(self.halves, order, axis=2),
         )
 
-    def own(self, toward: Array, width: Array | float = 1.0) -> Array | float:
+    def own_depth(self, toward: Array, width: Array | float = 1.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
         Parameters
@@ -154,7 +154,7 @@ class Targets(NamedTuple):
 
 
 def _half(reach: Array, angle: Array) -> tuple[Array, Array]:
-    """Return what half a line adds to the depth at its own start, and that from either side.
+    """Return the depth that half a line adds at its own start, from one and from either side.
 
     ``reach`` is its length across the light in voxels, ``angle`` its elevation toward the light.
     """
@@ -233,9 +233,9 @@ class Medium:
         """
         # Centred in float64: float32 would lose the digits of lines far from the origin.
         places = (points.T.astype(np.float64) - self.origin[:, np.newaxis]) / self.voxel
-        known: Bools = np.asarray(np.isfinite(places).all(axis=0))
-        # Beyond this, float32 has no fractions of a voxel left; what is farther is as dark.
-        places = np.where(known, np.clip(places, -FARTHEST, FARTHEST), 0).astype(np.float32)
+        finite: Bools = np.asarray(np.isfinite(places).all(axis=0))
+        # Beyond this, float32 has no fractions of a voxel left; farther points are as dark.
+        places = np.where(finite, np.clip(places, -FARTHEST, FARTHEST), 0).astype(np.float32)
         unit = None
         if vectors is not None:
             rows = vectors.T.astype(np.float64)
@@ -248,7 +248,7 @@ class Medium:
         if halves is not None:
             halves = np.clip(halves.transpose(1, 2, 0) / self.voxel, -FARTHEST, FARTHEST)
             halves = np.ascontiguousarray(halves, np.float32)
-        return Targets(np.ascontiguousarray(places), known, unit, halves)
+        return Targets(np.ascontiguousarray(places), finite, unit, halves)
 
     def depths(self, places: Array, toward: VectorLike, /) -> tuple[Array, Array]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
@@ -307,8 +307,8 @@ class Medium:
         for number in _pool.run(work, _pool.blocks(len(lights), 1)):
             if progress is not None:
                 progress(number + 1)
-        # What has no place is not dimmed; until here such points stood at the origin.
-        left[order[~targets.known]] = 1
+        # Points that are not finite are not dimmed; until here they stood at the origin.
+        left[order[~targets.finite]] = 1
         return left
 
     def sky(self, targets: Targets, diameter: float, count: int) -> Array:
@@ -330,21 +330,21 @@ class Medium:
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
         targets = targets.ordered(order)
         ways = directions(count)
-        found: dict[int, tuple[Array, Array]] = {}
+        pairs: dict[int, tuple[Array, Array]] = {}
 
         def work(part: Slice) -> int:
-            found[part.start] = self._pair(targets, thick, ways[part.start])
+            pairs[part.start] = self._pair(targets, thick, ways[part.start])
             return int(part.start)
 
         # Each direction serves its opposite too: one grid, summed from either end.
         total = np.zeros((2, targets.places.shape[1]))
         for number in _pool.run(work, _pool.blocks(len(ways), 1)):
             # In the order of the parts, so that sums do not depend on the threads.
-            total += found.pop(number)
+            total += pairs.pop(number)
         with np.errstate(invalid="ignore"):
             sides = (total[0] / total[1]).astype(np.float32)
         # A point with a normal of zero faces no direction: it is not dimmed, rather than 0 / 0.
-        sides[~targets.known | (total[1] == 0)] = 1
+        sides[~targets.finite | (total[1] == 0)] = 1
         share: Array = np.empty_like(sides)
         # Back from the order of blocks to the points' own.
         share[order] = sides
@@ -356,7 +356,7 @@ class Medium:
             # The last row of the frame is the direction with length 1, whatever length was given.
             toward = _frame(place)[2].astype(np.float32)
             depth, _ = self.depths(targets.places, toward)
-            return _left(depth, _ahead(targets.own(toward)), _crowded(thick))
+            return _left(depth, _ahead(targets.own_depth(toward)), _crowded(thick))
         # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
         lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
         depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
@@ -364,16 +364,18 @@ class Medium:
         # A point at the lamp itself has no direction toward it, and nothing is divided by 0.
         way /= np.maximum(size(way), NARROWEST)
         width = np.maximum(width, NARROWEST)
-        # The depth has the factor for crowded lines, and so must what is taken off it.
-        own = _ahead(targets.own(way.astype(np.float32), width)) * crowding(thick / width)
-        return _left(depth, own, thick)
+        # The depth has the factor for crowded lines, and so must the depth subtracted from it.
+        own_depth = _ahead(targets.own_depth(way.astype(np.float32), width)) * crowding(
+            thick / width
+        )
+        return _left(depth, own_depth, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
         depths = np.stack(self.depths(targets.places, toward))
-        forth, back = _left(depths, targets.own(toward), _crowded(thick))
+        forth, back = _left(depths, targets.own_depth(toward), _crowded(thick))
         # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
@@ -384,8 +386,8 @@ class Medium:
         for way in ways:
             forth, back = self.depths(targets.places, way)
             # Without the point's own line, which does not dim it however crowded the lines are.
-            total += (forth + back) / 2 - np.mean(targets.own(way.astype(np.float32)), axis=0)
-        return float(np.median(total[targets.known]) / len(ways)) if targets.known.any() else 0.0
+            total += (forth + back) / 2 - np.mean(targets.own_depth(way.astype(np.float32)), axis=0)
+        return float(np.median(total[targets.finite]) / len(ways)) if targets.finite.any() else 0.0
 
 
 def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: float) -> Medium:
@@ -405,7 +407,7 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     Returns
     -------
     Medium
-        Pieces of the segments whose ends are finite.
+        Pieces of the segments with finite ends.
     """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
@@ -448,7 +450,7 @@ def line_halves(points: Array, connectivity: Indices, offsets: Indices, /) -> Ar
     """Return both halves of the longest line that each point belongs to, shape (N, 2, 3).
 
     Each is a vector along the segment beside the point, as long as the line from the point to its
-    end and to its start; 0 where there is none.
+    end and to its start; 0 at an end of a line.
     """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
@@ -470,11 +472,11 @@ def line_halves(points: Array, connectivity: Indices, offsets: Indices, /) -> Ar
     before = np.concatenate([np.zeros((1, 3)), ways[:-1]])
     before[offsets[:-1][np.diff(offsets) > 0]] = 0
     halves[:, 1] = -behind[:, np.newaxis] * before
-    found = np.zeros((len(points), 2, 3))
+    longest = np.zeros((len(points), 2, 3))
     # Of equal indices the last value stays: that of the longest line.
     order = np.argsort(ahead + behind, kind="stable")
-    found[connectivity[order]] = halves[order]
-    return found
+    longest[connectivity[order]] = halves[order]
+    return longest
 
 
 def _ahead(depths: Array | float) -> Array | float:
@@ -482,10 +484,10 @@ def _ahead(depths: Array | float) -> Array | float:
     return depths if isinstance(depths, float) else depths[0]
 
 
-def _left(depth: Array, own: Array | float, thick: float, /) -> Array:
+def _left(depth: Array, own_depth: Array | float, thick: float, /) -> Array:
     """Return the share of light that is left behind lines of a diameter, in voxels."""
     # Beer and Lambert: what is left is the exponential of minus the depth of all other lines.
-    others = depth - own
+    others = depth - own_depth
     others *= -thick
     # More light than all comes of rounding alone.
     left: Array = np.exp(np.minimum(others, 0, out=others), out=others)
@@ -498,7 +500,7 @@ def _crowded(thick: float) -> float:
 
 
 def _frame(toward: VectorLike) -> Array:
-    """Return an orthonormal frame, in rows, whose last row is a direction."""
+    """Return an orthonormal frame, in rows, with a direction as the last row."""
     w = np.asarray(toward, np.float64) / np.linalg.norm(toward)
     return np.stack([*axial.frame(w), w])
 
@@ -520,9 +522,9 @@ def depths(
 ) -> tuple[Array, Array]:
     """Return the optical depth per diameter between points and a light nearby.
 
-    The grid has the light in its centre: on each of the six faces of a cube around it, voxels
-    are cones whose width grows with the distance. Near the light they are narrower than a
-    line, which is then spread over the width that it shows, and opaque where it covers a cone.
+    The grid has the light in its centre: on each of the six faces of a cube around it, voxels are
+    cones that widen with the distance. Near the light they are narrower than a line, which is then
+    spread over the width that it shows, and opaque where it covers a cone.
 
     Parameters
     ----------
@@ -667,7 +669,7 @@ def _nearest(middles: Array, vectors: Array) -> Array:
 
 
 def _limited(parts: Array) -> Indices:
-    """Return whole numbers of parts, fewer of the largest where there would be too many pieces."""
+    """Return whole numbers of parts, reducing the largest where the pieces would be too many."""
     most = MOST_PARTS
     while True:
         # A lower limit takes parts only from the pieces that have most, those nearest to the light.

@@ -38,9 +38,9 @@ def polyline_tangents(
     -------
     ndarray, shape (N, n)
         Unit tangents in the direction of the line, of the type of the points. They are zero at
-        points without a tangent: points of no line, of a line whose points all coincide, next to a
-        point that is not finite, or where a line turns back by a segment as long as the one before.
-        A point that lines pass several times has the tangent of the last pass.
+        points without a tangent: points of no line, of a line of coincident points, next to a point
+        that is not finite, or where a line turns back by a segment as long as the one before. A
+        point that lines pass several times has the tangent of the last pass.
 
     Raises
     ------
@@ -78,14 +78,14 @@ def polyline_tangents(
     with np.errstate(all="ignore"):
         for first in range(0, len(lines.vertices), BLOCK):
             block = slice(first, min(first + BLOCK, len(lines.vertices)))
-            found = lines.tangents(block)
+            block_tangents = lines.tangents(block)
             # A point that is not finite spoils the tangents of its neighbours; none is better than
             # NaN.
-            found[~np.all(np.isfinite(found), axis=1)] = 0
+            block_tangents[~np.all(np.isfinite(block_tangents), axis=1)] = 0
             rows, vertex = lines.rows(block)
             # Repeated points share their vertex's tangent; where lines meet, the last one written
             # stays.
-            tangents[ids[rows]] = found[vertex]
+            tangents[ids[rows]] = block_tangents[vertex]
     return tangents
 
 
@@ -125,13 +125,13 @@ class _Lines:
         wide = slice(max(block.start - 2, 0), min(block.stop + 2, len(self.vertices)))
         line = np.searchsorted(self.starts, self.vertices[wide], side="right")
         inside = slice(block.start - wide.start, block.stop - wide.start)
-        found = _vertex_tangents(self.place(wide), line)[inside]
+        tangents = _vertex_tangents(self.place(wide), line)[inside]
         # The neighbour across the seam is at the line's other end, which may be far from this
         # block.
         for end in self.closed:
             low, high = np.searchsorted(end, (block.start, block.stop))
-            found[end[low:high] - block.start] = self._seams(slice(low, high))
-        return found
+            tangents[end[low:high] - block.start] = self._seams(slice(low, high))
+        return tangents
 
     def _seams(self, lines: Slice) -> Array:
         """Return the tangents where closed lines begin and end."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from vizlight.geometry.lines.simplices import Places
+from vizlight.geometry.lines.simplices import CellPlaces
 from vizlight.geometry.lines.tracing import Curves, Flow, Walkers, passed
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def parallel(a: Array, b: Array) -> Bools:
     return np.asarray(np.abs(np.einsum("...i,...i->...", a, b)) > PARALLEL)
 
 
-class Samples:
+class CurveSamples:
     """Samples of the curves, found by distance."""
 
     def __init__(self) -> None:
@@ -50,21 +50,21 @@ class Samples:
         self._whole, self._seen, self._stale = 0, 0, 0
 
     def add(self, walkers: Walkers, embedded: Array) -> None:
-        """Add where ends are now."""
+        """Add the present places of ends."""
         size, total = self._size, self._size + len(embedded)
         # Each field is a column of its own, the cell and the weights of a place among them.
         new = vars(walkers) | vars(walkers.places)
         new |= {"embedded": embedded, "used": np.ones(len(embedded), np.bool_)}
         del new["places"]
         for name, rows in new.items():
-            known = getattr(self, name)
-            if not size or total > len(known):
+            column = getattr(self, name)
+            if not size or total > len(column):
                 # Capacity doubles, so that adding is cheap on the whole.
-                known = np.zeros((max(4096, 2 * total), *rows.shape[1:]), rows.dtype)
+                column = np.zeros((max(4096, 2 * total), *rows.shape[1:]), rows.dtype)
                 if size:
-                    known[:size] = getattr(self, name)[:size]
-                setattr(self, name, known)
-            known[size:total] = rows
+                    column[:size] = getattr(self, name)[:size]
+                setattr(self, name, column)
+            column[size:total] = rows
         self._size = total
 
     def drop(self, curve: int) -> None:
@@ -76,11 +76,11 @@ class Samples:
         self._seen = -1
         self._stale += int(np.count_nonzero(rows < self._whole))
 
-    def of(self, curve: int) -> tuple[Places, Array]:
-        """Return the places of a curve's samples, and its directions there."""
+    def along_curve(self, curve: int) -> tuple[CellPlaces, Array]:
+        """Return the places of a curve's samples, and its directions at them."""
         # Two samples per spacing are enough to look beside a curve.
         rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
-        return Places(self.cell[rows], self.weights[rows]), self.along[rows]
+        return CellPlaces(self.cell[rows], self.weights[rows]), self.along[rows]
 
     def near(
         self, embedded: Array, radius: float, count: int, along: Array | None = None
@@ -107,11 +107,11 @@ class Samples:
         for tree, rows in ((self._old, self._rows), (self._new, self._recent)):
             if tree is None or not len(rows):
                 continue
-            found = tree.query(embedded, k=count, distance_upper_bound=radius)
-            distance = np.asarray(found[0]).reshape(-1, count)
+            nearest = tree.query(embedded, k=count, distance_upper_bound=radius)
+            distance = np.asarray(nearest[0]).reshape(-1, count)
             # For a missing neighbour the tree gives its number of points as row, and infinity as
             # distance.
-            row = rows[np.minimum(np.asarray(found[1]).reshape(-1, count), len(rows) - 1)]
+            row = rows[np.minimum(np.asarray(nearest[1]).reshape(-1, count), len(rows) - 1)]
             counted = self.used[row]
             if along is not None:
                 counted &= parallel(self.along[row], along[:, np.newaxis])
@@ -147,14 +147,14 @@ SHORTEST = 2.0
 DENSER, WIDE, SHARE = 4, 1.15, 0.7
 
 
-def embedded(flow: Flow, spacing: float, places: Places | None = None) -> Array:
+def embedded(flow: Flow, spacing: float, places: CellPlaces | None = None) -> Array:
     """Return positions and, on a surface, scaled normals, in which distances are measured.
 
     Parameters
     ----------
     flow : Flow
     spacing : float
-    places : Places, optional
+    places : CellPlaces, optional
         Default: the vertices.
 
     Returns
@@ -179,7 +179,7 @@ class Growth:
         self, flow: Flow, spacing: float, how: Tracing, random: np.random.Generator
     ) -> None:
         self.flow, self.spacing, self.how, self.random = flow, spacing, how, random
-        self.samples = Samples()
+        self.samples = CurveSamples()
         self.trail: list[Walkers] = []
         #: Whether there are two families of curves that do not stop each other.
         self.crossing = flow.mesh.sheets is not None
@@ -195,25 +195,25 @@ class Growth:
         self.count, self.apart = 0, APART
         #: Whether only wide gaps are still filled.
         self.last_gaps = False
-        nowhere = Places(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
+        nowhere = CellPlaces(np.empty(0, dtype=np.intp), np.empty((0, flow.mesh.k + 1)))
         # Every curve has two ends that grow, one along the field and one against it.
-        self.walkers = Walkers.at(flow, nowhere, nowhere.cell)
+        self.walkers = Walkers.from_seeds(flow, nowhere, nowhere.cell)
         #: Of each end: step at which it came back beside its own curve, or -1; length at its last
         #: sample.
         self.returning, self.sampled = nowhere.cell, np.empty(0)
         #: Places a spacing beside curves, from which others may start.
         self.beside = nowhere
 
-    def distances(self, places: Places, radius: float) -> Array:
+    def distances(self, places: CellPlaces, radius: float) -> Array:
         """Return the distance of places from the nearest sample; infinite beyond a radius."""
         at = embedded(self.flow, self.spacing, places)
         along = self.flow.directions(places)[0] if self.crossing else None
         return np.asarray(self.samples.near(at, radius, 4, along)[0].min(axis=1))
 
-    def start(self, seeds: Places) -> Bools:
-        """Let curves grow from seeds that are apart from each other; return which were taken.
+    def start(self, seeds: CellPlaces) -> Bools:
+        """Let curves grow from seeds that are apart from each other; return a mask of those taken.
 
-        Seeds without a direction are taken too, and nothing grows there.
+        Seeds without a direction are taken too, and no curve grows from them.
         """
         at = embedded(self.flow, self.spacing, seeds)
         # Too many at once would grow into each other; too few waste the vectorised step.
@@ -227,14 +227,14 @@ class Growth:
         taken[chosen] = True
         numbers = self.count + np.arange(len(chosen))
         self.count += len(chosen)
-        made = Walkers.at(self.flow, seeds[chosen], numbers)
+        walkers = Walkers.from_seeds(self.flow, seeds[chosen], numbers)
         # Each curve is there twice, by its two ends, and so it is counted.
-        self.growing.update(made.curve.tolist())
-        self.trail.append(made)
-        self.samples.add(made, embedded(self.flow, self.spacing, made.places))
-        self.walkers = self.walkers.joined(made)
-        self.returning = np.append(self.returning, np.full(len(made.curve), -1))
-        self.sampled = np.append(self.sampled, np.zeros(len(made.curve)))
+        self.growing.update(walkers.curve.tolist())
+        self.trail.append(walkers)
+        self.samples.add(walkers, embedded(self.flow, self.spacing, walkers.places))
+        self.walkers = self.walkers.joined(walkers)
+        self.returning = np.append(self.returning, np.full(len(walkers.curve), -1))
+        self.sampled = np.append(self.sampled, np.zeros(len(walkers.curve)))
         return taken
 
     def grow(self) -> None:
@@ -242,7 +242,7 @@ class Growth:
         walkers, sample = self.walkers, self.spacing / SAMPLES
         # A step is at most the distance of samples, by which curves keep apart.
         size = np.minimum(self.how.step * self.flow.mesh.sizes(walkers.places), sample)
-        ahead, made, inside = walkers.advanced(self.flow, size)
+        ahead, stepped, inside = walkers.advanced(self.flow, size)
         at = embedded(self.flow, self.spacing, ahead.places)
         blocked, back, reached, losers = self._met(ahead, at)
         for curve in losers.tolist():
@@ -250,17 +250,17 @@ class Growth:
             self.growing.pop(curve, None)
         self.dropped.update(losers.tolist())
         lost = np.isin(ahead.curve, losers)
-        made &= ~blocked & ~lost
-        self.trail.append(ahead[made])
+        stepped &= ~blocked & ~lost
+        self.trail.append(ahead[stepped])
         # Samples are set at even lengths; 0.999 absorbs the rounding of summed steps.
-        due = made & ~back & (ahead.length - self.sampled >= 0.999 * sample)
+        due = stepped & ~back & (ahead.length - self.sampled >= 0.999 * sample)
         self.samples.add(ahead[due], at[due])
         self.sampled = np.where(due, ahead.length, self.sampled)
-        for row in np.flatnonzero(made & (reached >= 0)).tolist():
+        for row in np.flatnonzero(stepped & (reached >= 0)).tolist():
             self._close(ahead, row, int(reached[row]))
         # An end stops at a boundary, at its longest, after its last step, or where its curve is
         # closed.
-        going = made & inside & (ahead.length < self.how.max_length)
+        going = stepped & inside & (ahead.length < self.how.max_length)
         going &= (ahead.number < self.how.max_steps) & ~np.isin(ahead.curve, [*self.closed])
         # Of an end that has come back beside its own curve: the last step before, up to which it is
         # kept.
@@ -277,7 +277,7 @@ class Growth:
         self.walkers, self.sampled = ahead[going], self.sampled[going]
 
     def _met(self, ahead: Walkers, at: Array) -> tuple[Bools, Bools, Indices, Indices]:
-        """Return which ends are blocked, which come back to their own curve, and what they reach.
+        """Return masks of blocked ends and of those that return to their curve, and two arrays.
 
         The third is the row of the sample at which the curve is closed, or -1; the fourth are the
         curves that give way.
@@ -286,13 +286,13 @@ class Growth:
         d = SEPARATION * spacing
         distance, row = samples.near(at, d, 16, ahead.along if self.crossing else None)
         sign = ahead.sign[:, np.newaxis]
-        own = samples.curve[row] == ahead.curve[:, np.newaxis]
+        same_curve = samples.curve[row] == ahead.curve[:, np.newaxis]
         # The way along the curve between an end and a sample of its own: near ones are no
         # obstacle.
         between = np.abs(
             samples.sign[row] * samples.length[row] - sign * ahead.length[:, np.newaxis]
         )
-        hit = np.isfinite(distance) & (~own | (between > 3 * d))
+        hit = np.isfinite(distance) & (~same_curve | (between > 3 * d))
         # A curve that started earlier goes on and a later one gives way, as if it had come first.
         later = samples.curve[row] > ahead.curve[:, np.newaxis]
         losers = np.unique(samples.curve[row[hit & later]])
@@ -307,7 +307,7 @@ class Growth:
         facing = np.einsum("nkj,nj->nk", samples.along[row], ahead.along)
         # Along an orbit the other end of the curve comes the opposite way.
         opposite = np.where(seed, np.abs(facing), -facing) > 0.8
-        orbit = own & (seed | (samples.sign[row] != sign)) & np.isfinite(distance)
+        orbit = same_curve & (seed | (samples.sign[row] != sign)) & np.isfinite(distance)
         # Also a small circle, which is near all around, as soon as the other end is ahead.
         orbit &= opposite & (lateral < 0.3 * spacing) & (hit | (along > 0))
         # Of the samples of the other end the outermost is reached first.
@@ -348,7 +348,7 @@ class Growth:
 
     def _look_beside(self, curve: int) -> None:
         """Queue places a spacing beside a curve."""
-        places, along = self.samples.of(curve)
+        places, along = self.samples.along_curve(curve)
         if self.flow.normals is not None:
             # On a surface the places beside a curve are to its left and right, across the normal.
             u: Array = np.cross(self.flow.mesh.interpolated(self.flow.normals, places), along)
@@ -361,12 +361,12 @@ class Growth:
         for side in sides:
             size = np.linalg.norm(side, axis=1, keepdims=True)
             step = self.spacing * side / np.where(size > 0, size, 1)
-            found, inside = self.flow.mesh.walk(places, step)
+            ends, inside = self.flow.mesh.walk(places, step)
             # A step that ended at a boundary has not gone a whole spacing.
-            self.beside = self.beside.joined(found[inside])
+            self.beside = self.beside.joined(ends[inside])
 
-    def refill(self, pool: Places) -> Places:
-        """Start new curves where there is room; return the places of the pool still to be tried."""
+    def refill(self, pool: CellPlaces) -> CellPlaces:
+        """Start new curves in free space; return the places of the pool still to be tried."""
         spacing = self.spacing
         while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
             first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
@@ -387,7 +387,7 @@ class Growth:
                 pool = pool[~self.start(pool)].joined(rest)
         return pool
 
-    def widest(self, places: Places) -> Places:
+    def widest(self, places: CellPlaces) -> CellPlaces:
         """Return the places in wide gaps, those farthest from all curves first."""
         least = WIDE * self.spacing
         wide = places[self.distances(places, least) >= least]
@@ -401,7 +401,7 @@ def evenly_spaced(
     how: Tracing,
     /,
     *,
-    seeds: Places | None,
+    seeds: CellPlaces | None,
     report: Callable[[int], None] = lambda _: None,
 ) -> tuple[Curves, int]:
     """Return integral curves that are evenly spaced, on a whole surface or in a whole volume.
@@ -412,7 +412,7 @@ def evenly_spaced(
     spacing : float
         Distance at which a curve starts beside another.
     how : Tracing
-    seeds : Places or None
+    seeds : CellPlaces or None
         Seeds of the first curves. None: random places.
     report : callable, optional
         Function that takes the number of places of :func:`places_of` that are covered.
@@ -464,7 +464,7 @@ def evenly_spaced(
 
 def places_of(
     flow: Flow, spacing: float, random: np.random.Generator, dense: int = DENSE
-) -> Places:
+) -> CellPlaces:
     """Return random places all over a surface or a volume, some in each square of the spacing."""
     return flow.mesh.random(place_count(flow, spacing, dense), random)
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from vizlight.geometry.lines.even import CROSSING, embedded, parallel
-from vizlight.geometry.lines.simplices import Columns, Places
+from vizlight.geometry.lines.simplices import CellPlaces, Columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.geometry.lines.tracing import Curves, Flow
 
-#: What a gap is known to, in spacings.
-KNOWN = 0.005
+#: Tolerance of a gap, in spacings.
+TOLERANCE = 0.005
 #: Side of the boxes, in spacings, in which one cell's distance bounds the distances of all.
 BOX = 0.25
 #: Number of parts of cells that are halved at once: at least so many, and one of so many, since the
@@ -60,16 +60,16 @@ class Distances:
         Parameters
         ----------
         at, along : ndarray, shape (N, m) and (N, 3)
-            Embedded places and directions there.
+            Embedded places, and directions at them.
         curve : ndarray of int, shape (N,), or None
-            Curves whose own points do not count.
+            Curve of each place, whose points do not count.
         count : int
             Number of points that are looked at first.
 
         Returns
         -------
         distance : ndarray, shape (N, K)
-            Infinite for points that do not count, and where none is found.
+            Infinite for points that do not count, and where no point is found.
         row : ndarray of int, shape (N, K)
         """
         count = min(count, len(self.there))
@@ -79,8 +79,8 @@ class Distances:
         # Neighbours are looked for in larger and larger sets until one is of such a curve.
         while len(left) and looked:
             # A list of ranks, since for a single neighbour by number the tree drops an axis.
-            found = self._tree.query(at[left], k=np.arange(1, looked + 1))
-            far, near = np.asarray(found[0]), np.asarray(found[1])
+            neighbours = self._tree.query(at[left], k=np.arange(1, looked + 1))
+            far, near = np.asarray(neighbours[0]), np.asarray(neighbours[1])
             if curve is not None:
                 far[self.curve[near] == curve[left][:, np.newaxis]] = np.inf
             if self.crossing:
@@ -100,7 +100,7 @@ class Distances:
         """Return distances from the lines, segments between points; infinite if none is found."""
         count = NEIGHBOURS + (CROSSING if self.crossing else 0)
         distance, row = self.of_points(at, along, None, count)
-        found = distance.min(axis=1)
+        nearest = distance.min(axis=1)
         a = self.there[row]
         away = at[:, np.newaxis] - a
         for step in (-1, 1):
@@ -114,8 +114,8 @@ class Distances:
             # The next point in the array may begin another curve: no line runs there.
             counted = np.isfinite(distance) & (self.curve[other] == self.curve[row])
             far = np.where(counted, np.einsum("nki,nki->nk", rest, rest), np.inf)
-            found = np.minimum(found, np.sqrt(far.min(axis=1)))
-        return np.asarray(found)
+            nearest = np.minimum(nearest, np.sqrt(far.min(axis=1)))
+        return np.asarray(nearest)
 
 
 @dataclass
@@ -131,7 +131,7 @@ class Parts(Columns):
     corners : ndarray, shape (N, k + 1, m)
         Embedded corners.
     far, radius : ndarray, shape (N,)
-        Distance of its middle from the curves, and largest distance of its places from there.
+        Distance of its middle from the curves, and largest distance of its places from its middle.
     """
 
     cell: Indices
@@ -145,21 +145,21 @@ class Parts(Columns):
 
         The field has no curve where it has no direction.
         """
-        one, other = np.triu_indices(self.weights.shape[1], 1)
-        side = self.corners[:, one] - self.corners[:, other]
+        first, second = np.triu_indices(self.weights.shape[1], 1)
+        side = self.corners[:, first] - self.corners[:, second]
         longest = np.einsum("nei,nei->ne", side, side).argmax(axis=1)
         count = len(self.cell)
         # Each part twice; in one copy one end of its longest side moves, in the other the other.
         both = self.joined(self)
         cell, weights, corners = both.cell, both.weights, both.corners
-        rows, ends = np.arange(2 * count), np.concatenate([one[longest], other[longest]])
+        rows, ends = np.arange(2 * count), np.concatenate([first[longest], second[longest]])
         # The two ends of a side are so many rows apart.
         opposite = np.roll(ends, count)
         weights[rows, ends] = (weights[rows, ends] + weights[rows, opposite]) / 2
         flow, spacing = distances.flow, distances.spacing
         # Embedded anew, since normals of length 1 are not linear along a side.
-        corners[rows, ends] = embedded(flow, spacing, Places(cell, weights[rows, ends]))
-        middles = Places(cell, weights.mean(axis=1))
+        corners[rows, ends] = embedded(flow, spacing, CellPlaces(cell, weights[rows, ends]))
+        middles = CellPlaces(cell, weights.mean(axis=1))
         at = embedded(flow, spacing, middles)
         along, moving = flow.directions(middles)
         far = distances.of_lines(at, along)
@@ -183,20 +183,20 @@ def largest_gap(distances: Distances) -> float:
     Notes
     -----
     Branch and bound: no place of a part of a cell is farther than its middle is, and its radius.
-    Parts that can hold a place that is farther by :data:`KNOWN` than the farthest one that was
-    found are halved, the farthest first. That ends, with what was found, after :data:`MOST_PARTS`,
-    between very many parallel lines of one distance. In a cross field, where the lines that count
+    Parts that can hold a place farther by :data:`TOLERANCE` than the farthest one found so far are
+    halved, the farthest first. The search ends after :data:`MOST_PARTS`, between very many parallel
+    lines of one distance, with the gap found so far. In a cross field, where the lines that count
     change with the direction, the bound is not strict.
     """
     if not len(distances.there):
         return np.inf
     spacing, mesh = distances.spacing, distances.flow.mesh
-    known = KNOWN * spacing
+    tolerance = TOLERANCE * spacing
     parts, gap = _first_parts(distances)
     # In squares of the spacing, or cubes.
     room = max(LEAST_PARTS, int(MOST_PARTS**mesh.k * (mesh.extent / spacing**mesh.k)))
     while len(parts.cell) and room > 0:
-        # Large parts come first and are not counted: what is in them is not known yet.
+        # Large parts come first and are not counted: their contents are not measured yet.
         large = parts.radius > BOX * spacing
         first = np.where(large, np.inf, parts.far)
         batch = min(max(BATCH, len(first) // SHARE), len(first))
@@ -205,14 +205,14 @@ def largest_gap(distances: Distances) -> float:
         room -= 0 if large.any() else len(halves.cell)
         # No curve passes where the field has no direction, and such a middle is no gap.
         gap = max(gap, float(halves.far[moving].max(initial=0)))
-        # All places of a smaller part are as far as its middle, to within what the gap is known to.
-        parts = parts[order[batch:]].joined(halves[halves.radius > known])
-        parts = parts[parts.far + parts.radius > gap + known]
+        # All places of a smaller part are as far as its middle, within the tolerance of the gap.
+        parts = parts[order[batch:]].joined(halves[halves.radius > tolerance])
+        parts = parts[parts.far + parts.radius > gap + tolerance]
     return gap
 
 
 def _first_parts(distances: Distances) -> tuple[Parts, float]:
-    """Return the cells that can hold the largest gap, and one that was found."""
+    """Return the cells that can hold the largest gap, and a lower bound of the gap."""
     flow, mesh, spacing = distances.flow, distances.flow.mesh, distances.spacing
     vertices, used = embedded(flow, spacing), mesh.measures > 0
     resting = ~np.any(flow.vectors, axis=1)
@@ -226,7 +226,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
         middle += corner
     middle /= len(corners)
     radius = radii(corners, middle)
-    # One cell of each box tells which others can be far.
+    # One cell of each box bounds the distances of the others.
     number = np.zeros(len(middle))
     for axis in middle[:, :3].T:
         # One number for each box, as for cells of a grid.
@@ -234,7 +234,7 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
         number = number * (box.max(initial=0) + 1) + box
     _, first, same = np.unique(number, return_index=True, return_inverse=True)
     share = np.full((len(first), mesh.k + 1), 1 / (mesh.k + 1))
-    along, there = flow.directions(Places(cell[first], share))
+    along, there = flow.directions(CellPlaces(cell[first], share))
     near = distances.of_points(middle[first], along, None, 1)[0].min(axis=1)
     away = middle - middle[first[same]]
     # The triangle inequality: no middle is farther than that of its box's first cell and the way.
@@ -243,12 +243,12 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
     rows = rows[np.argsort(-near[rows], kind="stable")[:FIRST]]
     # The farthest few, measured exactly, set a bound that rules out most cells at once.
     gap = float(distances.of_lines(middle[first[rows]], along[rows]).max(initial=0))
-    # What cannot hold a larger gap than the one that was found is not halved at all.
-    kept = np.flatnonzero(far + radius > gap + KNOWN * spacing)
+    # Cells that cannot hold a larger gap than the one found are not halved at all.
+    kept = np.flatnonzero(far + radius > gap + TOLERANCE * spacing)
     # The corners of a whole cell have the weight 1 at one vertex each.
     whole = np.tile(np.eye(mesh.k + 1), (len(kept), 1, 1))
-    found = np.stack([corner[kept] for corner in corners], axis=1)
-    return Parts(cell[kept], whole, found, far[kept], radius[kept]), gap
+    cell_corners = np.stack([corner[kept] for corner in corners], axis=1)
+    return Parts(cell[kept], whole, cell_corners, far[kept], radius[kept]), gap
 
 
 def evenness(flow: Flow, spacing: float, curves: Curves, /) -> tuple[float, float]:
@@ -267,9 +267,9 @@ def evenness(flow: Flow, spacing: float, curves: Curves, /) -> tuple[float, floa
     random, count = np.random.default_rng(1), len(distances.there)
     # The generator has a fixed seed, so the same curves have the same number.
     picked = random.choice(count, min(count, ON_CURVES), replace=False)
-    found = distances.of_points(
+    nearest = distances.of_points(
         distances.there[picked], curves.along[picked], distances.curve[picked], 32
     )[0].min(axis=1, initial=np.inf)
-    found = found[np.isfinite(found)]
-    near = float(np.percentile(found, 5)) if len(found) else np.inf
+    nearest = nearest[np.isfinite(nearest)]
+    near = float(np.percentile(nearest, 5)) if len(nearest) else np.inf
     return gap / spacing, near / spacing

@@ -119,9 +119,9 @@ def hilbert(cell: Indices, bits: int) -> Indices:
         for i in range(3):
             # All bits set, or none: with it lower bits of the first axis are mirrored, else
             # exchanged.
-            one = -(x[i] >> bit & 1)
-            swapped = (x[0] ^ x[i]) & low & ~one
-            x[0] ^= (low & one) | swapped
+            mask = -(x[i] >> bit & 1)
+            swapped = (x[0] ^ x[i]) & low & ~mask
+            x[0] ^= (low & mask) | swapped
             x[i] ^= swapped
     # A Gray code, by which one axis changes at a time from cell to cell along the curve.
     x[1] ^= x[0]

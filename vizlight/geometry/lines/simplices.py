@@ -24,7 +24,7 @@ SAVED = 4e-4, 4e-6
 
 @dataclass
 class Columns:
-    """Base class of rows whose fields are arrays, or such rows themselves."""
+    """Base class of rows with arrays, or such rows themselves, as fields."""
 
     def __getitem__(self, rows: Rows) -> Self:
         """Return some of the rows."""
@@ -44,7 +44,7 @@ class Columns:
 
 
 @dataclass
-class Places(Columns):
+class CellPlaces(Columns):
     """Places in cells.
 
     Attributes
@@ -72,7 +72,7 @@ def numbered(points: Array) -> Indices:
 
 
 class Simplices:
-    """Triangles or tetrahedra in 3-space, and which of them share a side.
+    """Triangles or tetrahedra in 3-space, and their neighbours across sides.
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ class Simplices:
         Vertices of each cell, k = 2 for triangles and 3 for tetrahedra. Vertices at the same
         position count as one; cells without extent have no neighbours.
     sheets : ndarray of bool, shape (N,), optional
-        Sheets of the vertices, where there are two that lie on one another: vertices at the same
-        position count as one only on the same sheet.
+        Sheets of the vertices, for two that lie on one another: vertices at the same position count
+        as one only on the same sheet.
     """
 
     def __init__(self, points: Array, cells: Indices, sheets: Bools | None = None) -> None:
@@ -123,7 +123,7 @@ class Simplices:
 
     @cached_property
     def neighbours(self) -> Indices:
-        """Cell beyond the side opposite each vertex, shape (M, k + 1); -1 where there is none.
+        """Cell beyond the side opposite each vertex, shape (M, k + 1); -1 at a boundary.
 
         A side of three cells or more has no cell beyond.
         """
@@ -141,13 +141,13 @@ class Simplices:
         before, after = np.append(False, same), np.append(same, False)
         # A run of exactly two: where three cells or more meet it is not clear which comes next.
         twice = np.flatnonzero(same & ~before[:-1] & ~after[1:])
-        found = np.full((len(cells), k + 1), -1, dtype=np.intp)
+        across = np.full((len(cells), k + 1), -1, dtype=np.intp)
         a, b = order[twice], order[twice + 1]
         # Each cell has k + 1 sides one after the other, so that a quotient tells the cell.
-        found.ravel()[a] = cells[b // (k + 1)]
-        found.ravel()[b] = cells[a // (k + 1)]
+        across.ravel()[a] = cells[b // (k + 1)]
+        across.ravel()[b] = cells[a // (k + 1)]
         neighbours = np.full(self.cells.shape, -1, dtype=np.intp)
-        neighbours[cells] = found
+        neighbours[cells] = across
         return neighbours
 
     @cached_property
@@ -157,7 +157,7 @@ class Simplices:
         total = np.bincount(numbers, np.repeat(self._extents, self.k + 1))
         return np.asarray((total / np.maximum(np.bincount(numbers), 1))[self.merged])
 
-    def sizes(self, places: Places) -> Array:
+    def sizes(self, places: CellPlaces) -> Array:
         """Return the extent of cells near places, by which steps are chosen; it has no jumps."""
         return np.asarray(np.einsum("ni,ni->n", places.weights, self._sizes[places.cell]))
 
@@ -177,34 +177,34 @@ class Simplices:
         """Area or volume of all cells."""
         return float(self.measures.sum())
 
-    def one_each(self) -> Places:
+    def one_each(self) -> CellPlaces:
         """Return the middle of the largest cell of each connected part."""
         cells = np.flatnonzero(self.good)
         beyond = self.neighbours[cells]
-        own = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
-        pairs = own, beyond.ravel()[beyond.ravel() >= 0]
+        owner = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
+        pairs = owner, beyond.ravel()[beyond.ravel() >= 0]
         count = len(self.cells)
         graph = scipy.sparse.coo_array(
-            (np.ones(len(own), dtype=np.int8), pairs), shape=(count, count)
+            (np.ones(len(owner), dtype=np.int8), pairs), shape=(count, count)
         )
         part = scipy.sparse.csgraph.connected_components(graph, directed=False)[1][cells]
         # The largest cell of a part comes first.
         order = np.lexsort((-self.measures[cells], part))
         first = np.unique(part[order], return_index=True)[1]
         share = np.full((len(first), self.k + 1), 1 / (self.k + 1))
-        return Places(cells[order[first]], share)
+        return CellPlaces(cells[order[first]], share)
 
-    def positions(self, places: Places) -> Array:
+    def positions(self, places: CellPlaces) -> Array:
         """Return the positions of places, shape (N, 3)."""
         return self.interpolated(self.points, places)
 
-    def interpolated(self, values: Array, places: Places) -> Array:
+    def interpolated(self, values: Array, places: CellPlaces) -> Array:
         """Return values of the vertices at places."""
         return np.asarray(
             np.einsum("ni,ni...->n...", places.weights, values[self.cells[places.cell]])
         )
 
-    def locate(self, cell: Indices, positions: Array) -> Places:
+    def locate(self, cell: Indices, positions: Array) -> CellPlaces:
         """Return the places of positions in given cells, or the nearest in each cell roughly."""
         first = self.points[self.cells[cell]]
         middle = first.mean(axis=1)
@@ -212,9 +212,9 @@ class Simplices:
         # Weights are linear: those of the middle plus gradient times the way from there.
         weights = share + np.einsum("nij,nj->ni", self.gradients[cell], positions - middle)
         weights = np.maximum(weights, 0)
-        return Places(cell, weights / weights.sum(axis=1, keepdims=True))
+        return CellPlaces(cell, weights / weights.sum(axis=1, keepdims=True))
 
-    def random(self, count: int, random: np.random.Generator) -> Places:
+    def random(self, count: int, random: np.random.Generator) -> CellPlaces:
         """Return random places, uniform in area or volume; one in each of ``count`` equal parts."""
         total = np.cumsum(self.measures)
         # Stratified: one random place in each of equal shares, so there are no large holes.
@@ -222,24 +222,24 @@ class Simplices:
         cell = np.minimum(np.searchsorted(total, at, side="right"), len(total) - 1)
         # Normalised exponentials are uniform in a simplex.
         weights = random.standard_exponential((count, self.k + 1))
-        return Places(cell, weights / weights.sum(axis=1, keepdims=True))
+        return CellPlaces(cell, weights / weights.sum(axis=1, keepdims=True))
 
-    def walk(self, places: Places, steps: Array) -> tuple[Places, Bools]:
-        """Return where straight steps lead, and whether they ended before a boundary.
+    def walk(self, places: CellPlaces, steps: Array) -> tuple[CellPlaces, Bools]:
+        """Return the ends of straight steps, and a mask of those that ended before a boundary.
 
         On triangles a step is laid into the plane of its first triangle with its length kept, and
         continues straight across edges, as if both triangles were unfolded.
 
         Parameters
         ----------
-        places : Places
+        places : CellPlaces
             N places.
         steps : ndarray, shape (N, 3)
             Steps from them.
 
         Returns
         -------
-        places : Places
+        places : CellPlaces
             Ends of the steps, on the boundary where they would leave the mesh.
         inside : ndarray of bool, shape (N,)
             Whether a step was made whole.
@@ -255,7 +255,7 @@ class Simplices:
                 self.merged.reshape(-1), self.neighbours.reshape(-1), self.points.reshape(-1),
                 self.gradients.reshape(-1), self.k + 1,
             )  # fmt: skip
-            return Places(cell, weights), inside
+            return CellPlaces(cell, weights), inside
         on = np.arange(len(cell))
         for _ in range(MOST_CROSSINGS):
             here, at = cell[on], weights[on]
@@ -276,7 +276,7 @@ class Simplices:
             inside[on[through & (beyond < 0)]] = False
             go = through & (beyond >= 0)
             if not go.any():
-                return Places(cell, weights), inside
+                return CellPlaces(cell, weights), inside
             # The rest of the step goes on in the neighbour; steps that are done drop out of the
             # arrays.
             on, ahead = on[go], ahead[go] * (1 - share[go])[:, np.newaxis]
@@ -285,7 +285,7 @@ class Simplices:
             )
         # Steps that cross too many cells end where they are.
         inside[on] = False
-        return Places(cell, weights), inside
+        return CellPlaces(cell, weights), inside
 
     def _laid(self, cell: Indices, steps: Array) -> Array:
         """Return steps in the planes of their triangles, of the same length."""
@@ -294,24 +294,24 @@ class Simplices:
         # A weight's change times an edge, summed, is the part of a step in the plane.
         change = np.einsum("nij,nj->ni", self.gradients[cell], steps)
         flat = np.einsum("ni,nij->nj", change, self.points[self.cells[cell]])
-        length, asked = np.linalg.norm(flat, axis=1), np.linalg.norm(steps, axis=1)
+        length, step_length = np.linalg.norm(flat, axis=1), np.linalg.norm(steps, axis=1)
         # A step at a right angle to the triangle has no direction in it and leads nowhere.
-        scale = np.where(length > 0, asked / np.where(length > 0, length, 1), 0)
+        scale = np.where(length > 0, step_length / np.where(length > 0, length, 1), 0)
         return np.asarray(flat * scale[:, np.newaxis])
 
     def _crossed(
         self, cell: Indices, side: Indices, weights: Array, beyond: Indices, ahead: Array
     ) -> tuple[Indices, Array, Array]:
         """Return cell, weights and the rest of the step beyond the side of a cell."""
-        own, other = self.merged[cell], self.merged[beyond]
+        corners, next_corners = self.merged[cell], self.merged[beyond]
         # By number of the position: neighbours may have vertices of their own at the same place.
-        shared = other[:, :, np.newaxis] == own[:, np.newaxis, :]
+        shared = next_corners[:, :, np.newaxis] == corners[:, np.newaxis, :]
         # Where one triangle lies on the other even the vertex left behind has the place of one
         # beyond.
         shared[np.arange(len(cell)), :, side] = False
         # Weights move along with their vertices; the new one begins at 0, as the place is on the
         # side.
-        found = np.einsum("nij,nj->ni", shared, weights)
+        moved_weights = np.einsum("nij,nj->ni", shared, weights)
         if self.k == 2:
             # On triangles the step is turned about the common edge as if both were unfolded into
             # one plane: its part along the edge stays, its part across points toward the new
@@ -330,7 +330,7 @@ class Simplices:
             ahead = along[:, np.newaxis] * edge + (
                 np.linalg.norm(across, axis=1, keepdims=True) * inward
             )
-        return beyond, found, ahead
+        return beyond, moved_weights, ahead
 
 
 Step = tuple[float, float, float]
@@ -359,19 +359,19 @@ def _to_side(w: Array, gradients: Array, here: int, step: Step) -> tuple[float, 
 
 
 @_compiled.kernel(inline=True)
-def _beyond(w: Array, found: Array, merged: Indices, here: int, side: int, beyond: int) -> int:
+def _beyond(w: Array, scratch: Array, merged: Indices, here: int, side: int, beyond: int) -> int:
     """Take weights to the cell beyond a side; return its vertex that is not on that side."""
     m, apex = len(w), 0
     for j in range(m):
-        found[j], shared = 0.0, False
+        scratch[j], shared = 0.0, False
         for other in range(m):
             if other != side and merged[beyond * m + j] == merged[here * m + other]:
-                found[j] += w[other]
+                scratch[j] += w[other]
                 shared = True
         if not shared:
             apex = j
     for j in range(m):
-        w[j] = found[j]
+        w[j] = scratch[j]
     return apex
 
 
@@ -395,7 +395,7 @@ def _walk(
     neighbours: Indices, points: Array, gradients: Array, m: int,
 ) -> None:  # fmt: skip
     """Walk straight ahead, as :meth:`Simplices.walk`; cells, weights and flags are changed."""
-    found = np.empty(m)
+    scratch = np.empty(m)
     for i in range(len(cell)):
         here, w, inside[i] = cell[i], weights[i], False
         x, y, z = ahead[i, 0], ahead[i, 1], ahead[i, 2]
@@ -407,7 +407,7 @@ def _walk(
                 inside[i] = share >= 1
                 break
             x, y, z = (1 - share) * x, (1 - share) * y, (1 - share) * z
-            apex = _beyond(w, found, merged, here, side, beyond)
+            apex = _beyond(w, scratch, merged, here, side, beyond)
             # Tetrahedra fill one space, in which the step goes on as it is; triangles are unfolded.
             if m == 3:
                 a, b = cells[here * 3 + (side + 1) % 3], cells[here * 3 + (side + 2) % 3]

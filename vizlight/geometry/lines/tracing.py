@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.lines.simplices import Places
+    from vizlight.geometry.lines.simplices import CellPlaces
 
 
 def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices, Array]:
@@ -24,7 +24,7 @@ def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices
     points : ndarray, shape (N, 3)
     cells : ndarray of int, shape (M, k + 1)
     pairs : ndarray, shape (N, 2, 3)
-        Two directions at each vertex, of length 1, or zero where there is none. Their order and
+        Two directions at each vertex, of length 1, or zero without a direction. Their order and
         their signs may differ from vertex to vertex.
 
     Returns
@@ -72,7 +72,7 @@ AT_REST = 1e-6
 
 @dataclass(frozen=True)
 class Tracing:
-    """How curves are traced, in a mesh of size 1; see the options of streamlines.
+    """Parameters of traced curves, in a mesh of size 1; see the options of streamlines.
 
     Attributes
     ----------
@@ -117,13 +117,13 @@ class Flow:
         self.vectors = np.asarray(vectors, dtype=np.float64)
 
     def directions(
-        self, places: Places, along: Array | None = None, sign: Array | None = None
+        self, places: CellPlaces, along: Array | None = None, sign: Array | None = None
     ) -> tuple[Array, Bools]:
-        """Return unit directions, and where there is one.
+        """Return unit directions, and a mask of the places that have one.
 
         Parameters
         ----------
-        places : Places
+        places : CellPlaces
         along : ndarray, shape (N, 3), optional
             Directions that lines without sign are aligned with.
         sign : ndarray, shape (N,), optional
@@ -137,13 +137,13 @@ class Flow:
             first = corners[np.arange(len(most)), most] * sign[:, np.newaxis]
             turned = np.einsum("nij,nj->ni", corners, first if along is None else along) < 0
             corners = np.where(turned[:, :, np.newaxis], -corners, corners)
-        found = np.einsum("ni,nij->nj", places.weights, corners)
+        vectors = np.einsum("ni,nij->nj", places.weights, corners)
         # Lines are aligned with a direction that has its sign already.
         if not self.line_field:
-            found *= sign[:, np.newaxis]
-        speed = np.linalg.norm(found, axis=1)
+            vectors *= sign[:, np.newaxis]
+        speed = np.linalg.norm(vectors, axis=1)
         moving = speed > AT_REST
-        return found / np.where(moving, speed, 1)[:, np.newaxis], moving
+        return vectors / np.where(moving, speed, 1)[:, np.newaxis], moving
 
 
 @dataclass
@@ -156,7 +156,7 @@ class Walkers(Columns):
         Number of the curve of each end.
     sign : ndarray, shape (N,)
         1 for the end that runs along the field from the seed, -1 for the other.
-    places : Places
+    places : CellPlaces
     along : ndarray, shape (N, 3)
         Unit directions in which they go.
     number : ndarray of int, shape (N,)
@@ -167,23 +167,23 @@ class Walkers(Columns):
 
     curve: Indices
     sign: Array
-    places: Places
+    places: CellPlaces
     along: Array
     number: Indices
     length: Array
 
     @classmethod
-    def at(cls, flow: Flow, seeds: Places, curves: Indices) -> Walkers:
+    def from_seeds(cls, flow: Flow, seeds: CellPlaces, curves: Indices) -> Walkers:
         """Return both ends of the curves through seeds; none where the field has no direction."""
         count = len(curves)
         sign = np.repeat([1.0, -1.0], count)
         places = seeds.joined(seeds)
         along, moving = flow.directions(places, sign=sign)
-        made = cls(
+        ends = cls(
             np.tile(curves, 2), sign, places, along,
             np.zeros(2 * count, dtype=np.intp), np.zeros(2 * count),
         )  # fmt: skip
-        return made[moving]
+        return ends[moving]
 
     def advanced(self, flow: Flow, step: Array) -> tuple[Walkers, Bools, Bools]:
         """Take one step by the midpoint rule.
@@ -198,7 +198,7 @@ class Walkers(Columns):
         -------
         ahead : Walkers
             Ends after the step.
-        made : ndarray of bool, shape (N,)
+        stepped : ndarray of bool, shape (N,)
             Whether a step was made: not where a curve comes to rest or turns back.
         inside : ndarray of bool, shape (N,)
             Whether the curve goes on: not where it has reached a boundary.
@@ -209,9 +209,9 @@ class Walkers(Columns):
         end, inside = flow.mesh.walk(self.places, middle * step[:, np.newaxis])
         last, still = flow.directions(end, middle, self.sign)
         # Where the field turns by a right angle within half a step no curve is followed any more.
-        made = moving & still & (np.einsum("ni,ni->n", last, middle) > 0)
+        stepped = moving & still & (np.einsum("ni,ni->n", last, middle) > 0)
         number, length = self.number + 1, self.length + step
-        return Walkers(self.curve, self.sign, end, last, number, length), made, inside
+        return Walkers(self.curve, self.sign, end, last, number, length), stepped, inside
 
 
 @dataclass
@@ -220,15 +220,15 @@ class Curves:
 
     Attributes
     ----------
-    places : Places
+    places : CellPlaces
         All places, each curve in the direction of the field.
     along : ndarray, shape (N, 3)
-        Unit directions of the field there.
+        Unit directions of the field at the places.
     offsets : ndarray of int, shape (L + 1,)
         Start of each curve, followed by the number of places.
     """
 
-    places: Places
+    places: CellPlaces
     along: Array
     offsets: Indices
 
@@ -256,7 +256,7 @@ def passed(
     last : dict
         Number of the last step that is kept, by curve and sign, where some are not.
     closed : set of int
-        Curves whose last place is followed by the first.
+        Curves that return from their last place to the first.
     dropped : set of int
         Curves that are left out.
     """
@@ -290,14 +290,19 @@ def passed(
 
 
 def trace(
-    flow: Flow, seeds: Places, how: Tracing, /, *, report: Callable[[int], None] = lambda _: None
+    flow: Flow,
+    seeds: CellPlaces,
+    how: Tracing,
+    /,
+    *,
+    report: Callable[[int], None] = lambda _: None,
 ) -> Curves:
     """Return the integral curves through seeds, in both directions.
 
     Parameters
     ----------
     flow : Flow
-    seeds : Places
+    seeds : CellPlaces
         N seeds.
     how : Tracing
     report : callable, optional
@@ -313,7 +318,7 @@ def trace(
     Midpoint rule: the error of a step is of order 3. A curve ends at a boundary, where the field
     is below a millionth, or where it turns by a right angle in one step.
     """
-    walkers = Walkers.at(flow, seeds, np.arange(len(seeds.cell)))
+    walkers = Walkers.from_seeds(flow, seeds, np.arange(len(seeds.cell)))
     trail = [walkers]
     for _ in range(how.max_steps):
         if not len(walkers.curve):
@@ -321,10 +326,10 @@ def trace(
         # The last step is shorter, so that a curve is not longer than what was asked for.
         room = how.max_length - walkers.length
         size = np.minimum(how.step * flow.mesh.sizes(walkers.places), room)
-        walkers, made, inside = walkers.advanced(flow, size)
-        trail.append(walkers[made])
+        walkers, stepped, inside = walkers.advanced(flow, size)
+        trail.append(walkers[stepped])
         # Lengths are sums of steps, whose rounding must not lead to one more step of almost
         # nothing.
-        walkers = walkers[made & inside & (walkers.length < how.max_length * (1 - 1e-9))]
+        walkers = walkers[stepped & inside & (walkers.length < how.max_length * (1 - 1e-9))]
         report(2 * len(seeds.cell) - len(walkers.curve))
     return passed(trail, {}, closed=set(), dropped=set())

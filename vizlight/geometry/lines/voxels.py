@@ -1,4 +1,4 @@
-"""Sums over voxels: what is spread over the 8 voxels around places, and read again at places."""
+"""Sums over voxels: values are spread over the 8 voxels around places, and read at places."""
 
 from __future__ import annotations
 
@@ -104,14 +104,14 @@ def read(grid: Array, cells: Array, /) -> Array:
     ndarray of float32, shape (N,)
         Values.
     """
-    found = np.zeros(cells.shape[1], np.float32)
+    values = np.zeros(cells.shape[1], np.float32)
     flat = grid.reshape(-1)
-    if _read.pays(len(found) * SAVED):
-        _read(flat, np.ascontiguousarray(cells), grid.shape[1], grid.shape[2], found)
-        return found
+    if _read.pays(len(values) * SAVED):
+        _read(flat, np.ascontiguousarray(cells), grid.shape[1], grid.shape[2], values)
+        return values
     for index, weight in _corners(cells, grid.shape):
-        found += weight * flat[index]
-    return found
+        values += weight * flat[index]
+    return values
 
 
 def summed(grid: Array) -> Array:
@@ -126,7 +126,7 @@ def summed(grid: Array) -> Array:
 
 
 def depths(middles: Array, vectors: Array, places: Array, frame: Array, /) -> tuple[Array, Array]:
-    """Return how much of the length of pieces, across a direction, is on either side of places.
+    """Return the length of pieces, across a direction, on either side of places.
 
     Parameters
     ----------
@@ -159,31 +159,31 @@ def depths(middles: Array, vectors: Array, places: Array, frame: Array, /) -> tu
 @_compiled.kernel(rounding=_compiled.ROUNDING)
 def _spread(cells: Array, values: Array, grid: Array, rows: int, columns: int) -> None:
     """Add values to the 8 voxels around places."""
-    one, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
+    unit, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
     for i in range(len(values)):
         p, q, r = int(x[i]), int(y[i]), int(z[i])
         # The casts keep the arithmetic in float32: with an integer numba would widen it to float64.
         f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
         at = (p * rows + q) * columns + r
-        for plane in (values[i] * (one - f), values[i] * f):
-            low, high = plane * (one - g), plane * g
-            grid[at] += low * (one - h)
+        for plane in (values[i] * (unit - f), values[i] * f):
+            low, high = plane * (unit - g), plane * g
+            grid[at] += low * (unit - h)
             grid[at + 1] += low * h
-            grid[at + columns] += high * (one - h)
+            grid[at + columns] += high * (unit - h)
             grid[at + columns + 1] += high * h
             at += rows * columns
 
 
 @_compiled.kernel(rounding=_compiled.ROUNDING)
-def _read(grid: Array, cells: Array, rows: int, columns: int, found: Array) -> None:
+def _read(grid: Array, cells: Array, rows: int, columns: int, values: Array) -> None:
     """Take values from the 8 voxels around places."""
-    one, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
-    for i in range(len(found)):
+    unit, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
+    for i in range(len(values)):
         p, q, r = int(x[i]), int(y[i]), int(z[i])
         f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
         at = (p * rows + q) * columns + r
-        for share in (one - f, f):
-            low = grid[at] * (one - h) + grid[at + 1] * h
-            high = grid[at + columns] * (one - h) + grid[at + columns + 1] * h
-            found[i] += share * (low * (one - g) + high * g)
+        for share in (unit - f, f):
+            low = grid[at] * (unit - h) + grid[at + 1] * h
+            high = grid[at + columns] * (unit - h) + grid[at + columns + 1] * h
+            values[i] += share * (low * (unit - g) + high * g)
             at += rows * columns

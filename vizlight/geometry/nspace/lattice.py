@@ -35,11 +35,11 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
         If the value is not one integer or k of them, or one is less than 3 in a closed direction
         or less than 2 in an open one.
     """
-    given: Foreign = value
-    several = isinstance(given, list | tuple) or np.ndim(given) == 1
-    if several and len(given) != k:
-        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(given)))
-    sizes = tuple(given) if several else (given,) * k
+    entries: Foreign = value
+    several = isinstance(entries, list | tuple) or np.ndim(entries) == 1
+    if several and len(entries) != k:
+        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(entries)))
+    sizes = tuple(entries) if several else (entries,) * k
     counts = tuple(
         _check.integer("resolution", size, low=3 if wraps else 2)
         for size, wraps in zip(sizes, closed, strict=True)
@@ -49,7 +49,7 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
 
 
 def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False) -> Indices:
-    """Return the cells of a lattice of 1 to 3 directions, whose last index runs fastest.
+    """Return the cells of a lattice of 1 to 3 directions; the last index runs fastest.
 
     Parameters
     ----------

@@ -196,7 +196,7 @@ def hopf_fibres(
     Parameters
     ----------
     base : array_like, shape (m, 3), optional
-        Points of the 2-sphere, of any length but 0, whose fibres are returned. Default: points
+        Points of the 2-sphere, of any length but 0, one for each fibre. Default: points
         spread evenly over the sphere.
     fibres : int, default: 24
         Number of fibres, if no base is given.
@@ -257,7 +257,7 @@ def circle(count: int) -> Array:
 
 
 def radius_of(name: str, value: object) -> float:
-    """Return a radius above 0 whose square does not overflow."""
+    """Return a radius above 0 with a square that does not overflow."""
     return _check.positive(name, value, high=LARGEST_RADIUS)
 
 
@@ -396,8 +396,8 @@ def complex_curve(
     TypeError
         If the function does not take or return such arrays.
     ValueError
-        If an argument is invalid, or the function is not finite on its domain or not analytic
-        there: it depends on the conjugate of z by more than rounding, or has a branch cut between
+        If an argument is invalid, or the function is not finite or not analytic on its domain: it
+        depends on the conjugate of z by more than rounding, or has a branch cut between
         neighbouring samples (a root or a logarithm around 0).
 
     Notes
@@ -452,7 +452,7 @@ def _complex(name: str, function: Callable[[Complex], ArrayLike], z: Complex) ->
 
 
 def _slope(value: Function, z: Complex, side: float) -> Complex:
-    """Return f' by Cauchy's integral over eight points around z, if f is analytic there.
+    """Return f' by Cauchy's integral over eight points around z, at which f must be analytic.
 
     Coefficient m of the discrete Fourier transform of f on the circle is the term
     ``f^(m) d^m / m!`` of the Taylor series. Coefficient 7 is also coefficient -1, the term of the
@@ -486,7 +486,7 @@ def _check_sheets(value: Function, shape: Manifold) -> None:
     """Reject a function that has a branch cut between neighbouring samples.
 
     Where the step from one sample to the next disagrees with the slopes at both, it is bisected
-    repeatedly, always on the side with the larger step; what remains is a jump.
+    repeatedly, always on the side with the larger step; a step that remains is a jump.
     """
     pairs = [shape.cells[:, [i, (i + 1) % 4]] for i in range(4)]
     ends = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)

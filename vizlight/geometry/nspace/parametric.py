@@ -61,7 +61,7 @@ class Manifold:
         Segments, quadrilaterals or hexahedra between the points, with corners in VTK's order. A
         closed direction shares its points across the seam.
 
-    Numbers that are not finite are kept; what is made of them is marked as invalid.
+    Numbers that are not finite are kept; results from them are marked as invalid.
 
     Raises
     ------
@@ -96,7 +96,7 @@ class Manifold:
 
 
 def manifold(points: Array, tangents: Array, cells: Indices) -> Manifold:
-    """Return a :class:`Manifold` whose tangents (N, k, n) are orthonormalised first."""
+    """Return a :class:`Manifold` of tangents (N, k, n), which are orthonormalised first."""
     return Manifold(points, orthonormalize(tangents)[0], cells)
 
 
@@ -254,7 +254,7 @@ def _slopes(
 
     def checked(u: Sequence[Array], points: Array) -> Array:
         """Return ``Im f(u + i h) / h`` after a comparison with central differences."""
-        found = _complex_step(function, u, n, fine)
+        slopes = _complex_step(function, u, n, fine)
         # The difference of the two estimates the error of central differences themselves.
         near, far = (_central(function, u, n, s * coarse, ends) for s in (1, 2))
         place = np.abs(np.stack(u, axis=1))[..., np.newaxis]
@@ -262,12 +262,12 @@ def _slopes(
         rounding = np.abs(points)[:, np.newaxis] + place * np.abs(near)
         allowed = NOT_ANALYTIC * np.abs(near) + np.abs(far - near)
         allowed += ROUNDING * eps * rounding / coarse[:, np.newaxis]
-        if not np.all(np.abs(found - near) <= allowed):
+        if not np.all(np.abs(slopes - near) <= allowed):
             expected = "one that is analytic, as the complex step requires"
             got = "one for which the complex step and central differences disagree"
             remedy = "pass tangents='central'"
             raise ValueError(_check.message("function", expected, got, remedy))
-        return found
+        return slopes
 
     return checked
 
@@ -403,5 +403,5 @@ def _is_closed(
         return True
     # Tangent spaces are compared by their projectors, which do not depend on the basis.
     frames = [orthonormalize(rows)[0] for rows in (rows_p, rows_q)]
-    one, other = (np.einsum("bki,bkj->bij", frame, frame) for frame in frames)
-    return bool(np.abs(one - other).max() < same)
+    first, second = (np.einsum("bki,bkj->bij", frame, frame) for frame in frames)
+    return bool(np.abs(first - second).max() < same)

@@ -117,7 +117,9 @@ def _is_row(part: object) -> bool:
     """Return whether an element of a list is a row of numbers rather than a rotation."""
     if isinstance(part, np.ndarray):
         return part.ndim == 1 and part.dtype.kind in "iuf"
-    return isinstance(part, list | tuple) and all(isinstance(one, numbers.Real) for one in part)
+    return isinstance(part, list | tuple) and all(
+        isinstance(number, numbers.Real) for number in part
+    )
 
 
 def _special_orthogonal(n: int, value: object) -> Array:
@@ -161,7 +163,7 @@ def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
 
 
 def _dimension(n: object) -> int:
-    """Return the dimension of a space whose matrices memory holds."""
+    """Return the dimension of a space; its matrices must fit in memory."""
     size = _check.integer("n", n, low=2)
     _check.holds("n", (size, size))
     return size
@@ -279,7 +281,7 @@ def image_and_depth(points: ArrayLike, /, *, distance: float | None = None) -> t
 def push_forward(
     vectors: ArrayLike, points: ArrayLike, /, *, distance: float | None = None
 ) -> Array:
-    """Return the derivative of :func:`perspective` at points, applied to vectors there.
+    """Return the derivative of :func:`perspective` at points, applied to their vectors.
 
     Parameters
     ----------
@@ -345,7 +347,7 @@ def push_frame(
         As for :func:`perspective`.
     rtol : float, optional
         Length below which the image of a unit vector counts as zero, relative to a bound on the
-        longest image there. Default: ``8 sqrt(n) eps``.
+        longest image at the point. Default: ``8 sqrt(n) eps``.
 
     Returns
     -------
@@ -384,12 +386,12 @@ def push_frame(
             # What is left of a vector that points at the eye is rounding, magnified by the
             # projection: in units of that bound one tolerance holds for all points.
             image /= _rounding(points, check_distance(distance))[..., np.newaxis, np.newaxis]
-        found, rank = orthonormalize(image)
+        image_frame, rank = orthonormalize(image)
         # The volume that the images span is at most the smallest singular value.
         doubtful = ~(_squared_volume(image) > max(DOUBTFUL, tolerance) ** 2)
     if doubtful.any():
-        found[doubtful], rank[doubtful] = _significant(image[doubtful], tolerance)
-    return found, rank
+        image_frame[doubtful], rank[doubtful] = _significant(image[doubtful], tolerance)
+    return image_frame, rank
 
 
 def _squared_volume(rows: Array) -> Array:
@@ -426,10 +428,10 @@ def _significant(image: Array, tolerance: float) -> tuple[Array, Indices]:
     full = np.all(large, axis=-1)
     # The sign makes the rows point along the images, not against them.
     sign = np.where(np.take_along_axis(left, np.abs(left).argmax(-2)[:, np.newaxis], -2) < 0, -1, 1)
-    found = np.where(large[..., np.newaxis], right * sign.swapaxes(-2, -1), 0)
+    basis = np.where(large[..., np.newaxis], right * sign.swapaxes(-2, -1), 0)
     # The rows keep their order where the rank is full.
-    found[full] = orthonormalize(image[full], rtol=0.0)[0]
-    return found, np.count_nonzero(large, axis=-1)
+    basis[full] = orthonormalize(image[full], rtol=0.0)[0]
+    return basis, np.count_nonzero(large, axis=-1)
 
 
 def check_distance(distance: object) -> float:

@@ -85,14 +85,14 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     # 0 counts as above, everywhere alike: neighbours then agree on the points of the cut.
     above = height[corners] >= 0
     pattern = above @ (1 << np.arange(size))
-    found = []
+    edge_pairs = []
     for case, parts in _cases(size).items():
         rows = corners[pattern == case]
         for part in parts:
             # Corners of an edge in rising order: neighbours find the same point by the same pair.
             pairs = rows[:, np.array([_EDGES[size][edge] for edge in part])]
-            found.append(np.sort(pairs, axis=2))
-    pairs = np.concatenate(found)
+            edge_pairs.append(np.sort(pairs, axis=2))
+    pairs = np.concatenate(edge_pairs)
     # A corner at 0 is a single point of the cut for all edges that meet there.
     for end in (0, 1):
         at = height[pairs[..., end]] == 0
@@ -174,10 +174,10 @@ def mean_frame(frame: ArrayLike, shares: Foreign, /) -> Array:
     mixing = scipy.sparse.csr_array(
         (parts.data, np.arange(len(owner)), parts.indptr), (len(largest), len(owner))
     )
-    found = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
+    means = orthonormalize((mixing @ turned).reshape(-1, k, n))[0]
     # A frame with rows of zero gives a cosine of 0 with every frame.
-    found[owner[cosines.min(axis=1) <= default_rtol(n, rows.dtype)]] = 0
-    return found
+    means[owner[cosines.min(axis=1) <= default_rtol(n, rows.dtype)]] = 0
+    return means
 
 
 def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = None) -> Array:

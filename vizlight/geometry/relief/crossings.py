@@ -1,8 +1,8 @@
 """Horizons of nodes of a height field toward an azimuth, through every cell in the way.
 
 A field is turned so that the azimuth goes toward rising columns and rows, by ``slope`` along y per
-length along x. Between two crossings of cell sides the height along the ray is a quadratic, whose
-arc may rise above its chord. Beyond the border heights stay as they are there.
+length along x. Between two crossings of cell sides the height along the ray is a quadratic; its arc
+may rise above its chord. Beyond the border the heights of the border continue.
 
 :func:`sweep` looks from all nodes of an even field at once, :func:`follow` from some nodes of any
 field, both by NumPy; :func:`exact` is the compiled code for some nodes of any field.
@@ -42,7 +42,7 @@ def sweep(z: Array, widths: tuple[float, float], slope: float, near: int, least:
     near : int
         Number of columns at which the walk ends; it goes to the border from the number of columns.
     least : float
-        What may be missed of the sky's share: of arcs over their chords, and of what is far away.
+        Share of the sky that may be missed, by arcs over their chords and by distant terrain.
     """
     rows, columns = z.shape
     top = float(np.nanmax(z))
@@ -85,14 +85,14 @@ def sweep(z: Array, widths: tuple[float, float], slope: float, near: int, least:
         size, bend = (max(rows - 1 - b, 0), max(columns - 1 - a, 0)), (u1 - u) * (v1 - v)
         middle = (before + now) / 2
         if min(size) > 0 and bend * most > 4 * least * middle * length:
-            own = np.s_[: size[0], : size[1]]
-            ends = last[own] - z[own], place[own] - z[own]
+            inner = np.s_[: size[0], : size[1]]
+            ends = last[inner] - z[inner], place[inner] - z[inner]
             curve = bend * twist[b:, a:]
             if now <= ARCS:
                 rise = _arc(*ends, (before, now), curve) / length
             else:
                 rise = ((ends[0] + ends[1]) * 2 - curve) * (1 / (4 * middle * length))
-            np.fmax(t[own], rise, out=t[own])
+            np.fmax(t[inner], rise, out=t[inner])
         before, u, v, last = now, u1, v1, place
         if to_column <= to_row:
             a, u = a + 1, 0.0
@@ -176,7 +176,7 @@ class _Walk:
             setattr(self, name, getattr(self, name)[going])
 
     def step(self) -> tuple[Array, Array, Array]:
-        """Move rays over their cells; return distances along x, heights there, and bends."""
+        """Move rays over their cells; return distances along x, with their heights and bends."""
         z, x, y, a, b = self.z, self.x, self.y, self.a, self.b
         # Beyond the border a cell has no width, and no further side along that axis.
         a1, b1 = np.minimum(a + 1, len(x) - 1), np.minimum(b + 1, len(y) - 1)

@@ -110,7 +110,7 @@ def depth_map(
 
 
 def _over(corners: Array, z: Array, node: Indices) -> tuple[Bools, Array]:
-    """Return a mask of the nodes inside their triangles, and the triangles' heights there."""
+    """Return a mask of the nodes inside their triangles, and the triangles' heights at them."""
     a, b, c = (corners[:, k] - node for k in range(3))
     # Twice the areas between the node and each side: barycentric weights before the division.
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)

@@ -155,17 +155,19 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
 
 
 def default_depth(field: Field) -> float:
-    """Return a depth d whose shadows are about as large as hard ones.
+    """Return a depth d with shadows about as large as hard ones.
 
     It is an eighth of a cell's width, and not more than half the mean difference of heights from
     node to node, but at least a thousandth of that width. Under a sun 10 degrees high the share of
     nodes with t below half the t of level ground is then 0.85 to 1.15 of the share for d = 0, on
-    fractal terrains of any exaggeration whose hard shadows cover 7 % to 80 %.
+    fractal terrains of any exaggeration with hard shadows over 7 % to 80 % of the nodes.
     """
     cell = min(float(axis[-1]) / (len(axis) - 1) for axis in (field.x, field.y))
     rises = [np.abs(np.diff(field.heights, axis=axis)) for axis in (0, 1)]
-    known = [float(rise[np.isfinite(rise)].mean()) for rise in rises if np.isfinite(rise).any()]
-    step = sum(known) / len(known) if known else 0.0
+    mean_rises = [
+        float(rise[np.isfinite(rise)].mean()) for rise in rises if np.isfinite(rise).any()
+    ]
+    step = sum(mean_rises) / len(mean_rises) if mean_rises else 0.0
     return min(max(DEPTH_OF_STEP * step, LEAST_OF_CELL * cell), DEPTH_OF_CELL * cell)
 
 
@@ -184,8 +186,8 @@ def filled(heights: Array) -> Array:
 def continued(x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
     """Return a field with a ring of nodes more, at which the slope of the last cells goes on.
 
-    Nodes of holes that are next to heights are such, too. At a border and beside a hole the
-    surface so has no bend, by which a node would be lit as if the ground were level there.
+    Nodes of holes that are next to heights are continued, too. So the surface does not level out at
+    a border or beside a hole, and its nodes are lit by the slope of their own cells.
 
     Parameters
     ----------
@@ -228,7 +230,7 @@ def normals(field: Field) -> Array:
     """Return the upward unit normal at each node, shape (ny, nx, 3).
 
     A node has the slope of the parabola through it and its two neighbours; at a border or
-    next to a hole it is the slope of the only cell there.
+    next to a hole it is the slope of the only cell beside it.
     """
     normal = np.ones((*field.heights.shape, 3))
     right, up = slopes(field)

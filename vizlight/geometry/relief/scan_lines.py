@@ -1,8 +1,8 @@
 """Horizons of all nodes of a height field toward an azimuth, by scan lines, as compiled code.
 
-The cells near a node are crossed one by one on the bilinear surface. What is behind them is read
-from two lines beside the node that run along the azimuth: a line is swept once, against the
-azimuth, and keeps the upper convex hull of what it has passed, so that an azimuth costs O(n).
+The cells near a node are crossed one by one on the bilinear surface. The terrain behind them is
+read from two lines beside the node that run along the azimuth: a line is swept once, against the
+azimuth, and keeps the upper convex hull of the nodes it has passed, so that an azimuth costs O(n).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
 def seen(t: float, rise: float, upright: float, openness: bool) -> float:
-    """Return what is seen above a horizon of slope t from ground that rises toward it."""
+    """Return the visible sky above a horizon of slope t from ground that rises toward it."""
     t = max(t, 0.0)
     if openness:
         return math.atan2(1.0, t)
@@ -33,7 +33,7 @@ def seen(t: float, rise: float, upright: float, openness: bool) -> float:
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)
 def tangent(hx: Array, hz: Array, top: int, at: float, height: float) -> float:
-    """Return the largest slope from a point to a hull, whose last vertex is the nearest."""
+    """Return the largest slope from a point to a hull with its nearest vertex last."""
     if top < 0:
         return NONE
     b = top
@@ -72,7 +72,7 @@ def pushed(hx: Array, hz: Array, top: int, px: float, pz: float) -> int:
 
 @_compiled.kernel(inline=True)
 def side_of(first: float, spacing: float, line: int, aside: float) -> float:
-    """Return where a scan line is: by the same sums for all, so that a node is between two."""
+    """Return the place of a scan line: by the same sums for all, so that a node is between two."""
     return (first + line * spacing) + aside
 
 
@@ -89,7 +89,7 @@ def azimuth(
     z: Array, x: Array, y: Array, p: Array, q: Array, slope: float, grid: tuple[float, float],
     some: tuple[int, int], near: int, crowd: int, openness: bool, out: Array,
 ) -> None:  # fmt: skip
-    """Write what the nodes between some scan lines see toward an azimuth.
+    """Write the sky that the nodes between some scan lines see toward an azimuth.
 
     ``z`` is padded by ``near`` nodes; ``p`` and ``q``, the slopes of the ground along columns and
     rows, are not. ``grid`` has the height of scan line 0 at column 0 and the distance of lines,

@@ -58,8 +58,9 @@ def inside_length(
     border : {"extend", "wall"}
         Shape of the solid beyond the outermost nodes. "extend": the heights of the border continue
         without end, and a hole has the height of the nearest node by index. "wall": the solid ends
-        there in vertical walls, and likewise at each cell that lacks a corner. Walls are part of
-        the solid: a ray that runs in the plane of one is inside below the wall's upper edge.
+        at the outermost nodes in vertical walls, and likewise at each cell that lacks a corner.
+        Walls are part of the solid: a ray that runs in the plane of one is inside below the wall's
+        upper edge.
 
     Returns
     -------
@@ -72,17 +73,16 @@ def inside_length(
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If a shape is wrong, there is only one row or no height at all, the light is inside the
+        If a shape is wrong, a field has only one row or no height at all, the light is inside the
         solid, or both or neither of direction and position are given.
 
     Notes
     -----
     The surface is bilinear, not triangulated. It has no diagonals to choose, so a mirrored field
-    has the mirrored shadow. Along a ray its height is a quadratic in each cell, whose roots are
-    found in closed form. The error is at most ``3 eps`` times the size of the field for each time
-    that a ray crosses the surface without grazing it. The cost is O(log N) squares for each time
-    that a ray crosses the surface: the study ``relief`` prints its time.
-    Source: cos-theta, section 2.
+    has the mirrored shadow. Along a ray its height is a quadratic in each cell, with roots in
+    closed form. The error is at most ``3 eps`` times the size of the field for each time that a ray
+    crosses the surface without grazing it. The cost is O(log N) squares for each time that a ray
+    crosses the surface: the study ``relief`` prints its time. Source: cos-theta, section 2.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def shadow(
 
     Notes
     -----
-    Within the four cells around a node the solid is what lies below the plane through the node
+    Within the four cells around a node the solid is the space below the plane through the node
     across its normal; elsewhere, and where p' is outside of these cells, it is the field. So t is
     the cosine of the angle between n and the direction from p' to the light where the ray leaves
     that plane within the cells and meets nothing behind them, and on a plane for every d. The
@@ -305,7 +305,7 @@ def _lengths(
     count: int,
     ways: Callable[[Array], tuple[Array, Array]],
 ) -> Array:
-    """Return the lengths inside the solid of rays, whose starts (3, N) a function of rows gives."""
+    """Return the lengths inside the solid of rays; a function of rows gives their starts (3, N)."""
     length = np.empty(count)
     # Decided once for the rays of all blocks, which are then all followed in one way.
     fast = walks.walk.pays(walks.SAVED * count)

@@ -43,7 +43,7 @@ SAMPLES, REFERENCE = 256, 0.7
 #: Number of nodes up to which NumPy is used at an error of SMALL_ERROR or more; fewer at a smaller
 #: one, in proportion. To compile takes seconds, once on a machine.
 SMALL, SMALL_ERROR = 1 << 15, 0.01
-#: What NumPy may miss of what is far away or between two crossings, as a share of the error.
+#: Share of the error that NumPy may miss of distant terrain or between two crossings.
 MISSED = 1 / 20
 #: Scan lines, or nodes, that one thread follows.
 LINES, NODES = 128, 1 << 14
@@ -53,7 +53,7 @@ GROWTH, BEYOND = 1.1, 8
 LARGEST, LEAST = 0.5, 1e-4
 
 
-class Sky(NamedTuple):
+class SkyShares(NamedTuple):
     """The sky of a height field.
 
     Attributes
@@ -83,7 +83,7 @@ def sky(
     error: float = 0.01,
     openness: bool = False,
     progress: Callable[[int], None] = lambda _: None,
-) -> Sky:
+) -> SkyShares:
     """Return the share of the sky that the nodes of a height field see.
 
     Parameters
@@ -93,8 +93,8 @@ def sky(
     y : array_like, shape (ny,)
         Rising nodes.
     z : array_like, shape (ny, nx)
-        Heights. NaN is a hole, which blocks nothing; beyond the border heights stay as they are
-        there.
+        Heights. NaN is a hole, which blocks nothing; beyond the border the heights of the border
+        continue.
     error : float, default: 0.01
         Error that 95 of 100 nodes shall keep to, from 0.0001 to 0.5; of the openness in radians.
     openness : bool, default: False
@@ -104,7 +104,7 @@ def sky(
 
     Returns
     -------
-    Sky
+    SkyShares
         Its ``error`` exceeds the one asked for where 1024 azimuths do not suffice.
 
     Raises
@@ -128,7 +128,7 @@ def sky(
 
 
 def _large(field: height_field.Field, error: float) -> bool:
-    """Return whether compiled code finds the sky of a field, if there is any."""
+    """Return whether compiled code, where available, finds the sky of a field."""
     if _compiled.wanted() == "1":
         return True
     # NumPy takes each node of an uneven field by itself, which is ten times as slow.
@@ -142,10 +142,10 @@ def _even(field: height_field.Field) -> bool:
     return all(bool(np.ptp(step) <= 1e-6 * step.min()) for step in steps)
 
 
-def _until(error: float, work: _Horizons) -> Sky:
-    """Return the sky whose error is small enough, or that of most effort."""
+def _until(error: float, work: _Horizons) -> SkyShares:
+    """Return the first sky with a small enough error, or the one of most effort."""
     nears, count = work.nears(), FEWEST
-    # What random nodes see tells the number of azimuths before all nodes are looked at.
+    # The sky at random nodes gives the number of azimuths before all nodes are computed.
     while count < MOST and _quantile(work.spread(count)) + MISSED * error > error:
         count *= 2
     near = nears.pop(0)
@@ -155,11 +155,11 @@ def _until(error: float, work: _Horizons) -> Sky:
         off = np.zeros(len(spread))
         if near is not None:
             off = np.abs(total[work.some] / count - work.samples(count))
-        # NumPy leaves out what counts less than this, and chance may make a difference small.
-        found = _quantile(np.hypot(spread, off)) + MISSED * error
-        if found <= error:
+        # NumPy leaves out shares smaller than this, and chance may make a difference small.
+        measured = _quantile(np.hypot(spread, off)) + MISSED * error
+        if measured <= error:
             break
-        # What is missed between and beyond the scan lines is left to the cells themselves.
+        # Terrain missed between and beyond the scan lines is left to the cells themselves.
         if near is not None and (count >= MOST or _quantile(off) > _quantile(spread)):
             near = nears.pop(0)
             total = work.sums(count, 0.0, near)
@@ -173,7 +173,7 @@ def _until(error: float, work: _Horizons) -> Sky:
         np.clip(total, 0, 1, out=total)
     total[np.isnan(work.field.heights)] = np.nan
     kind = "through every cell" if near is None else "by scan lines" if work.fast else "by steps"
-    return Sky(total, found, count, f"horizons {kind}")
+    return SkyShares(total, measured, count, f"horizons {kind}")
 
 
 def _quantile(values: Array) -> float:
@@ -190,7 +190,7 @@ def _ways(count: int, shift: float) -> list[tuple[float, float]]:
 
 
 def _seen(t: Array, p: Array, q: Array, way: tuple[float, float], openness: bool) -> Array:
-    """Return what is seen above horizons of slope t from ground of slopes p and q.
+    """Return the sky seen above horizons of slope t from ground of slopes p and q.
 
     The integral over elevation from the horizon up is closed.
     """
@@ -209,7 +209,7 @@ def _seen(t: Array, p: Array, q: Array, way: tuple[float, float], openness: bool
 
 
 class _Horizons:
-    """What the nodes of a field see above their horizons, summed over azimuths."""
+    """Sky that the nodes of a field see above their horizons, summed over azimuths."""
 
     def __init__(
         self, field: height_field.Field, error: float, openness: bool,
@@ -219,12 +219,12 @@ class _Horizons:
         self.progress, self.done = progress, 0
         self.even = _even(field)
         self.slopes = height_field.slopes(field)
-        known = np.flatnonzero(np.isfinite(field.heights))
+        ground = np.flatnonzero(np.isfinite(field.heights))
         random = np.random.default_rng(0)
-        chosen = np.sort(random.choice(known, min(len(known), SAMPLES), replace=False))
+        chosen = np.sort(random.choice(ground, min(len(ground), SAMPLES), replace=False))
         #: Rows and columns of random nodes.
         self.some = _nodes(chosen, field)
-        self.known: dict[tuple[int, float], Array] = {}
+        self.sampled: dict[tuple[int, float], Array] = {}
 
     def nears(self) -> list[int | None]:
         """Return numbers of columns that are crossed cell by cell, one after the other to try.
@@ -239,7 +239,7 @@ class _Horizons:
         return [*(near for near in NEAR_BY_STEPS if near < columns), None]
 
     def sums(self, count: int, shift: float, near: int | None) -> Array:
-        """Return what all nodes see, summed over azimuths."""
+        """Return the sky that all nodes see, summed over azimuths."""
         total = np.zeros(self.field.heights.shape, np.float32)
         ways = _ways(count, shift)
         if self.fast:
@@ -270,7 +270,7 @@ class _Horizons:
         self.progress(self.done)
 
     def _add(self, total: Array, view: _View, way: tuple[float, float], near: int | None) -> None:
-        """Add what all nodes see toward an azimuth."""
+        """Add the sky that all nodes see toward an azimuth."""
         if self.fast and near is not None:
             view.add(total, self.openness)
             return
@@ -278,22 +278,22 @@ class _Horizons:
         if self.fast or not self.even:
             every = _nodes(np.arange(heights.size), self.field)
             if self.fast:
-                found = view.exact(every, self.field.top)
+                horizons = view.exact(every, self.field.top)
             else:
-                found = view.followed(every, self.field.top, np.array([view.slope]))[0]
-            found = found.reshape(heights.shape)
+                horizons = view.followed(every, self.field.top, np.array([view.slope]))[0]
+            horizons = horizons.reshape(heights.shape)
         else:
             widths = view.x[-1] / (len(view.x) - 1), view.y[-1] / (len(view.y) - 1)
             columns = len(view.x) if near is None else near
-            found = np.empty(heights.shape)
+            horizons = np.empty(heights.shape)
             least = MISSED * self.error
             # The openness changes with the slope itself, the share with its square.
             least *= least if self.openness else 1.0
-            view.of(found)[:] = crossings.sweep(view.z, widths, view.slope, columns, least)
+            view.oriented(horizons)[:] = crossings.sweep(view.z, widths, view.slope, columns, least)
             if near is not None:
                 start = near * widths[0] * math.hypot(1.0, view.slope)
-                np.fmax(found, _by_steps(self.field, way, start), out=found)
-        total += _seen(found, *self.slopes, way, self.openness)
+                np.fmax(horizons, _by_steps(self.field, way, start), out=horizons)
+        total += _seen(horizons, *self.slopes, way, self.openness)
 
     def spread(self, count: int) -> Array:
         """Return estimates of the errors at the random nodes that a number of azimuths makes.
@@ -306,13 +306,13 @@ class _Horizons:
         return np.maximum(off, np.abs(mean - self.samples(count // 2)) / 2)
 
     def samples(self, count: int) -> Array:
-        """Return what the random nodes see, through every cell, as the mean over azimuths."""
+        """Return the mean sky over azimuths that the random nodes see through every cell."""
         if count > FEWEST // 2:
             return (self.samples(count // 2) + self._samples(count // 2, 0.5)) / 2
         return self._samples(count, 0.0)
 
     def _samples(self, count: int, shift: float) -> Array:
-        if (count, shift) not in self.known:
+        if (count, shift) not in self.sampled:
             view, total = _View(self.field, self.slopes, 0), np.zeros(len(self.some[0]))
             rises = [slope[self.some] for slope in self.slopes]
             # NumPy follows the rays of all azimuths at once that see the field turned alike.
@@ -320,8 +320,8 @@ class _Horizons:
                 ways = list(alike)
                 for way, t in zip(ways, self._horizons(view, ways), strict=True):
                     total += _seen(t, rises[0], rises[1], way, self.openness)
-            self.known[count, shift] = total / count
-        return self.known[count, shift]
+            self.sampled[count, shift] = total / count
+        return self.sampled[count, shift]
 
     def _horizons(self, view: _View, ways: list[tuple[float, float]]) -> list[Array]:
         """Return slopes of the horizons of the random nodes toward azimuths of one turn."""
@@ -391,15 +391,15 @@ class _View:
             self.turn = turn
             axes = _padded(field.x, turn[1], self.near), _padded(field.y, turn[2], self.near)
             # Near cells beyond the border exist, so that a walk through them asks for no bounds.
-            turned = np.ascontiguousarray(self.of(field.heights))
+            turned = np.ascontiguousarray(self.oriented(field.heights))
             self.z = np.pad(turned, self.near, mode="edge")
             # Along an axis that is turned over slopes change their signs.
-            rises = [turn[k] * self.of(self.slopes[k - 1]) for k in (1, 2)]
+            rises = [turn[k] * self.oriented(self.slopes[k - 1]) for k in (1, 2)]
             self.x, self.y = axes[::-1] if swap else axes
             self.p, self.q = map(np.ascontiguousarray, rises[::-1] if swap else rises)
         return self
 
-    def of(self, values: Array) -> Array:
+    def oriented(self, values: Array) -> Array:
         """Return values of the nodes of the field as the view has them."""
         assert self.turn is not None
         swap, right, up = self.turn
@@ -408,7 +408,7 @@ class _View:
         return turned.T if swap else turned
 
     def add(self, total: Array, openness: bool) -> None:
-        """Add what all nodes see toward the azimuth, by compiled code."""
+        """Add the sky that all nodes see toward the azimuth, by compiled code."""
         rows, mean = len(self.y), self.y[-1] / (len(self.y) - 1)
         # Scan lines are parallel to the azimuth, a mean row apart: from below the last node of the
         # first row to above the first one of the last.
@@ -417,7 +417,7 @@ class _View:
         # Most nodes of a column between two lines: uneven rows may crowd.
         last = np.searchsorted(self.y, self.y + mean * (1 + 1e-9))
         crowd = int(np.max(last - np.arange(rows))) + 1
-        out, part = self.of(total), np.zeros(self.p.shape, np.float32)
+        out, part = self.oriented(total), np.zeros(self.p.shape, np.float32)
 
         # Each node lies between one pair of lines, so that threads write to different nodes.
         def work(lines: Slice) -> int:
@@ -449,17 +449,17 @@ class _View:
         """Return slopes of the horizons of nodes toward azimuths, one in a row, by NumPy."""
         j, i = (np.tile(index, len(slopes)) for index in self.turned(nodes))
         each = np.repeat(slopes, len(nodes[0]))
-        found = np.empty(len(each))
+        horizons = np.empty(len(each))
 
         def work(part: Slice) -> int:
-            found[part] = crossings.follow(
+            horizons[part] = crossings.follow(
                 self.z, self.x, self.y, j[part], i[part], each[part], top
             )
             return int(part.stop)
 
         for _ in _pool.run(work, _pool.blocks(len(each), NODES)):
             pass
-        return found.reshape(len(slopes), -1)
+        return horizons.reshape(len(slopes), -1)
 
     def exact(self, nodes: tuple[Indices, Indices], top: float) -> Array:
         """Return slopes of the horizons of nodes, through every cell, by compiled code."""
@@ -478,7 +478,7 @@ class _View:
 
 
 def _padded(nodes: Array, sign: int, near: int) -> Array:
-    """Return nodes in a direction from 0, with ``near`` more at both ends in the spacing there."""
+    """Return nodes in a direction from 0, with ``near`` more at both ends, spaced as there."""
     nodes = np.sort(sign * nodes)
     low, high = nodes[1] - nodes[0], nodes[-1] - nodes[-2]
     more = np.arange(1, near + 1)

@@ -1,4 +1,4 @@
-"""Rays through a height field: from square to square of cells, over a hierarchy of their heights.
+"""Rays through a height field, from square to square of cells on a hierarchy of their heights.
 
 :func:`march` follows many rays at once by NumPy, :func:`walk` one after the other by compiled
 code. Both cross squares of 2^l x 2^l cells at once where all of them are above or below a ray, and
@@ -40,7 +40,7 @@ def march(
     x, y, corners, bounds
         Edges, heights and bounds of a :class:`~vizlight.geometry.relief.height_field.Field`.
     walls : bool
-        Whether there are cells without a solid.
+        Whether some cells have no solid.
     out : ndarray, shape (N,)
         Result.
     """
@@ -55,7 +55,9 @@ def march(
     end = np.where(way[2] > 0, np.minimum(place, reach), reach)
     # A level ray never reaches that height: above all nodes it is left out.
     row = np.flatnonzero((first < end) & ~((way[2] == 0) & (start[2] >= top)))
-    rays = _Rays(start[:, row], way[:, row], first[row], end[row], (x, y), corners, bounds, walls)
+    rays = _MarchingRays(
+        start[:, row], way[:, row], first[row], end[row], (x, y), corners, bounds, walls
+    )
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         while len(row):
             # Each ray has its own row, so no addition is lost.
@@ -68,7 +70,7 @@ def march(
     out[out >= 0.5 * FAR] = np.inf
 
 
-class _Rays:
+class _MarchingRays:
     """Rays in progress, each in a square of 2^l x 2^l cells; every step advances all of them."""
 
     def __init__(
@@ -101,15 +103,15 @@ class _Rays:
         leave = np.minimum(np.maximum(np.where(by_x, cross_x, cross_y), s), self.end)
         z0 = self.start[2] + s * self.way[2]
         z1 = self.start[2] + leave * self.way[2]
-        own = self._own_cell()
-        at = self.bounds.offset[level] + own[1] * self.bounds.columns[level] + own[0]
+        square = self._own_cell()
+        at = self.bounds.offset[level] + square[1] * self.bounds.columns[level] + square[0]
         # A ray is straight, so that its heights at both ends of the way are its bounds.
         below = np.maximum(z0, z1) <= self.bounds.least[at]
         clear = below | (np.minimum(z0, z1) >= self.bounds.largest[at])
         inside = np.where(below, leave - s, 0.0)
         # A single cell that the ray is neither above nor below: its surface itself is looked at.
         leaf = np.flatnonzero(~clear & (level == 0))
-        inside[leaf] = self._in_cell(leaf, own[:, leaf], leave[leaf])
+        inside[leaf] = self._in_cell(leaf, square[:, leaf], leave[leaf])
 
         descend = ~clear & (level > 0)
         onward = ~descend & (leave < self.end)
@@ -130,17 +132,17 @@ class _Rays:
 
     def _own_cell(self) -> Indices:
         """Return the squares of rays; in a plane of nodes the one beside it that is not empty."""
-        found: Indices = self.cell.astype(np.intp)
+        cells: Indices = self.cell.astype(np.intp)
         rows = np.flatnonzero(self.beside.any(axis=0))
         # Up to four cells meet at a vertical ray through a node; they are tried until one has a
         # solid.
         for back in ((0, 0), (1, 0), (0, 1), (1, 1)):
-            i, j = found[:, rows]
+            i, j = cells[:, rows]
             empty = np.isneginf(self.bounds.largest[j * self.bounds.columns[0] + i])
             allowed = np.all(np.array(back, np.bool_) <= self.beside[:, rows].T, axis=1)
             other = rows[empty & allowed]
-            found[:, other] = self.cell[:, other] - np.array(back)[:, np.newaxis]
-        return found
+            cells[:, other] = self.cell[:, other] - np.array(back)[:, np.newaxis]
+        return cells
 
     def _cross(self, axis: int) -> Array:
         """Return the distances at which rays leave their square along an axis."""
@@ -162,11 +164,11 @@ class _Rays:
             self.cell[axis, which] = left + (place >= middle)
         self.level[which] = level
 
-    def _in_cell(self, which: Indices, own: Indices, leave: Array) -> Array:
+    def _in_cell(self, which: Indices, square: Indices, leave: Array) -> Array:
         """Return the length below the bilinear surface of one cell, where f = h - z > 0."""
-        (i, j), s, corners = own, self.s[which], self.corners
+        (i, j), s, corners = square, self.s[which], self.corners
         z00, z10 = corners[j, i], corners[j + 1, i]
-        (u, du), (v, dv) = (self._share(axis, own[axis], which, s) for axis in (0, 1))
+        (u, du), (v, dv) = (self._share(axis, square[axis], which, s) for axis in (0, 1))
         # h = z00 + u a + v b + u v c, where u and v are linear in the distance along the ray.
         a, b = corners[j, i + 1] - z00, z10 - z00
         c = (corners[j + 1, i + 1] - z10) - a
@@ -193,8 +195,8 @@ def _positive(f0: Array, f1: Array, f2: Array, end: Array) -> Array:
     square = f1 * f1 - 4 * f0 * f2
     # Both roots without cancellation; where f2 is 0 one of them is infinite. The sum makes -0 to 0.
     q = -0.5 * (f1 + np.copysign(np.sqrt(np.maximum(square, 0)), f1))
-    one, other = (np.minimum(np.maximum(root, 0), end) for root in (f0 / q, q / (f2 + 0.0)))
-    between = np.abs(one - other)
+    first, second = (np.minimum(np.maximum(root, 0), end) for root in (f0 / q, q / (f2 + 0.0)))
+    between = np.abs(first - second)
     # A parabola that opens upward is positive outside its roots, any other between them.
     length = np.where(f2 >= 0, end - between, between)
     # Without a root, or for a constant f, the sign is the same everywhere.
@@ -210,8 +212,8 @@ def positive(f0: float, f1: float, f2: float, end: float) -> float:
     q = -0.5 * (f1 + math.copysign(math.sqrt(max(square, 0.0)), f1))
     if (square < 0) | (q == 0):
         return end if max(f0, f0 + f2) > 0 else 0.0
-    one, other = min(max(f0 / q, 0.0), end), min(max(q / (f2 + 0.0), 0.0), end)
-    between = abs(one - other)
+    first, second = min(max(f0 / q, 0.0), end), min(max(q / (f2 + 0.0), 0.0), end)
+    between = abs(first - second)
     return end - between if f2 >= 0 else between
 
 

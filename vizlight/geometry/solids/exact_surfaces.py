@@ -140,8 +140,8 @@ class Surfaces(tuple[Surface, ...]):
         """Return which surfaces are planes, and their centres and normals."""
         flat = np.array([isinstance(surface, Plane) for surface in self], np.bool_)
         # Curved surfaces get zeros, so that all can be picked by one array of numbers.
-        given = [(s.center, s.outward) if isinstance(s, Plane) else np.zeros((2, 3)) for s in self]
-        center, outward = np.array(given, np.float64).reshape(-1, 2, 3).transpose(1, 0, 2)
+        planes = [(s.center, s.outward) if isinstance(s, Plane) else np.zeros((2, 3)) for s in self]
+        center, outward = np.array(planes, np.float64).reshape(-1, 2, 3).transpose(1, 0, 2)
         return flat, center, outward
 
     def _curved(self, which: Indices) -> Iterator[tuple[Surface, Bools]]:
@@ -155,17 +155,17 @@ class Surfaces(tuple[Surface, ...]):
         _, center, outward = self._planes
         # All as planes first, without a loop: a polyhedron may have thousands. Those on curved
         # surfaces are then replaced.
-        found = np.einsum("ij,ij->i", points - center[which], outward[which])
+        distances = np.einsum("ij,ij->i", points - center[which], outward[which])
         for surface, rows in self._curved(which):
-            found[rows] = surface.distance(points[rows])
-        return np.asarray(found)
+            distances[rows] = surface.distance(points[rows])
+        return np.asarray(distances)
 
     def normal(self, points: Array, which: Indices) -> Array:
         """Return the outward unit normal of one surface at each point."""
-        found = self._planes[2][which]
+        normals = self._planes[2][which]
         for surface, rows in self._curved(which):
-            found[rows] = surface.normal(points[rows])
-        return np.asarray(found)
+            normals[rows] = surface.normal(points[rows])
+        return np.asarray(normals)
 
     @property
     def apexes(self) -> Iterator[tuple[int, Array]]:
@@ -214,15 +214,15 @@ def onto(surfaces: Surfaces, points: Array, both: Indices, rounds: int = 4) -> A
         # Without a round of Newton's method: the distances at the start, with which the way is
         # compared.
         _, before = _onto_all(surfaces, points[on], both[on], 0)
-        found, off = _onto_all(surfaces, points[on], both[on], rounds)
+        crossing, off = _onto_all(surfaces, points[on], both[on], rounds)
         far = np.flatnonzero(off > NEAR)
         if len(far):
-            found[far], off[far] = _onto_all(surfaces, found[far], both[on[far]], MORE)
-        moved = _sizes(found - points[on])
+            crossing[far], off[far] = _onto_all(surfaces, crossing[far], both[on[far]], MORE)
+        moved = _sizes(crossing - points[on])
         # A point that went far has found another crossing than its own, or none: it stays on one
         # surface.
         met = (off <= NEAR) & (moved <= WIDE * before)
-        points[on[met]] = found[met]
+        points[on[met]] = crossing[met]
         single[on] = ~met
     rows = np.flatnonzero(single)
     for _ in range(rounds if len(rows) else 0):

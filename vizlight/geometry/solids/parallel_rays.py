@@ -93,7 +93,7 @@ def hits(
 
 
 def _inside(start: Array, stop: Array, turned: Bools, point: Array, cell: Indices) -> Bools:
-    """Return which points of a plane are inside their triangles, given by the edges of all."""
+    """Return a mask of plane points that are inside their triangles, given by the edges."""
     left = []
     for i in range(3):
         begin, end = start[:, i, cell], stop[:, i, cell]

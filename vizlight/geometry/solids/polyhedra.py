@@ -65,7 +65,7 @@ class HalfSpace(Primitive):
         return float("inf")
 
     def block(self) -> Block:
-        """Return a large block about the origin, one of whose faces is in the plane."""
+        """Return a large block about the origin with one face in the plane."""
         away = float(self.point @ self.normal)
         # The deeper, the farther its plane is from the origin: the other faces stay clear of the
         # other solids, which are scaled to about the unit ball.
@@ -89,7 +89,7 @@ class HalfSpace(Primitive):
         return self.point, float("inf")
 
     def inside(self, points: Array) -> Bools:
-        """Return which points are behind the plane."""
+        """Return a mask of the points behind the plane."""
         return np.asarray((points - self.point) @ self.normal < 0)
 
 
@@ -131,21 +131,21 @@ class Polyhedron(Primitive):
         # Many files, as STL, hold a point for each corner of a face, and none of their edges meet
         # before equal points are one.
         unique, which = np.unique(places, axis=0, return_inverse=True)
-        found = which.ravel()[corners].astype(np.intp)
+        faces = which.ravel()[corners].astype(np.intp)
         # Triangles that lost their area by the merging go; the edges beside them then meet.
-        found = found[np.all(found != np.roll(found, 1, axis=1), axis=1)]
-        after = np.roll(found, -1, axis=1)
+        faces = faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]
+        after = np.roll(faces, -1, axis=1)
         # An edge in its direction, and in the other one, as one number each.
-        edges, back = found * len(unique) + after, after * len(unique) + found
+        edges, back = faces * len(unique) + after, after * len(unique) + faces
         # Closed and oriented: each directed edge is there once, and once in the other direction.
         if not np.array_equal(np.unique(edges), np.sort(back, axis=None)):
             remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
             expected = "a closed surface with consistently oriented triangles"
             raise ValueError(_check.message("triangles", expected, "another", remedy))
-        self.points, self.triangles = unique, found
+        self.points, self.triangles = unique, faces
         # All triangles are clockwise seen from outside.
         if self.volume < 0:
-            self.triangles = np.ascontiguousarray(found[:, ::-1])
+            self.triangles = np.ascontiguousarray(faces[:, ::-1])
 
     def __repr__(self) -> str:
         return f"Polyhedron({len(self.points)} points, {len(self.triangles)} triangles)"
@@ -190,9 +190,9 @@ class Polyhedron(Primitive):
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
         # Without the checks: a solid that is moved is as closed and as oriented as it was.
-        found = Polyhedron.__new__(Polyhedron)
-        found.points, found.triangles = place(self.points, shift, scale, turn), self.triangles
-        return found
+        solid = Polyhedron.__new__(Polyhedron)
+        solid.points, solid.triangles = place(self.points, shift, scale, turn), self.triangles
+        return solid
 
     def box(self) -> tuple[Array, float]:
         """Return the centre and the radius of a ball that contains it."""
@@ -245,9 +245,9 @@ class Prism(Polyhedron):
         corners = _check.coordinates("outline", outline)
         height = _check.number("height", height, low=0.0, high=_check.FARTHEST)
         if corners.ndim != 2 or len(corners) < 3 or not height > 0:
-            given = f"{len(corners)} corners and a height of {height:g}"
+            got = f"{len(corners)} corners and a height of {height:g}"
             expected = "3 corners or more, and a height above 0"
-            raise ValueError(_check.message("outline", expected, given))
+            raise ValueError(_check.message("outline", expected, got))
         if _crosses(corners):
             remedy = "remove repeated corners and crossings"
             raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
@@ -282,7 +282,7 @@ def _crosses(corners: Array) -> bool:
 def _ears(corners: Array) -> Indices:
     """Return triangles of a counter-clockwise polygon, cut off corner by corner."""
     ring = list(range(len(corners)))
-    found = []
+    ears = []
     while len(ring) > 3:
         for i, b in enumerate(ring):
             a, c = ring[i - 1], ring[(i + 1) % len(ring)]
@@ -295,13 +295,13 @@ def _ears(corners: Array) -> Indices:
             for p, q in ((a, b), (b, c), (c, a)):
                 inside &= _left(corners[p], corners[q], others) >= 0
             if not inside.any():
-                found.append((a, b, c))
+                ears.append((a, b, c))
                 del ring[i]
                 break
         else:
             remedy = "remove corners in the middle of straight edges"
             raise ValueError(_check.message("outline", "a polygon with an area", "none", remedy))
-    return np.array([*found, tuple(ring)], np.intp)
+    return np.array([*ears, tuple(ring)], np.intp)
 
 
 def _left(start: Array, stop: Array, points: Array) -> Array:

@@ -194,8 +194,8 @@ class Boolean(Solid):
 
     def __post_init__(self) -> None:
         _check.choice("operation", self.operation, ("union", "intersection", "difference"))
-        given: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
-        for name, solid in given:
+        operands: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
+        for name, solid in operands:
             if not isinstance(solid, Solid):
                 remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
                 raise TypeError(_check.message(name, EXPECTED, _check.describe(solid), remedy))
@@ -310,10 +310,10 @@ class Frustum(Primitive):
         self.height = (
             math.hypot(*along) if height is None else _check.number("height", height, low=0.0)
         )
-        given = _check.floats("radii", radii)
-        if given.shape != (2,):
+        ends = _check.floats("radii", radii)
+        if ends.shape != (2,):
             raise ValueError(_check.message("radii", "two radii (R1, R2)", _check.describe(radii)))
-        first, second = (_check.number("radii", float(x), low=0.0) for x in given)
+        first, second = (_check.number("radii", float(x), low=0.0) for x in ends)
         self.radii = (first, second)
         self.roundness = max(self.radii)
 
@@ -409,12 +409,12 @@ class Block(Primitive):
 
     def surfaces(self) -> tuple[Surface, ...]:
         """Return the six faces."""
-        found = []
+        faces = []
         for i in range(3):
             for sign in (1, -1):
                 center = self.center + sign * self.size[i] / 2 * self.axes[i]
-                found.append(Plane(center, sign * self.axes[i]))
-        return tuple(found)
+                faces.append(Plane(center, sign * self.axes[i]))
+        return tuple(faces)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Block:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""

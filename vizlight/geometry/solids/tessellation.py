@@ -119,15 +119,15 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
             count = tree.points(chosen)
         if count > most:
             break
-        made = tree.mesh(chosen, fine)
+        mesh = tree.mesh(chosen, fine)
         # Else facets have cut through a wall: once more, finer.
-        if made.volume_missing <= tree.allowed(made):
-            return made
+        if mesh.volume_missing <= tree.allowed(mesh):
+            return mesh
         fine, most = fine / FINER, PATIENCE
     expected = f"a value that needs at most {most:.0f} points"
-    given = f"{tolerance:g}, which needs {count:.0f}"
+    got = f"{tolerance:g}, which needs {count:.0f}"
     remedy = "raise it, or separate or join surfaces that nearly touch"
-    raise ValueError(_check.message("tolerance", expected, given, remedy))
+    raise ValueError(_check.message("tolerance", expected, got, remedy))
 
 
 @dataclass
@@ -138,10 +138,12 @@ class _Tree:
     tolerance: float
 
     def __post_init__(self) -> None:
-        given = list(self.solid.primitives())
-        self.shift, self.scale = _frame(given)
+        primitives = list(self.solid.primitives())
+        self.shift, self.scale = _frame(primitives)
         # Empty parts keep their places, so that the numbers of surfaces agree; they get no mesh.
-        self.parts = [part if part.empty else part.moved(self.shift, self.scale) for part in given]
+        self.parts = [
+            part if part.empty else part.moved(self.shift, self.scale) for part in primitives
+        ]
         self.surfaces = Surfaces(s for part in self.parts for s in part.surfaces())
         owned = [len(part.surfaces()) for part in self.parts]
         self.first = np.cumsum(owned) - owned
@@ -183,7 +185,7 @@ class _Tree:
         The gap to a ball of radius r about c inside a surface with the signed distance D is
         ``-D(c) - r``. Between alike spheres the facets are parallel, and any gap is kept.
         """
-        found = list(segments)
+        counts = list(segments)
         balls = [(k, p) for k, p in enumerate(self.parts) if isinstance(p, Sphere) and not p.empty]
         for i, part in enumerate(self.parts):
             radius = part.roundness
@@ -200,8 +202,8 @@ class _Tree:
                 if 10 / EQUAL < gap < sagitta and not alike:
                     # The number with half the gap as its sagitta.
                     fine = math.pi / math.acos(1 - gap / 2 / radius)
-                    found[i] = max(found[i], 4 * math.ceil(fine / 4))
-        return found
+                    counts[i] = max(counts[i], 4 * math.ceil(fine / 4))
+        return counts
 
     def combined(self, segments: list[int]) -> tuple[manifold3d.Manifold, float]:
         """Return the combination of faceted primitives, and a bound of its missing volume."""
@@ -223,25 +225,25 @@ class _Tree:
     def mesh(self, segments: list[int], tolerance: float) -> Mesh:
         """Return the mesh, with the bound of its volume."""
         whole, bound = self.combined(segments)
-        found = whole.to_mesh64()
-        triangles = np.asarray(found.tri_verts, np.intp)
-        points = np.asarray(found.vert_properties, np.float64)[:, :3]
+        facets = whole.to_mesh64()
+        triangles = np.asarray(facets.tri_verts, np.intp)
+        points = np.asarray(facets.vert_properties, np.float64)[:, :3]
         same = np.arange(len(points))
         # manifold3d splits points whose properties differ; in a closed mesh they are one.
-        same[np.asarray(found.merge_from_vert, np.intp)] = found.merge_to_vert
+        same[np.asarray(facets.merge_from_vert, np.intp)] = facets.merge_to_vert
         used, triangles = np.unique(same[triangles], return_inverse=True)
         triangles = triangles.reshape(-1, 3).astype(np.intp)
         # The number of the exact surface that each triangle came from survives the operation.
-        patch = np.asarray(found.face_id, np.intp)
+        patch = np.asarray(facets.face_id, np.intp)
         self._check_bounded(patch)
-        own = self.surfaces, self.signs, self.shift, self.scale
-        mesh = Mesh(points[used], triangles, patch, *own)
+        shared = self.surfaces, self.signs, self.shift, self.scale
+        mesh = Mesh(points[used], triangles, patch, *shared)
         placed = place(mesh, tolerance)
         fits = mesh.volume_missing <= self.allowed(mesh)
         if fits and placed.volume_missing > self.allowed(placed):
             # Facets of walls thinner than their distance from the surfaces stay parallel.
             placed = mesh
-        # The facets are within the sum of what the primitives miss; moving the points adds to it.
+        # The facets are within the sum of the primitives' errors; moving the points adds to it.
         bound += abs(placed.volume - whole.volume())
         return dataclasses.replace(placed, volume_error=bound)
 
@@ -330,7 +332,7 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        Closed mesh whose points are within about the tolerance of their surfaces.
+        Closed mesh with points within about the tolerance of their surfaces.
     tolerance : float
         Largest distance of the surfaces from the triangles.
 
@@ -350,24 +352,24 @@ def place(mesh: Mesh, tolerance: float) -> Mesh:
     # The normal of a cone jumps at its apex, so points within rounding of it are put there.
     for _, apex in mesh.surfaces.apexes:
         points[np.abs(points - apex).max(axis=1) < SAME] = apex
-    found = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
-    return _kept(mesh, points) if flipped(found).any() else found
+    merged = _merge(mesh.replace(points, mesh.triangles, mesh.patch))
+    return _kept(mesh, points) if flipped(merged).any() else merged
 
 
 def _kept(mesh: Mesh, points: Array) -> Mesh:
     """Return a mesh with moved points, except at corners of triangles that they would flip."""
     while True:
-        found = mesh.replace(points, mesh.triangles, mesh.patch)
-        corners = np.unique(mesh.triangles[flipped(found)])
+        trial = mesh.replace(points, mesh.triangles, mesh.patch)
+        corners = np.unique(mesh.triangles[flipped(trial)])
         moved = corners[np.any(points[corners] != mesh.points[corners], axis=1)]
         if not len(moved):
-            return found
-        # What is put back may flip triangles that were right: once more, until none is left.
+            return trial
+        # Points that are put back may flip triangles that were right: repeated until none is left.
         points[moved] = mesh.points[moved]
 
 
 def flipped(mesh: Mesh) -> Bools:
-    """Return the triangles whose normal points into the solid."""
+    """Return a mask of the triangles with a normal that points into the solid."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     # At the middle of a triangle, where the surface is most nearly parallel to it.
@@ -386,10 +388,10 @@ def _meeting(mesh: Mesh) -> Indices:
     several = np.diff(start)
     # A surface that is repeated counts once in Newton's method.
     which = np.repeat(pairs[start[:-1], 1][:, np.newaxis], 3, axis=1)
-    found = np.zeros(count, np.intp)
+    counts = np.zeros(count, np.intp)
     basis = np.zeros((count, 3, 3))
     for k in range(several.max(initial=0)):
-        rows = np.flatnonzero((several > k) & (found < 3))
+        rows = np.flatnonzero((several > k) & (counts < 3))
         patch = pairs[start[rows] + k, 1]
         normal = triangle_mesh.normals_of(mesh, mesh.points[rows], patch)
         # Gram and Schmidt: what is left of a normal without its parts along those taken before.
@@ -397,10 +399,10 @@ def _meeting(mesh: Mesh) -> Indices:
         rest = normal - np.einsum("ni,nij->nj", along, basis[rows])
         size = np.sqrt(np.einsum("ij,ij->i", rest, rest))
         new = size > LEAN
-        rows, slot = rows[new], found[rows[new]]
+        rows, slot = rows[new], counts[rows[new]]
         which[rows, slot] = patch[new]
         basis[rows, slot] = rest[new] / size[new][:, np.newaxis]
-        found[rows] += 1
+        counts[rows] += 1
     return which
 
 

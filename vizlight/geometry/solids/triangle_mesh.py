@@ -115,9 +115,11 @@ def mesh(solid: Primitive, segments: int) -> Mesh:
         points, triangles, patch = unit.points, unit.triangles, unit.patch
     else:
         points, triangles, patch = np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
-    found = Surfaces(unit.surfaces())
-    made = Mesh(points, triangles, patch, found, np.ones(len(found)), np.asarray(shift), scale)
-    return dataclasses.replace(made, volume_error=missed(unit, segments, made.volume))
+    surfaces = Surfaces(unit.surfaces())
+    facets = Mesh(
+        points, triangles, patch, surfaces, np.ones(len(surfaces)), np.asarray(shift), scale
+    )
+    return dataclasses.replace(facets, volume_error=missed(unit, segments, facets.volume))
 
 
 def missed(unit: Primitive, segments: int, volume: float) -> float:
@@ -257,9 +259,9 @@ def split(triangles: Indices, middles: Indices) -> tuple[Indices, Indices]:
         (2, (p, b, q)), (2, (a, p, q)), (2, (a, q, c)),
         (3, (a, p, r)), (3, (p, b, q)), (3, (r, q, c)), (3, (p, q, r)),
     ]  # fmt: skip
-    made = [np.stack([corner[count == n] for corner in corners], 1) for n, corners in parts]
+    pieces = [np.stack([corner[count == n] for corner in corners], 1) for n, corners in parts]
     owner = [rows[count == n] for n, _ in parts]
-    return np.concatenate(made), np.concatenate(owner)
+    return np.concatenate(pieces), np.concatenate(owner)
 
 
 def normals_of(mesh: Mesh, points: Array, patch: Indices) -> Array:
