@@ -216,7 +216,7 @@ def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
     return parts
 
 
-def _graticule(sheet: charts.Sheet, size: float) -> list[tuple[Array, str, bool]]:
+def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bool]]:
     """Return parts of parallels and meridians, their words, and whether they are meridians."""
     west, east, south, north = sheet.extent
     is_around = east - west > georeference.AROUND - ALMOST
@@ -246,7 +246,7 @@ def _graticule(sheet: charts.Sheet, size: float) -> list[tuple[Array, str, bool]
     ]
 
 
-def _around(sheet: charts.Sheet, size: float, turn: Array) -> list[Part]:
+def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
     """Return the outline of a map with the words of its graticule where this meets it."""
     outline = sheet.outline @ turn.T
     parts = [_border(outline, LINE * size)]

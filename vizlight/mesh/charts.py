@@ -179,7 +179,7 @@ def _turn(data: pv.DataSetAttributes, places: Array, plane: Projection) -> None:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class MapSheet:
     """Map in a plane, with its projection and its outline.
 
     Attributes
@@ -271,7 +271,7 @@ def _turns(degrees: Array) -> Array:
     return (degrees + 180.0) % georeference.AROUND - 180.0
 
 
-def sheet(mesh: pv.DataSet) -> Sheet | None:
+def sheet(mesh: pv.DataSet) -> MapSheet | None:
     """Return a flat map in lengths as a sheet, None where its projection is not known.
 
     Parameters
@@ -287,7 +287,7 @@ def sheet(mesh: pv.DataSet) -> Sheet | None:
     outline = _outline(mesh)
     if plane is None or not np.ptp(outline, axis=0).all():
         return None
-    return Sheet(plane, outline, metres)
+    return MapSheet(plane, outline, metres)
 
 
 def _outline(mesh: pv.DataSet) -> Array:
