@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.draw.cameras import MARGIN
-from vizlight.draw.legends import LETTERS
+from vizlight.draw.margins import LETTERS
 from vizlight.mesh import meaning
 
 SIZE = (300, 200)

@@ -10,7 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.cameras import pixel_sizes
-from vizlight.draw.legends import even_numbers
+from vizlight.draw.ticks import even_numbers
 from vizlight.vtk import letters
 
 if TYPE_CHECKING:

@@ -15,9 +15,10 @@ from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.html import Shown, write_page
-from vizlight.draw.legends import Margin, ink_on, name_no_data, settle
 from vizlight.draw.live import Fragments, LightAt, Live, draws_light, items, unfit
+from vizlight.draw.margins import Margin, ink_on
 from vizlight.draw.notebook import guard, guard_exports
+from vizlight.draw.scalar_bars import name_no_data, settle
 from vizlight.draw.sources import sources_of, tinted
 from vizlight.draw.strokes import check_widths, has_pass, stroke_of
 from vizlight.filters import relight

@@ -24,7 +24,8 @@ from vizlight.draw.box_axes import box_axes
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
-from vizlight.draw.legends import ink_on, name_no_data
+from vizlight.draw.margins import ink_on
+from vizlight.draw.scalar_bars import name_no_data
 from vizlight.draw.strokes import SUPERSAMPLED, adapt, directions, has_pass, stroke_of, widen
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file

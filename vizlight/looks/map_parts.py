@@ -9,9 +9,10 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.draw import isolines as iso
-from vizlight.draw import legends
+from vizlight.draw import ticks
 from vizlight.draw.cameras import MARGIN
 from vizlight.draw.map_frames import has_bar
+from vizlight.draw.margins import LETTERS
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, meaning
 
@@ -31,7 +32,7 @@ ROOM, BAR = (3.2, 1.5), 1.6
 COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
 #: more are too dense; and their letters as a share of those of the frame.
-MOST_POINTS, LEVELS, SMALL = 100_000, (8, 16), 0.7
+MOST_POINTS, LEVELS, SMALL = 4_000_000, (8, 16), 0.7
 #: Least distance between isolines, in heights of their letters.
 SPARSE = 1.3
 #: Standard names of arrays whose highs and lows are marked.
@@ -63,7 +64,7 @@ def graticule(frame: Step) -> Step | None:
 def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
     """Return the height of letters in the unit of a map, by which they are as large as in keys."""
     room = np.array(wishes.room) / MARGIN
-    pixels = legends.LETTERS * min(wishes.size)
+    pixels = LETTERS * min(wishes.size)
     sides: Array = np.asarray(mesh.bounds_size[:2], dtype=np.float64)
     if abs(up[0]) > abs(up[1]):
         sides = sides[::-1]
@@ -109,7 +110,7 @@ def isolines(
     choices = [
         {float(f"{factor * level:.12g}"): level for level in levels}
         for levels in (
-            legends.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
+            ticks.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
         )
     ]
     pieces = iso.contoured(mesh.run(), array.name, np.array(sorted({*choices[0], *choices[1]})))
@@ -119,7 +120,7 @@ def isolines(
     shown = next(reversed([*smooth]), None)
     if shown is None:
         return None
-    words = legends.numerals_of([*shown.values()])
+    words = ticks.numerals_of([*shown.values()])
     keywords: Keywords = {"letters": size, "words": words}
     if coasts is not None:
         keywords["clear_of"] = coasts

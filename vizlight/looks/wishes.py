@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight._words import message
 from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
-from vizlight.draw.legends import LETTERS, data_share
+from vizlight.draw.margins import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, records

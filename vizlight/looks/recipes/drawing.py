@@ -15,7 +15,7 @@ from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
-from vizlight.draw.legends import ink_on
+from vizlight.draw.margins import ink_on
 from vizlight.files import FORMATS
 from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents, kinds_of

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pyvista as pv
 
-from vizlight.draw.legends import ink_on, numerals_of, parted
+from vizlight.draw.margins import ink_on, parted
+from vizlight.draw.ticks import numerals_of
 from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step

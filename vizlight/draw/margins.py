@@ -1,4 +1,4 @@
-"""What explains the colours: scalar bars whose words fit, and keys in a margin of their own."""
+"""The margin of a picture: the title above the data, and keys beside or below them."""
 
 from __future__ import annotations
 
@@ -19,17 +19,15 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 from vizlight.draw.live import in_view, items
+from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
+from vizlight.draw.ticks import FEW, even_numbers, numerals_of
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, TITLE, WORDS
 from vizlight.filters.tint import RGB
-from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pyvista as pv
-    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 
-    from vizlight._types import Array, Color, Keywords
+    from vizlight._types import Array, Color
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032
@@ -43,95 +41,10 @@ BAR_HIGH, MOST_LYING = 0.8, 9
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
 #: Least distance of numbers along a bar, in letters.
 APART = 1.5
-#: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
-FEW = 5
 #: Sum of the channels of a background above which words on it are black.
 LIGHT_BACKGROUND = 1.2
-#: Keywords that say how large a bar is and where it stands: with any of them it is left as asked.
-PLACED = {
-    "fmt", "height", "label_font_size", "n_labels", "position_x", "position_y", "title_font_size",
-    "unconstrained_font_size", "width",
-}  # fmt: skip
-#: Width of a letter and distance of lines, in heights of letters; letters of the longest number.
-LETTER, LINE, LONGEST = 0.57, 1.5, 10
-#: Least height of letters, in pixels, and the height of a picture in letters.
-LEAST, LETTERS_HIGH = 9, 24
-#: Mark of a place where a name may break.
-BREAK = "\x1f"
 #: Share of the length of a bar from its end within which no number stands beside that of the end.
 CLOSE = 0.06
-#: Most digits of a number.
-DIGITS = 7
-
-
-def _wrapped(text: str, columns: int) -> list[str]:
-    """Return the lines of a text, which may break within a name: after _, before a capital."""
-    if max(map(len, text.split()), default=0) > columns:
-        text = re.sub(r"_|(?<=[a-z])(?=[A-Z])", rf"\g<0>{BREAK} ", text)
-    lines = textwrap.wrap(text, columns)
-    return [line.replace(f"{BREAK} ", "").replace(BREAK, "") for line in lines]
-
-
-def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
-    """Leave room for the words of a scalar bar in the picture, and set them apart.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Plotter, whose active renderer and theme are used.
-    bar : vtkScalarBarActor
-        Bar as PyVista made it; left so where ``asked`` says how large it is or where it stands.
-    asked : dict
-        Keywords of ``pyvista.Plotter.add_scalar_bar`` that a user gave.
-    """
-    wide, high = plotter.renderer.GetSize()
-    if asked.keys() & PLACED or not (wide and high):
-        return
-    font = plotter.theme.font
-    letters = int(max(min(font.label_size, high / LETTERS_HIGH), LEAST))
-    number = LONGEST * LETTER * letters
-    left = bar.GetPosition()[0] * wide
-    right = left + bar.GetWidth() * wide
-    if bar.GetOrientation():
-        # The numbers stand at its right.
-        left = max(min(left, wide - number - 2.5 * letters), 0)
-        bar.SetVerticalTitleSeparation(letters // 2)
-    else:
-        right = max(min(right, wide - 0.5 * number - 4), left + 1)
-    middle = (left + right) / 2
-    room = 2 * min(middle, wide - middle) / (LETTER * letters)
-    words = _wrapped(str(bar.GetTitle()), max(int(room), 1))
-    bar.SetTitle("\n".join(words))
-    bar.SetPosition(left / wide, bar.GetPosition()[1])
-    bar.SetWidth((right - left) / wide)
-    bar.SetUnconstrainedFontSize(True)
-    for text in ("Label", "Title", "Annotation"):
-        getattr(bar, f"Get{text}TextProperty")().SetFontSize(letters)
-    bar.SetAnnotationLeaderPadding(2)
-    if not bar.GetOrientation():
-        bar.SetHeight(max(bar.GetHeight(), (len(words) + 2) * LINE * letters / high))
-        # PyVista stacks bars by the height that its theme has for them.
-        place, y = plotter.theme.colorbar_horizontal, bar.GetPosition()[1]
-        above = (y - place.position_y) / place.height * bar.GetHeight()
-        bar.SetPosition(left / wide, place.position_y + above)
-        # VTK puts the title of a bar that lies so near to the numbers that they touch.
-        bar.GetTitleTextProperty().SetLineOffset(-0.4 * letters)
-        bar.SetBarRatio(letters / (bar.GetHeight() * high))
-        bar.SetNumberOfLabels(min(bar.GetNumberOfLabels(), max(int((right - left) / number), 2)))
-    if not font.fmt:
-        low, top = bar.GetLookupTable().GetRange()
-        ticks = np.linspace(low, top, bar.GetNumberOfLabels())
-        # The fewest digits that tell the numbers of the bar apart.
-        for digits in range(3, DIGITS + 1):
-            if len({f"{tick:.{digits}g}" for tick in ticks}) == len(ticks):
-                bar.SetLabelFormat(f"%-#6.{digits}g")
-                break
-
-
-def name_no_data(bar: vtkScalarBarActor) -> None:
-    """Let a scalar bar name the colour of what is not data."""
-    bar.SetDrawNanAnnotation(True)
-    bar.SetNanAnnotation(NO_DATA_NAME)
 
 
 class Margin:
@@ -389,7 +302,7 @@ class MarginKey:
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
         columns = max(columns, min(longest, int(1.4 * columns)))
-        self._lines = [line for part in head.splitlines() for line in _wrapped(part, columns)]
+        self._lines = [line for part in head.splitlines() for line in wrapped(part, columns)]
         words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
             return min(2 * self._half, width), 2 * self._half + words
@@ -578,58 +491,6 @@ def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
     every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)
     step = places[1] - places[0]
     return [round((place - zero) / step) % every == 0 for place in places]
-
-
-def even_levels(low: float, high: float, most: int = 5) -> list[float]:
-    """Return at most some round numbers within a range.
-
-    Parameters
-    ----------
-    low, high : float
-        Ends of the range.
-    most : int, default: 5
-        Largest number of numbers.
-    """
-    if not low < high:
-        return [low]
-    rough = (high - low) / max(most - 1, 1)
-    power = 10.0 ** math.floor(math.log10(rough))
-    steps = (1, 2, 4, 5, 10, 20) if most > FEW else (1, 2, 2.5, 5, 10, 20)
-    step = next(s * power for s in steps if _count(low, high, s * power) <= most)
-    first = math.ceil(low / step - 1e-9)
-    last = math.floor(high / step + 1e-9)
-    # A whole multiple of the step without a rest of rounding.
-    return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
-
-
-def numerals_of(values: Sequence[float]) -> list[str]:
-    """Return the digits of round numbers with even steps, with as many places as these need."""
-    size = max(abs(value) for value in values)
-    if size >= 1e6 or 0 < size < 1e-3:
-        return [_power(value) for value in values]
-    if len(values) < 2:
-        return [f"{value:.4g}" for value in values]
-    step = min(abs(b - a) for a, b in itertools.pairwise(values))
-    places = next(n for n in range(12) if abs(step - round(step, n)) < 1e-6 * step)
-    return [f"{value:.{places}f}" for value in values]
-
-
-def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:
-    """Return at most some round numbers within a range, and their digits; see `even_levels`."""
-    levels = even_levels(low, high, most)
-    return list(zip(levels, numerals_of(levels), strict=True))
-
-
-def _count(low: float, high: float, step: float) -> int:
-    return math.floor(high / step + 1e-9) - math.ceil(low / step - 1e-9) + 1
-
-
-def _power(value: float) -> str:
-    """Return a large or small number in few digits: 2e5, 0."""
-    if value == 0:
-        return "0"
-    digits, power = f"{value:.3e}".split("e")
-    return f"{float(digits):g}e{int(power)}"
 
 
 def ink_on(background: pv.Color) -> Color:

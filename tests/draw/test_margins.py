@@ -6,83 +6,11 @@ import pyvista as pv
 
 import vizlight
 from vizlight import View, presets
-from vizlight.draw import legends, render
+from vizlight.draw import margins, render
 
 pytestmark = pytest.mark.opengl
 SIZE = (400, 300)
 NAME = "a rather long name of a field [kg m-2 s-1]"
-
-
-def inked(size, values, name=NAME, columns=1, **asked):
-    """Return which pixels of a picture a scalar bar covers, and the bar."""
-    ball = pv.Sphere()
-    ball[name] = values(ball.points[:, 2])
-    plotter = pv.Plotter(off_screen=True, window_size=size, shape=(1, columns), border=False)
-    actor = plotter.vizlight.add_mesh(ball, scalars=name, scalar_bar_args=asked or None)
-    plotter.render()
-    actor.SetVisibility(False)
-    picture = plotter.screenshot(return_img=True)
-    bar = plotter.scalar_bars[name]
-    return np.any(picture < 200, axis=2), bar
-
-
-def groups(rows):
-    """Return the number of runs of rows with ink."""
-    return int(np.count_nonzero(np.diff(np.concatenate([[0], rows])) == 1))
-
-
-def holed(heights):
-    return np.where(heights > 0.3, np.nan, heights)
-
-
-def far(heights):
-    return 8e5 + 1000 * heights
-
-
-@pytest.mark.parametrize("values", [holed, far, lambda heights: -1e-7 * (heights + 1)])
-@pytest.mark.parametrize("size", [(900, 600), (400, 300)])
-@pytest.mark.parametrize("vertical", [False, True])
-def test_no_word_of_a_bar_leaves_the_picture(values, size, vertical):
-    ink, _ = inked(size, values, vertical=vertical)
-    assert ink.any()
-    assert not np.any(ink[:, [0, -1]])
-    assert not np.any(ink[[0, -1]])
-
-
-@pytest.mark.parametrize("size", [(900, 600), (400, 300), (1024, 768)])
-def test_title_numbers_and_bar_stand_apart(size):
-    ink, _ = inked(size, far)
-    assert groups(ink.any(axis=1)) == 3
-    numbers = ink.any(axis=1).nonzero()[0]
-    first = numbers[np.flatnonzero(np.diff(numbers) > 1)[0] + 1]
-    assert groups(ink[first : first + 6].any(axis=0)) >= 3
-
-
-def test_bars_stand_above_one_another():
-    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    for name in (NAME, f"another {NAME}"):
-        ball = pv.Sphere()
-        ball[name] = ball.points[:, 2]
-        plotter.vizlight.add_mesh(ball, scalars=name)
-    low, high = (bar.GetPosition()[1] for bar in plotter.scalar_bars.values())
-    assert high >= low + plotter.scalar_bars[NAME].GetHeight()
-
-
-def test_a_bar_fits_its_subplot():
-    ink, _ = inked((800, 300), holed, columns=2)
-    assert not ink[:, 399:].any()
-
-
-def test_numbers_of_a_narrow_range_differ():
-    _, bar = inked((900, 600), far, "t")
-    assert bar.GetLabelFormat() == "%-#6.4g"
-
-
-def test_what_is_asked_for_stays():
-    asked = {"position_x": 0.1, "width": 0.3, "n_labels": 2, "fmt": "%.1f"}
-    _, bar = inked((400, 300), far, **asked)
-    assert (bar.GetPosition()[0], bar.GetWidth(), bar.GetNumberOfLabels()) == (0.1, 0.3, 2)
-    assert (bar.GetLabelFormat(), bar.GetTitle()) == ("%.1f", NAME)
 
 
 def picture(size=SIZE, keys=1, **options):
@@ -102,7 +30,7 @@ def picture(size=SIZE, keys=1, **options):
 
 def margin_of(size, key=0.15):
     """Return the columns and the rows that the margin leaves to the data, without a title."""
-    share = legends.data_share(size, key, titled=False)
+    share = margins.data_share(size, key, titled=False)
     return int(size[0] * share[0]), int(size[1] * share[1])
 
 
@@ -131,20 +59,6 @@ def test_keys_stack_in_the_margin():
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "words"),
-    [
-        (-1, 1, ["-1.0", "-0.5", "0.0", "0.5", "1.0"]),
-        (236, 1080, ["400", "600", "800", "1000"]),
-        (-6.08e-7, 4.5, ["0", "1", "2", "3", "4"]),
-        (0, 3.2e6, ["0", "1e6", "2e6", "3e6"]),
-        (5, 5, ["5"]),
-    ],
-)
-def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):
-    assert [word for _, word in legends.even_numbers(low, high)] == words
-
-
-@pytest.mark.parametrize(
     ("title", "parts"),
     [
         ("air_pressure (hPa); lines every 4 hPa", ("Air pressure; lines every 4 hPa", "hPa")),
@@ -156,14 +70,14 @@ def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):
     ],
 )
 def test_the_unit_of_a_title_stands_apart(title, parts):
-    assert legends.parted(title) == parts
+    assert margins.parted(title) == parts
 
 
 def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():
     places = [0.1 * i for i in range(11)]
-    assert all(legends._thinned(places, 0.0, 11))
+    assert all(margins._thinned(places, 0.0, 11))
     # Zero is at 0.3.
-    kept = legends._thinned(places, 0.3, 6)
+    kept = margins._thinned(places, 0.3, 6)
     assert [i for i, shown in enumerate(kept) if shown] == [1, 3, 5, 7, 9]
 
 
@@ -173,7 +87,7 @@ def test_the_title_is_above_a_map_and_its_bar_as_tall(size):
     plotter.vizlight.add_mesh(pv.Plane(i_size=3, j_size=1), color="blue", lighting=False)
     bar = {"question": "value", "cmap": "Reds", "clim": (0, 3), "levels": [1, 2]}
     plotter.vizlight.add_key(presets.shape(), title="rise (m)", **bar)
-    share = legends.data_share(size, 0.15)
+    share = margins.data_share(size, 0.15)
     aspect = size[0] * share[0] / (size[1] * share[1])
     plotter.camera = render.camera_on(plotter.meshes[0], (0, 0, 1), parallel=True, aspect=aspect)
     seen = plotter.screenshot(return_img=True).astype(int)
@@ -182,7 +96,7 @@ def test_the_title_is_above_a_map_and_its_bar_as_tall(size):
     red = np.flatnonzero((seen[:, wide:, 0] - seen[:, wide:, 2] > 40).any(axis=1))
     ink = np.flatnonzero((seen[:, :wide].max(axis=2) < 90).any(axis=1))
     # Words end above the map, not far from it; the lightest red of the bar counts as none.
-    assert ink.max() < blue.min() < ink.max() + 2.2 * legends.LETTERS * min(size)
+    assert ink.max() < blue.min() < ink.max() + 2.2 * margins.LETTERS * min(size)
     assert abs(red.min() - blue.min()) <= 2
     assert red.max() <= blue.max() + 2
 
@@ -192,7 +106,7 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     plotter.vizlight.add_mesh(pv.Plane(i_size=6, j_size=2), color="blue", lighting=False)
     bar = {"question": "value", "cmap": "Reds", "clim": (0, 3), "levels": [0, 1, 2, 3]}
     plotter.vizlight.add_key(presets.shape(), title="rise (m)", lying=True, **bar)
-    share = legends.data_share(size, 0.15, lying=True)
+    share = margins.data_share(size, 0.15, lying=True)
     assert share[0] == 1
     aspect = size[0] / (size[1] * share[1])
     plotter.camera = render.camera_on(plotter.meshes[0], (0, 0, 1), parallel=True, aspect=aspect)
@@ -200,7 +114,7 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     blue = np.argwhere(seen[..., 2] - seen[..., 0] > 60)
     red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
     # The map leaves room below it, which the bar takes; the lightest red counts as none.
-    letters = legends.LETTERS * min(size)
+    letters = margins.LETTERS * min(size)
     assert blue[:, 0].max() < red[:, 0].min() < blue[:, 0].max() + 2 * letters
     assert red[:, 1].max() == pytest.approx(blue[:, 1].max(), abs=2)
     assert np.ptp(red[:, 0]) < letters
@@ -209,7 +123,7 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     plotter.render()
     seen = plotter.screenshot(return_img=True).astype(int)
     red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
-    assert red[:, 1].min() > size[0] * legends.data_share(size, 0.15)[0]
+    assert red[:, 1].min() > size[0] * margins.data_share(size, 0.15)[0]
 
 
 def test_a_disc_does_not_lie():
@@ -257,11 +171,3 @@ def test_pictures_have_keys():
     # The data have moved to the left of the plate, on which the key stands.
     assert (plain[:, wide + 2 :] == 0).all() or (plain != keyed).any()
     assert (keyed[:, wide + 2 :].astype(int).max(axis=2) > 100).sum() > 0.8 * np.pi * 22**2
-
-
-def test_names_break_before_capitals_and_after_underscores():
-    from vizlight.draw.legends import _wrapped
-
-    assert _wrapped("MaximumInscribedRadius", 12) == ["Maximum", "Inscribed", "Radius"]
-    assert _wrapped("sample_cell_scalars", 14) == ["sample_", "cell_scalars"]
-    assert _wrapped("two words", 12) == ["two words"]

@@ -1,0 +1,19 @@
+"""Round numbers along bars and axes."""
+
+import pytest
+
+from vizlight.draw import ticks
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [
+        (-1, 1, ["-1.0", "-0.5", "0.0", "0.5", "1.0"]),
+        (236, 1080, ["400", "600", "800", "1000"]),
+        (-6.08e-7, 4.5, ["0", "1", "2", "3", "4"]),
+        (0, 3.2e6, ["0", "1e6", "2e6", "3e6"]),
+        (5, 5, ["5"]),
+    ],
+)
+def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):
+    assert [word for _, word in ticks.even_numbers(low, high)] == words

@@ -1,0 +1,65 @@
+"""Round numbers along bars and axes, and their digits."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
+FEW = 5
+
+
+def even_levels(low: float, high: float, most: int = 5) -> list[float]:
+    """Return at most some round numbers within a range.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range.
+    most : int, default: 5
+        Largest number of numbers.
+    """
+    if not low < high:
+        return [low]
+    rough = (high - low) / max(most - 1, 1)
+    power = 10.0 ** math.floor(math.log10(rough))
+    steps = (1, 2, 4, 5, 10, 20) if most > FEW else (1, 2, 2.5, 5, 10, 20)
+    step = next(s * power for s in steps if _count(low, high, s * power) <= most)
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    # A whole multiple of the step without a rest of rounding.
+    return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
+
+
+def numerals_of(values: Sequence[float]) -> list[str]:
+    """Return the digits of round numbers with even steps, with as many places as these need."""
+    size = max(abs(value) for value in values)
+    if size >= 1e6 or 0 < size < 1e-3:
+        return [_power(value) for value in values]
+    if len(values) < 2:
+        return [f"{value:.4g}" for value in values]
+    step = min(abs(b - a) for a, b in itertools.pairwise(values))
+    places = next(n for n in range(12) if abs(step - round(step, n)) < 1e-6 * step)
+    return [f"{value:.{places}f}" for value in values]
+
+
+def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:
+    """Return at most some round numbers within a range, and their digits; see `even_levels`."""
+    levels = even_levels(low, high, most)
+    return list(zip(levels, numerals_of(levels), strict=True))
+
+
+def _count(low: float, high: float, step: float) -> int:
+    return math.floor(high / step + 1e-9) - math.ceil(low / step - 1e-9) + 1
+
+
+def _power(value: float) -> str:
+    """Return a large or small number in few digits: 2e5, 0."""
+    if value == 0:
+        return "0"
+    digits, power = f"{value:.3e}".split("e")
+    return f"{float(digits):g}e{int(power)}"
