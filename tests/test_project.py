@@ -55,7 +55,7 @@ REASONS = {
 ORIGINS = {"found", "own", "given", "made", "one", "told", "known", "asked"}
 MOST_ORIGINS = 2.0
 #: Largest number of words that make a reader stumble, per 10,000 words of docstrings.
-STUMBLES = {"what": 32, "whose": 12, "there": 11}
+STUMBLES = {"what": 32, "whose": 13, "there": 11}
 #: Names that stand for more than one class.
 HOMONYMS = {
     "Eye", "Look", "Part", "Places", "Shader", "Shape", "Shown", "Stroke", "Topology", "_Reader",

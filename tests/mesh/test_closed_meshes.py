@@ -28,7 +28,7 @@ def make(request, monkeypatch):
 
     def of(mesh):
         body = closed_meshes.closed(mesh)
-        return closed_meshes.TriangleSolid(*body)
+        return closed_meshes.Body(*body)
 
     return of
 
@@ -117,7 +117,7 @@ def test_inside_or_not(make):
 def test_shell_of_a_plane_is_a_box():
     plane = pv.Plane(i_resolution=4, j_resolution=3).triangulate()
     normals = np.tile([0.0, 0, 1], (plane.n_points, 1))
-    body = closed_meshes.TriangleSolid(*closed_meshes.shell(plane, 0.2, normals))
+    body = closed_meshes.Body(*closed_meshes.shell(plane, 0.2, normals))
     start, way, reach = rays([[0.1, 0.2, 1]], (0.3, 0.1, -1))
     found = closed_meshes.inside_length([body], start, way, reach)
     assert found[0] == pytest.approx(0.2 * np.sqrt(1.1), abs=1e-9)

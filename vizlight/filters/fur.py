@@ -373,8 +373,7 @@ class _Coat:
                     normals[at] = normal.T
                 if heights is not None:
                     height = self._heights(offsets, normal)
-                    # Fur above a point is its distance from the height of the highest point of its
-                    # fibre.
+                    # Fur above a point reaches to the highest point of its fibre.
                     np.subtract(height.max(axis=0), height, out=heights[at].T)
                 reversed_ += inside
             return reversed_

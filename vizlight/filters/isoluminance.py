@@ -166,13 +166,8 @@ def isoluminance(
     if report.is_open():
         # With tangents the luminance is interpolated, and its middles have no light of their own to
         # compare.
-        _note(
-            bands,
-            light,
-            seconds,
-            1024 * result.actual_memory_size,
-            sampled=options.tangents is None,
-        )
+        size = 1024 * result.actual_memory_size
+        _note(bands, light, seconds, size, sampled=options.tangents is None)
     return result
 
 

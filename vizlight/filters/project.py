@@ -236,11 +236,9 @@ def project(
         out = lit(_each(out, lambda block: job.projected(block, done, lost)), "after")
         if scene is not None:
             for block in blocks.all_blocks(out):
-                record_options = records.provenance(block, options.name)["options"].items()
-                light_options = {
-                    key: value for key, value in record_options if key not in options.DECIDED
-                }
-                records.amend(block, options.name, "project", light_options, _own(options))
+                recorded = records.provenance(block, options.name)["options"].items()
+                kept = {key: value for key, value in recorded if key not in options.DECIDED}
+                records.amend(block, options.name, "project", kept, _own(options))
     if lost.count:
         _check.warn(
             f"{lost.count} points cannot be projected (on or behind the eye's hyperplane, or not "

@@ -162,10 +162,8 @@ def sky(
     options = SkyOptions.of(locals())
     chosen = blocks.check(mesh)
     inplace = _check.boolean("inplace", inplace)
-    extra_names = [options.name + OPENNESS] if options.openness else []
-    records.refuse_overwriting(
-        chosen, options.name, [options.name, options.name + VALID, *extra_names]
-    )
+    more = [options.name + OPENNESS] if options.openness else []
+    records.refuse_overwriting(chosen, options.name, [options.name, options.name + VALID, *more])
     taken = [_split(block, options) for block, _ in chosen]
     finer = options.feature_angle is not None
     taken, results = _found_finer(taken, options, finer=finer, show=progress_bar)

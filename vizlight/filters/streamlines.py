@@ -197,8 +197,7 @@ def streamlines(
         whole then, with the point arrays ``width``, at the start, ``phase``, ``passing`` (strokes
         in a period, a whole number) and ``grown``, by which ``movie.travel`` moves the strokes, and
         the field array ``period``: the time that the movie shows, in the unit of lengths over that
-        of the vectors. Each stroke is as long as the part of the line that moves past it. Default:
-        strokes stand still.
+        of the vectors. Strokes are as long as the way that passes. Default: they stand still.
     conditioned : bool or str, optional
         Whether the lines inherit the self-shadow of the surface, see
         :func:`vizlight.illuminate`. Default: whether a surface is present, but not in the light of
@@ -289,22 +288,18 @@ def light_lines(
     scene = as_scene(scene)
     if options.conditioned is None and _tells_of_lines(scene):
         options = dataclasses.replace(options, conditioned=False)
-    resolved = _resolved(mesh, options)
+    full = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
-        lines, tangents = _traced(mesh, scene, resolved, report, argument)
-    lines = _as_strokes(lines, mesh, tangents, resolved)
+        lines, tangents = _traced(mesh, scene, full, report, argument)
+    lines = _as_strokes(lines, mesh, tangents, full)
     # Lines beside a surface have its self-shadow unless it is switched off (Banks 6).
-    conditioned = (
-        resolved.surface is not None if resolved.conditioned is None else resolved.conditioned
-    )
+    conditioned = full.surface is not None if full.conditioned is None else full.conditioned
     normals = "Normals" if conditioned is True else None
-    light = dataclasses.replace(
-        resolved, tangents=tangents, conditioned=conditioned, normals=normals
-    )
+    light = dataclasses.replace(full, tangents=tangents, conditioned=conditioned, normals=normals)
     # The lines are new and nobody else's, and need no copy.
     lit = light_mesh(lines, scene, light, inplace=True, progress_bar=progress_bar)
     # The record names the vectors that were found, since the active ones of a mesh may change.
-    recorded = dataclasses.replace(options, tangents=resolved.tangents)
+    recorded = dataclasses.replace(options, tangents=full.tangents)
     records.amend(lit, options.name, "streamlines", recorded)
     return lit
 

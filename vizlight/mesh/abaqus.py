@@ -168,15 +168,13 @@ def _lines(path: Path, folder: Path, depth: int) -> Iterator[str]:
             line = text.strip()
             if not line or line.startswith("**"):
                 continue
-            keyword, parameters = _keyword(line) if line.startswith("*") else ("", {})
+            keyword, words = _keyword(line) if line.startswith("*") else ("", {})
             if keyword != "INCLUDE":
                 yield line
-            if "INPUT" in parameters and keyword in ("INCLUDE", "NODE", "ELEMENT"):
-                inner = folder / parameters["INPUT"]
+            if "INPUT" in words and keyword in ("INCLUDE", "NODE", "ELEMENT"):
+                inner = folder / words["INPUT"]
                 if not inner.is_file():
-                    raise ValueError(
-                        f"*{keyword} of '{parameters['INPUT']}': no such file beside it"
-                    )
+                    raise ValueError(f"*{keyword} of '{words['INPUT']}': no such file beside it")
                 yield from _lines(inner, folder, depth + 1)
 
 

@@ -204,8 +204,7 @@ class SolidCaster:
         self._origin = body[0].mean(axis=0)
         self._unit = float(np.linalg.norm(np.ptp(body[0], axis=0))) or 1.0
         self._solids = [
-            closed_meshes.TriangleSolid(*triangles, self._origin, self._unit)
-            for triangles in bodies
+            closed_meshes.Body(*triangles, self._origin, self._unit) for triangles in bodies
         ]
         self.depth = _depth(options.depth, DEPTH * self._unit)
         self._share = self.depth / self._unit

@@ -91,7 +91,7 @@ class Tracer:
         return np.asarray(hit != 0)
 
 
-class TriangleSolid:
+class Body:
     """Triangles of a closed surface in float64, relative to an origin and in a unit."""
 
     def __init__(
@@ -206,7 +206,7 @@ def _open_edges(triangles: Indices, *, directed: bool) -> Indices:
 
 
 def hits(
-    body: TriangleSolid, start: Array, way: Array, reach: Array
+    body: Body, start: Array, way: Array, reach: Array
 ) -> tuple[Indices, Indices, Array, bool]:
     """Return ray, triangle and distance of every hit, and whether shared edges may be hit twice.
 
@@ -236,7 +236,7 @@ def hits(
     return np.concatenate(rays), np.concatenate(cells), np.concatenate(places), True
 
 
-def _distances(body: TriangleSolid, start: Array, way: Array, ray: Indices, cell: Indices) -> Array:
+def _distances(body: Body, start: Array, way: Array, ray: Indices, cell: Indices) -> Array:
     """Return the distances of hits along their rays."""
     normal, toward = body.normals[cell], way[ray]
     against = np.einsum("ij,ij->i", toward, normal)
@@ -253,7 +253,7 @@ def _distances(body: TriangleSolid, start: Array, way: Array, ray: Indices, cell
 
 
 def inside_length(
-    solids: list[TriangleSolid],
+    solids: list[Body],
     start: Array,
     way: Array,
     reach: Array,
@@ -263,7 +263,7 @@ def inside_length(
 
     Parameters
     ----------
-    solids : list of TriangleSolid
+    solids : list of Body
     start, way : ndarray, shape (N, 3)
         Starting points and unit directions of the rays.
     reach : ndarray, shape (N,)
@@ -299,9 +299,7 @@ def inside_length(
     return length
 
 
-def _events(
-    body: TriangleSolid, start: Array, way: Array, reach: Array
-) -> tuple[Indices, Array, Indices]:
+def _events(body: Body, start: Array, way: Array, reach: Array) -> tuple[Indices, Array, Indices]:
     """Return where rays enter (-1) and leave (+1) one solid: ray, distance and change.
 
     Events are in the order from the end of the ray to its start, where a last event at distance 0
@@ -337,7 +335,7 @@ def _events(
     return ray, s, change
 
 
-def is_inside(body: TriangleSolid, place: Array) -> bool:
+def is_inside(body: Body, place: Array) -> bool:
     """Return whether a point is inside a solid: whether its faces fill the sphere around it.
 
     Source: Van Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30 (1983).

@@ -106,9 +106,7 @@ def _fits(group: Foreign, at: Mapping[str, object]) -> bool:
 
 def _level(group: Foreign) -> str:
     """Return the kind of the level of a group, with its value if it is single."""
-    kinds = {
-        str(variable.attrs.get("GRIB_typeOfLevel", "")) for variable in group.data_vars.values()
-    }
+    kinds = {str(array.attrs.get("GRIB_typeOfLevel", "")) for array in group.data_vars.values()}
     kind = min(kinds)
     single = kind in group.coords and group.coords[kind].ndim == 0
     return f"{kind} {group.coords[kind].item():g}" if single else kind

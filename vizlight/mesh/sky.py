@@ -235,15 +235,13 @@ def _by_rays(
     shapes = [_shape(mesh, thick, axis) for mesh, axis in zip(meshes, above, strict=True)]
     hidden = _occluders(shapes)
     if among and medium is not None:
-        skies_by_voxels = [_in_medium(mesh, medium, thick) for mesh in meshes]
+        by_voxels = [_in_medium(mesh, medium, thick) for mesh in meshes]
         # The medium's error is not known beforehand: rays from some points measure it.
-        worst = [
-            _missed(sky, shape, hidden) for sky, shape in zip(skies_by_voxels, shapes, strict=True)
-        ]
+        worst = [_missed(sky, shape, hidden) for sky, shape in zip(by_voxels, shapes, strict=True)]
         if max(worst) <= error:
             return [
                 sky._replace(record=sky.record | {"error": measured})
-                for sky, measured in zip(skies_by_voxels, worst, strict=True)
+                for sky, measured in zip(by_voxels, worst, strict=True)
             ]
     total = sum(len(shape.ids) for shape in shapes)
     if hidden.tracer.name != "rays by Embree" and total > SLOW:

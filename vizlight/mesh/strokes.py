@@ -145,10 +145,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     """
     segments = segments_of(mesh)
     totals = segments.totals()
-    stroke_lengths = totals / np.maximum(np.round(totals / length), 1)
-    share = (segments.before + segments.lengths / 2) / np.maximum(
-        stroke_lengths[segments.lines], 1e-300
-    )
+    sizes = totals / np.maximum(np.round(totals / length), 1)
+    share = (segments.before + segments.lengths / 2) / np.maximum(sizes[segments.lines], 1e-300)
     places = np.stack([segments.lines, np.floor(share)])
     pieces = np.cumsum(np.any(np.diff(places, prepend=0.0), axis=0))
     strokes = _rebuilt(mesh, segments, np.ones(len(pieces), dtype=np.bool_), pieces)

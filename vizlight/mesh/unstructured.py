@@ -85,12 +85,10 @@ def _of_ugrid(
     places = str(attributes.get("node_coordinates", "")).split()
     if not table or len(places) < 2:
         raise ValueError(f"the mesh {name!r} of UGRID has no faces of nodes in a plane")
-    missing = [
-        coordinate for coordinate in (table, *places[:2]) if coordinate not in file.variables
-    ]
+    missing = [key for key in (table, *places[:2]) if key not in file.variables]
     if missing:
         raise ValueError(f"the mesh {name!r} of UGRID names {missing[0]!r}, which is not there")
-    by_letter = {letter_of(coordinate, file[coordinate].attrs): coordinate for coordinate in places}
+    by_letter = {letter_of(key, file[key].attrs): key for key in places}
     x, y = by_letter.get("x", places[0]), by_letter.get("y", places[1])
     dims = [str(dim) for dim in file[table].dims]
     face_dim = str(attributes.get("face_dimension", ""))
@@ -123,7 +121,7 @@ def _guessed(
             # Files may have lengths beside degrees, of which either may be all 0.
             if letter not in pair or not np.any(file[pair[letter]].values):
                 pair[letter] = name
-    candidates, tables = [], []
+    meshes, tables = [], []
     for key, variable in file.variables.items():
         name, dims = str(key), [str(dim) for dim in variable.dims]
         if len(dims) != 2 or min(variable.shape) not in _CORNERS:
@@ -140,15 +138,13 @@ def _guessed(
                 fields = sum({nodes, faces} & {*map(str, array.dims)} != set() for array in
                              file.data_vars.values())  # fmt: skip
                 rank = bool(_TABLES.fullmatch(name)), fields, file.sizes[faces]
-                candidates.append(
-                    (rank, Topology(pair["x"], pair["y"], name, nodes, faces, "table"))
-                )
-    if tables and not candidates:
+                meshes.append((rank, Topology(pair["x"], pair["y"], name, nodes, faces, "table")))
+    if tables and not meshes:
         raise ValueError(
             f"{tables[0]!r} seems a table of the nodes of faces, which have no x and y: "
             "name them as UGRID does, by node_coordinates"
         )
-    return max(candidates, key=lambda entry: entry[0])[1] if candidates else None
+    return max(meshes, key=lambda entry: entry[0])[1] if meshes else None
 
 
 def _numbers(variable: Foreign, count: int) -> bool:

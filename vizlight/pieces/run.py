@@ -380,10 +380,8 @@ def _named_by(path: Path, folder: Path) -> set[str]:
 def _result(path: Path, folder: Path, done: Sequence[PieceSummary], job: Job) -> Lit:
     """Return the result, and repeat each warning of the workers once."""
     full = [facts for facts in done if facts.file]
-    points, invalid = (
-        sum(facts.points for facts in full),
-        sum(facts.invalid for facts in full),
-    )
+    points = sum(facts.points for facts in full)
+    invalid = sum(facts.invalid for facts in full)
     names = sorted({name for facts in full for name in facts.ranges})
     if invalid:
         _check.warn(f"{unlit(invalid, points)}; the point array '{job.name}_valid' marks them")

@@ -228,9 +228,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
         inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
         done = _described(lit)
         done.sharp = sharp
-        said = [
-            str(warning.message) for warning in caught if issubclass(warning.category, UserWarning)
-        ]
+        said = [str(entry.message) for entry in caught if issubclass(entry.category, UserWarning)]
         # Points that could not be lit are counted without ghost cells, creases over all pieces.
         counted = ("could not be lit", *(["edges are sharper"] if sharp is not None else []))
         done.notes = [text for text in said if not any(part in text for part in counted)]
@@ -249,20 +247,16 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
 
 
 def _lit(
-    mesh: pv.DataSet, piece: Piece, job: Job, turns: Told | None
+    mesh: pv.DataSet, piece: Piece, job: Job, turn: Told | None
 ) -> tuple[Foreign, float | None]:
     """Return the lit part that a piece owns, and its share of sharp edges where that is known."""
     if not mesh.n_points:
         return mesh, None
     lit: Foreign
     if job.filter == "illuminate":
-        if (
-            turns is not None
-            and isinstance(mesh, pv.UnstructuredGrid)
-            and hull.dimension(mesh) == 3
-        ):
-            turns = turns._replace(side=sides.side_of(_others(mesh)))
-        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=turns)
+        if turn is not None and isinstance(mesh, pv.UnstructuredGrid) and hull.dimension(mesh) == 3:
+            turn = turn._replace(side=sides.side_of(_others(mesh)))
+        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=turn)
     else:
         lit = streamlines(mesh, job.scene, **job.options)
     record, names = records.read(lit, job.name), records.made(lit, job.name)

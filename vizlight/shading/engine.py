@@ -201,8 +201,7 @@ def shade(
         Whether the normals have no side: the surface is lit by ``|N . wi|``.
     repeat : int, default: 1
         Number of points, one after the other, that share a normal, such as the points of a fibre:
-        N = M repeat. Tangents have N rows or M. Values that depend on the row alone are computed
-        once.
+        N = M repeat. Tangents have N rows or M. Work on a row alone is done once.
     block : int, optional
         Number of rows in a block. Default: a number that suits the caches, see :attr:`Plan.block`.
     progress : callable, optional

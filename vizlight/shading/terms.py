@@ -41,8 +41,7 @@ def light(w: Algebra, plan: Plan) -> None:
     w : Algebra
     plan : Plan
     """
-    # Values that all lamps share are taken once: frames, the direction to the eye, the way through
-    # fur.
+    # Taken once for all lamps: frames, the direction to the eye, the way through fur.
     normal = w.direction("normals") if w.has("normals") else None
     base = None
     if plan.base:

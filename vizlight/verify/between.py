@@ -150,9 +150,8 @@ class Between:
         count = len(places.weights)
         values = np.empty((count, 4 if self.scene.colored else 1))
         for block in _pool.blocks(count, BLOCK):
-            points, vectors, facts = self.interpolated_at(
-                Places(places.corners[block], places.weights[block])
-            )
+            part = Places(places.corners[block], places.weights[block])
+            points, vectors, facts = self.interpolated_at(part)
             arrays: dict[str, ArraySource] = {
                 name: rows.reshape(len(rows), -1) for name, rows in vectors.items()
             }

@@ -296,8 +296,7 @@ def report(*, sample: int = 4096, seed: int = 0) -> Iterator[Report]:
     fur, for cast shadows, for light inside a bundle, and for points without cells, and the report
     says so where it is not. Filters that other threads call are not recorded, nor light by the
     workers of ``pieces.light(..., map=)``, although the report counts its points.
-    :func:`vizlight.legibility` measures another question: which values a reader can read back from
-    the picture.
+    :func:`vizlight.legibility` measures which values a reader can read back from the picture.
 
     Examples
     --------
@@ -566,10 +565,8 @@ def _reference(
             normal = oracle.FLOATS.toward(scene.view or View.isometric(n), point)[0]
         # A point of a line is lit by its tangent, and any other by its normal.
         tangents, normal = (tangents, None) if dimension == [1] else (None, normal)
-    (height,), (occlusion,) = (
-        numbers(inputs.fur_height) or [0.0],
-        numbers(inputs.occlusion) or [1.0],
-    )
+    (height,) = numbers(inputs.fur_height) or [0.0]
+    (occlusion,) = numbers(inputs.occlusion) or [1.0]
     return oracle.light(
         point,
         tangents,

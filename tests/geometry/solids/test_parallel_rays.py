@@ -21,7 +21,7 @@ def windings(body, start, way):
 
 
 def solid(mesh):
-    return closed_meshes.TriangleSolid(*closed_meshes.closed(mesh))
+    return closed_meshes.Body(*closed_meshes.closed(mesh))
 
 
 @pytest.mark.parametrize("way", WAYS)

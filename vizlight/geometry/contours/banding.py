@@ -557,8 +557,7 @@ def _walk(
         # Only the contours of the triangle's own side of a crease lead to another band.
         same_side = of_side[index] == side[tri, slot]
         passed = np.cumsum(same_side)
-        # The sum runs through all triangles: the sum before each triangle's own points is
-        # subtracted.
+        # The sum runs through all triangles: that before each one's points is subtracted.
         passed -= np.append(0, passed)[np.searchsorted(tri, tri)]
         sign = np.where(band[tri, (slot + 1) % 3] > band[tri, slot], 1, -1)
         after = band[tri, slot] + sign * passed

@@ -365,10 +365,8 @@ class Medium:
         way /= np.maximum(size(way), NARROWEST)
         width = np.maximum(width, NARROWEST)
         # The depth has the factor for crowded lines, and so must the depth subtracted from it.
-        own_depth = _ahead(targets.own_depth(way.astype(np.float32), width)) * crowding(
-            thick / width
-        )
-        return _left(depth, own_depth, thick)
+        line = _ahead(targets.own_depth(way.astype(np.float32), width)) * crowding(thick / width)
+        return _left(depth, line, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""

@@ -117,9 +117,7 @@ def _is_row(part: object) -> bool:
     """Return whether an element of a list is a row of numbers rather than a rotation."""
     if isinstance(part, np.ndarray):
         return part.ndim == 1 and part.dtype.kind in "iuf"
-    return isinstance(part, list | tuple) and all(
-        isinstance(number, numbers.Real) for number in part
-    )
+    return isinstance(part, list | tuple) and all(isinstance(x, numbers.Real) for x in part)
 
 
 def _special_orthogonal(n: int, value: object) -> Array:

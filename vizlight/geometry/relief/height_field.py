@@ -164,10 +164,8 @@ def default_depth(field: Field) -> float:
     """
     cell = min(float(axis[-1]) / (len(axis) - 1) for axis in (field.x, field.y))
     rises = [np.abs(np.diff(field.heights, axis=axis)) for axis in (0, 1)]
-    mean_rises = [
-        float(rise[np.isfinite(rise)].mean()) for rise in rises if np.isfinite(rise).any()
-    ]
-    step = sum(mean_rises) / len(mean_rises) if mean_rises else 0.0
+    means = [float(rise[np.isfinite(rise)].mean()) for rise in rises if np.isfinite(rise).any()]
+    step = sum(means) / len(means) if means else 0.0
     return min(max(DEPTH_OF_STEP * step, LEAST_OF_CELL * cell), DEPTH_OF_CELL * cell)
 
 

@@ -58,9 +58,8 @@ def inside_length(
     border : {"extend", "wall"}
         Shape of the solid beyond the outermost nodes. "extend": the heights of the border continue
         without end, and a hole has the height of the nearest node by index. "wall": the solid ends
-        at the outermost nodes in vertical walls, and likewise at each cell that lacks a corner.
-        Walls are part of the solid: a ray that runs in the plane of one is inside below the wall's
-        upper edge.
+        in vertical walls, and likewise at each cell that lacks a corner. Walls are part of the
+        solid: a ray that runs in the plane of one is inside below the wall's upper edge.
 
     Returns
     -------

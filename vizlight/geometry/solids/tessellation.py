@@ -83,16 +83,15 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     Notes
     -----
     Coincident faces count once: shared faces of joined solids are removed, and the difference of
-    equal solids is empty. Solids bounded by planes are exact to rounding. Points are about
-    ``sqrt(2 tolerance r)`` apart on a surface of radius r. The volume between the triangles and
-    their exact surfaces is measured; where it is more than ``8 tolerance`` of the volume of the
-    solid, points stay on the facets of the primitives, which keep thin walls, or the mesh is made
-    again with a finer tolerance. Points also stay on facets, within the tolerance of their
-    surfaces, where moving them would flip a triangle. Volume and area converge with the tolerance.
-    The area has no bound, since points near a surface do not bound its slope (Schwarz's lantern),
-    and a crease between surfaces that nearly touch may lie anywhere near them; for 30 closed forms
-    its relative error was at most 3 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance,
-    Further Work.
+    equal solids is empty. Solids bounded by planes are exact to rounding. Points are about ``sqrt(2
+    tolerance r)`` apart on a surface of radius r. The volume between the triangles and their exact
+    surfaces is measured; where it is more than ``8 tolerance`` of the volume of the solid, points
+    stay on the facets of the primitives, which keep thin walls, or the mesh is made again with a
+    finer tolerance. Points also stay on facets, within the tolerance of their surfaces, where
+    moving them would flip a triangle. Volume and area converge with the tolerance. The area has no
+    bound, since points near a surface do not bound its slope (Schwarz's lantern), and a crease
+    between surfaces that nearly touch may lie anywhere near them; for 30 closed forms its relative
+    error was at most 3 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance, Further Work.
     """
     if not isinstance(solid, Solid):
         raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))

@@ -115,11 +115,9 @@ def mesh(solid: Primitive, segments: int) -> Mesh:
         points, triangles, patch = unit.points, unit.triangles, unit.patch
     else:
         points, triangles, patch = np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty(0, np.intp)
-    surfaces = Surfaces(unit.surfaces())
-    facets = Mesh(
-        points, triangles, patch, surfaces, np.ones(len(surfaces)), np.asarray(shift), scale
-    )
-    return dataclasses.replace(facets, volume_error=missed(unit, segments, facets.volume))
+    faces = Surfaces(unit.surfaces())
+    hull = Mesh(points, triangles, patch, faces, np.ones(len(faces)), np.asarray(shift), scale)
+    return dataclasses.replace(hull, volume_error=missed(unit, segments, hull.volume))
 
 
 def missed(unit: Primitive, segments: int, volume: float) -> float:
