@@ -5,7 +5,9 @@ import pytest
 import pyvista as pv
 
 from vizlight.draw import map_frames
-from vizlight.draw.map_frames import frame, ticks
+from vizlight.draw.map_frames import frame, graticule, ticks
+from vizlight.mesh import charts
+from vizlight.mesh.charts import chart
 from vizlight.mesh.georeference import in_degrees
 from vizlight.vtk import letters
 
@@ -103,3 +105,77 @@ def test_lines_are_thin_and_words_as_high_as_asked():
     made = frame(sheet(1000, 500, unit="metre"), 30.0)
     word = np.asarray(made.points, dtype=float)[8:]
     assert np.ptp(word[:, 1]) == pytest.approx(0.73 * 30, rel=0.1)
+
+
+def charted(west, east, south, north, step=1.0):
+    """Return a map in the plane of the projection that suits it."""
+    size = (round((east - west) / step) + 1, round((north - south) / step) + 1, 1)
+    grid = pv.ImageData(dimensions=size, spacing=(step, step, 1), origin=(west, south, 3))
+    return chart(in_degrees(grid))
+
+
+def test_the_frame_of_a_cone_is_outside_of_it_and_has_words_along_two_sides():
+    mesh = charted(-135, -45, 15, 60)
+    size = 2e5
+    made = frame(mesh, size)
+    sheet = charts.sheet(mesh)
+    points = np.asarray(made.points, dtype=float)
+    assert set(points[:, 2]) == {3.0}
+    # All but the inner corners of the border.
+    earth = sheet.plane.inverse(points[:, :2])
+    inside = (np.abs(earth[:, 0] + 90) < 44.9) & (earth[:, 1] > 15.1) & (earth[:, 1] < 59.9)
+    assert not inside.any()
+    west, east, south, north = np.array(made.bounds[:4]) - mesh.bounds[:4]
+    assert west < -2 * size
+    assert south < -size
+    assert 0 < north < 2 * size
+    assert 0 < east < 3 * size
+
+
+def test_meridians_and_parallels_are_where_they_are_named():
+    mesh = charted(-135, -45, 15, 60)
+    plane = charts.sheet(mesh).plane
+    lines = graticule(mesh, 2e5)
+    round_ones = set()
+    for cell in lines.cell:
+        earth = plane.inverse(np.asarray(cell.points, dtype=float)[:, :2])
+        column = int(np.ptp(earth[:, 1]) < np.ptp(earth[:, 0]))
+        # Points are of four bytes.
+        assert np.ptp(earth[:, column]) < 1e-4
+        round_ones.add((column, round(float(earth[:, column].mean()), 3)))
+    assert round_ones >= {(0, -90.0), (0, -105.0), (1, 20.0), (1, 50.0)}
+    assert graticule(sheet(60, 40), 2.0).n_lines == 0
+
+
+def test_a_map_around_a_pole_has_words_on_all_sides():
+    mesh = charted(-180, 180, 60, 90)
+    made = np.asarray(frame(mesh, 1.5e5).points, dtype=float)[:, :2]
+    beyond = made[np.linalg.norm(made, axis=1) > 1.02 * mesh.bounds[1]]
+    turns = np.unique(np.round(np.degrees(np.arctan2(*beyond.T)) / 30) % 12)
+    assert len(turns) == 12
+
+
+def test_maps_on_which_lengths_are_alike_have_a_bar():
+    bars = {
+        (6, 9, 45, 47): True, (-135, -45, 15, 60): False,
+    }  # fmt: skip
+    for bounds, has in bars.items():
+        assert map_frames.has_bar(charted(*bounds)) == has
+    assert map_frames.has_bar(sheet(10, 8))
+    assert not map_frames.has_bar(sheet(60, 40))
+    # 2 degrees of latitude are 222 km: the bar of 50 km is a quarter of 3 degrees at 46 north.
+    corners = np.asarray(frame(charted(6, 9, 45, 47), 5e3).points, dtype=float)
+    low = corners[corners[:, 1] < corners[:, 1].min() + 5e3]
+    assert np.ptp(low[:, 0]) > 50e3
+
+
+def test_a_chart_on_its_side_has_its_parallels_below():
+    """North to the left: the words of parallels are east of the map, those of meridians north."""
+    mesh = charted(-76, -68, -55, -18, 0.5)
+    size = 5e4
+    made = np.asarray(frame(mesh, size, up=(1, 0)).points, dtype=float)
+    west, east, south, north = mesh.bounds[:4]
+    assert made[:, 0].min() < west - size
+    assert made[:, 0].max() < east + size
+    beside = made[made[:, 0] < west - size]
+    assert np.ptp(beside[:, 1]) > 0.5 * (north - south)

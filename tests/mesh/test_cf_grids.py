@@ -7,8 +7,8 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
-from vizlight.mesh import meaning
+from vizlight import cartography, files
+from vizlight.mesh import meaning, projections
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -306,3 +306,23 @@ def test_a_layer_without_data_is_passed_over():
     look = vizlight.look(data, size=(90, 60))
     assert any("the lowest with data of 3 layers is shown, at 10 along z" in n for n in look.notes)
     np.testing.assert_array_equal(np.unique(look.mesh["w"]), values[1].ravel())
+
+
+def test_a_grid_says_in_which_projection_it_is_straight():
+    """A model's grid without coordinates along its axes, and one in lengths with its mapping."""
+    cone = {"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "STAND_LON": 10.0}
+    x, y = np.meshgrid(np.arange(-4, 5) * 1e5, np.arange(-3, 4) * 1e5)
+    plane = projections.of_text(projections.of_attributes(cone))
+    lon, lat = plane.inverse(np.column_stack([x.ravel(), y.ravel()])).T
+    rows = {"t": x, "XLONG": lon.reshape(x.shape), "XLAT": lat.reshape(x.shape)}
+    rows = {name: (("j", "i"), values) for name, values in rows.items()}
+    flat = cartography.chart(vizlight.read(xr.Dataset(rows, attrs=cone)))
+    np.testing.assert_allclose(flat.bounds[:4], (-4e5, 4e5, -3e5, 3e5), atol=1)
+    pole = {"grid_mapping_name": "polar_stereographic", "latitude_of_projection_origin": 90.0}
+    axes = axes_of(
+        x=(x[0], {"standard_name": "projection_x_coordinate", "units": "m"}),
+        y=(y[:, 0], {"standard_name": "projection_y_coordinate", "units": "m"}),
+    )
+    mesh = grid({"t": (("y", "x"), x), "polar": ((), 0, pole)}, axes)
+    assert str(mesh.field_data["crs"][0]) == "+proj=stere +lat_0=90"
+    assert str(mesh.field_data["unit"][0]) == "metre"

@@ -37,8 +37,10 @@ def test_a_cone_has_its_points_where_the_projection_says_and_its_winds_along_the
     assert "u,v" not in mesh.point_data
 
 
-def test_a_small_map_stays_an_image_with_the_shape_of_the_place():
-    flat = cartography.chart(sheet_of(6, 9, 59, 61, 0.1))
+@pytest.mark.parametrize("west", [6, 355])
+def test_a_small_map_stays_an_image_with_the_shape_of_the_place(west):
+    flat = cartography.chart(sheet_of(west, west + 3, 59, 61, 0.1))
+    assert charts.sheet(flat).extent == pytest.approx((west, west + 3, 59, 61), abs=0.01)
     assert isinstance(flat, pv.ImageData)
     x, y, _ = flat.bounds_size
     assert x / y == pytest.approx(1.5 * np.cos(np.radians(60)), rel=1e-6)

@@ -250,34 +250,53 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
     """Return the outline of a map with the words of its graticule where this meets it."""
     outline = sheet.outline @ turn.T
     parts = [_border(outline, LINE * size)]
-    sides = np.roll(outline, -1, axis=0) - outline
-    away = np.column_stack([sides[:, 1], -sides[:, 0]])
-    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
-    lines = _graticule(sheet, size)
     west, east, *_ = sheet.extent
     is_around = east - west > georeference.AROUND - ALMOST
+    near = charts.EDGE * sheet.size
+    # Meridians end below a map, and beside one that lies on its side.
+    below, beside = np.array([[0.0, -1.0], [-1.0, 0.0]])
+    if abs(turn[1, 0]) > abs(turn[1, 1]):
+        below, beside = beside, below
     boxes: list[Array] = []
-    for piece, word, is_meridian in lines:
+    for piece, word, is_meridian in _graticule(sheet, size):
+        flat = piece @ turn.T
         if is_around and not is_meridian:
-            if np.allclose(piece[0], piece[-1], rtol=0, atol=charts.EDGE * sheet.size):
-                parts.append(_inside(piece @ turn.T, word, SMALL * size))
+            if np.allclose(flat[0], flat[-1], rtol=0, atol=near):
+                parts.append(_inside(flat, word, SMALL * size))
             continue
-        for end in piece[[0, -1]] @ turn.T:
-            near = np.flatnonzero(_apart(end, outline, sides) < 2 * charts.EDGE * sheet.size)
-            toward = away[near] @ ((0.0, -1.0) if is_meridian else (-1.0, 0.0))
-            if not len(near) or (toward.max() < ASIDE and not is_around):
+        toward = below if is_meridian else beside
+        ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
+        if not is_around:
+            # One word for each line, at the end that is farthest to its side.
+            ends = sorted(ends, key=lambda one: -float(one[2] @ toward))
+            ends = [one for one in ends if one[0] >= ASIDE][:1]
+        for score, way, end in ends:
+            if score < -1:
                 continue
-            way = away[near[int(toward.argmax())]]
             half = np.array([letters.width(word), DIGIT]) * size / 2
             middle = end + way * ((TICK + GAP) * size + np.abs(way) @ half)
-            box = np.concatenate([middle - half - GAP * size, -middle - half - GAP * size])
-            if any(np.all(box + np.roll(other, 2) < 0) for other in boxes):
+            low, high = middle - half - GAP * size, middle + half + GAP * size
+            if any(np.all((low < other[1]) & (other[0] < high)) for other in boxes):
                 continue
-            boxes.append(box)
+            boxes.append(np.stack([low, high]))
             parts.append(_tick(end, way, size))
-            low = middle - (0.0, half[1])
-            parts.append(_word(word, low[0], low[1], size, align=0.5))
+            parts.append(_word(word, middle[0], middle[1] - half[1], size, align=0.5))
     return parts
+
+
+def _away(end: Array, outline: Array, near: float, toward: Array) -> tuple[float, Array]:
+    """Return how well the direction away from a map is that to its word, and this direction.
+
+    The share is that of the best of the sides near the end of a line, -inf where there is none.
+    """
+    sides = np.roll(outline, -1, axis=0) - outline
+    at = np.flatnonzero(_apart(end, outline, sides) < near)
+    if not len(at):
+        return -math.inf, toward
+    away = np.column_stack([sides[at, 1], -sides[at, 0]])
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
+    best = int((away @ toward).argmax())
+    return float(away[best] @ toward), away[best]
 
 
 def _inside(piece: Array, word: str, size: float) -> Part:

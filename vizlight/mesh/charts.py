@@ -131,9 +131,11 @@ def _moved(mesh: pv.DataSet, plane: Projection, *, is_plane: bool) -> pv.DataSet
     middles = np.asarray(named.cell_centers().points) if _has_vectors(named.cell_data) else None
     flat: pv.DataSet
     if is_plane:
-        origin, scale = plane.forward(np.zeros((1, 2)))[0], plane.forward(np.ones((1, 2)))[0]
-        scale = scale - origin
-        flat = blocks.moved(named, np.append(origin / scale, 0.0), np.append(scale, 1.0))
+        # Longitudes of a map need not be within half a turn of 0.
+        middle = np.array(named.center[:2])
+        start, end = plane.forward(np.stack([middle, middle + 1]))
+        scale = end - start
+        flat = blocks.moved(named, np.append(start / scale - middle, 0.0), np.append(scale, 1.0))
     else:
         wide = named if len(named.cell_data) else globes.closed(named)
         is_plain = isinstance(wide, pv.ImageData | pv.RectilinearGrid)
