@@ -29,12 +29,13 @@ from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from typing import TypeVar
 
     from vizlight._types import Array, Indices, Raw
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
+    from vizlight.vtk.parts import Part
 
     SurfaceT = TypeVar("SurfaceT")
 
@@ -51,6 +52,8 @@ FEWEST = 256
 #: Numbers of meshes, and of triangles of each, whose normals are compared with the faces, and share
 #: of the area from which they contradict them.
 MOST_MESHES, MOST_FACES, CONTRADICT = 16, 4096, 0.25
+#: Kinds of meshes that normals stay with.
+_KINDS = pv.PolyData | pv.UnstructuredGrid
 
 
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
@@ -307,20 +310,30 @@ def _rows(mesh: pv.PolyData) -> Indices:
 def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
     """Return whether normals are kept with a mesh of this kind and size."""
     made = normals.computed and not normals.kept and normals.lean is not None
-    kind = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
-    return made and kind and len(normals.vectors) >= FEWEST
+    return made and mesh.GetNumberOfPoints() >= FEWEST and isinstance(mesh, _KINDS)
 
 
-def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
-    """Return normals, without the rows of points where these do not stay with a mesh."""
-    if normals is None or _stay(mesh, normals):
-        return normals
-    return dataclasses.replace(normals, vectors=np.empty(0), lean=None, open=0)
+def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sided | None]]:
+    """Yield the number and the normals of each mesh of a part.
+
+    Without the rows of points where these do not stay with a mesh; ``sharp`` is then the largest.
+    """
+    normals = part.sided
+    facts = normals and dataclasses.replace(
+        normals, vectors=np.empty(0), lean=None, open=0, sharp=float(np.max(normals.sharp))
+    )
+    for i, number in enumerate(part.numbers):
+        if normals is None or not _stay(meshes[number], normals):
+            yield number, facts
+        elif len(part.numbers) == 1:
+            yield number, normals
+        else:
+            yield number, normals.of_block(i, slice(*part.ends[i : i + 2]))
 
 
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, unless it is small; see :func:`records.keep`."""
-    if not _stay(mesh, normals):
+    if not len(normals.vectors) or not _stay(mesh, normals):
         return
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     # One array, so that it travels with the mesh through files as a whole or not at all.
