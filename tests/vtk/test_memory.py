@@ -16,9 +16,9 @@ def shapes(monkeypatch):
     found = []
 
     class Counted(normals.Shape):
-        def __init__(self, surface, side=None):
+        def __init__(self, surface, side=None, block=None):
             found.append(surface.GetNumberOfPoints())
-            super().__init__(surface, side)
+            super().__init__(surface, side, block)
 
     monkeypatch.setattr(normals, "Shape", Counted)
     monkeypatch.setattr(memory, "_KEPT", {})

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import VTK_FLOAT
+from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
 from vizlight.geometry.lines.simplices import Simplices
@@ -21,8 +23,10 @@ from vizlight.vtk.cells import (
     faces_only,
     first_twins,
     has_faces,
+    n_points,
     places,
     triangles,
+    vtk_points,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
 from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
@@ -91,14 +95,24 @@ def warn_of_edges(share: float, splits: bool) -> None:
 
 def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
     """Warn if float32 points so far from the origin are rounded that computed normals suffer."""
-    worst = 0.0
-    for mesh in meshes:
-        if isinstance(mesh, pv.PointSet | pv.PolyData) and mesh.points.dtype == np.float32:
-            middle, side = blocks.box(mesh)
-            # Distance of neighbouring float32 numbers there, against the mean spacing of points on
-            # a surface.
-            step = float(np.spacing(np.float32(np.abs(middle).max() + side / 2)))
-            worst = max(worst, step * mesh.n_points**0.5 / side)
+    float32 = [
+        mesh
+        for mesh in meshes
+        if isinstance(mesh, pv.PointSet | pv.PolyData)
+        and n_points(mesh)
+        and vtk_points(mesh).GetDataType() == VTK_FLOAT
+    ]
+    bounds = np.array([vtkDataSet.GetBounds(mesh) for mesh in float32]).reshape(-1, 3, 2)
+    with np.errstate(all="ignore"):
+        side, far = np.max(bounds[..., 1] - bounds[..., 0], axis=1), np.abs(bounds).max(axis=(1, 2))
+    # Points that are not finite are left out one mesh at a time.
+    for i in np.flatnonzero(~(np.isfinite(far) & (side > 0))):
+        middle, side[i] = blocks.box(float32[i])
+        far[i] = np.abs(middle).max() + side[i] / 2
+    # Distance of neighbouring float32 numbers there, against the mean spacing of points on a
+    # surface.
+    spacing = side / np.sqrt([n_points(mesh) for mesh in float32])
+    worst = float(np.max(np.spacing(far.astype(np.float32)) / spacing, initial=0.0))
     if worst > ROUNDED:
         _check.warn(
             f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
@@ -310,7 +324,7 @@ def _rows(mesh: pv.PolyData) -> Indices:
 def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
     """Return whether normals are kept with a mesh of this kind and size."""
     made = normals.computed and not normals.kept and normals.lean is not None
-    return made and mesh.GetNumberOfPoints() >= FEWEST and isinstance(mesh, _KINDS)
+    return made and n_points(mesh) >= FEWEST and isinstance(mesh, _KINDS)
 
 
 def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sided | None]]:
@@ -325,10 +339,10 @@ def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sid
     for i, number in enumerate(part.numbers):
         if normals is None or not _stay(meshes[number], normals):
             yield number, facts
-        elif len(part.numbers) == 1:
-            yield number, normals
-        else:
+        elif len(part.ends):
             yield number, normals.of_block(i, slice(*part.ends[i : i + 2]))
+        else:
+            yield number, normals
 
 
 def keep(mesh: pv.DataSet, normals: Sided) -> None:

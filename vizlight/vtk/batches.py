@@ -17,6 +17,7 @@ from vizlight.vtk.cells import (
     cell_data,
     connectivity,
     grid_cells,
+    n_points,
     point_data,
     vtk_points,
 )
@@ -71,42 +72,61 @@ def batches(
     kept : sequence of str
         Names of point arrays with which a dataset stays alone.
     """
-    groups: dict[object, list[list[int]]] = {}
+    groups: dict[object, list[list[_Member]]] = {}
     room: dict[object, int] = {}
     for number, mesh in meshes.items() if len(meshes) > 1 else ():
-        kind = _kind(mesh, names, kept)
-        if kind is None:
+        kind, member = _kind(number, mesh, names, kept)
+        if member is None:
             continue
-        size = mesh.GetNumberOfPoints()
+        size = n_points(mesh)
         if room.get(kind, 0) < size:
             groups.setdefault(kind, []).append([])
             room[kind] = MOST
-        groups[kind][-1].append(number)
+        groups[kind][-1].append(member)
         room[kind] -= size
-    every = [numbers for group in groups.values() for numbers in group if len(numbers) > 1]
-    made = [_joined(meshes, numbers, names) for numbers in every]
+    every = [members for group in groups.values() for members in group if len(members) > 1]
+    made = [_joined(members, names) for members in every]
     return [batch for batch in made if batch is not None]
 
 
-def _kind(mesh: Foreign, names: Sequence[str], kept: Sequence[str]) -> object:
+class _Member(NamedTuple):
+    """A dataset, by its number, with the cells of each kind, its points, normals and arrays.
+
+    Python's objects of arrays are made anew by each call that gives one, unless they are held.
+    """
+
+    number: int
+    mesh: Foreign
+    cells: list[vtkCellArray]
+    points: Foreign
+    normals: Foreign
+    arrays: list[Foreign]
+
+
+def _kind(
+    number: int, mesh: Foreign, names: Sequence[str], kept: Sequence[str]
+) -> tuple[object, _Member | None]:
     """Return what datasets that are joined have in common, None for one that stays alone."""
-    if not 0 < mesh.GetNumberOfPoints() <= SMALL:
-        return None
     data = point_data(mesh)
-    if any(data.HasArray(name) for name in kept):
-        return None
+    if not 0 < n_points(mesh) <= SMALL or any(data.HasArray(name) for name in kept):
+        return None, None
     if isinstance(mesh, vtkPolyData):
-        cells: object = _of_surface(mesh)
+        cells = [own(mesh) for count, own in POLYDATA if count(mesh)]
+        kind = _of_surface(mesh)
     elif isinstance(mesh, vtkUnstructuredGrid):
-        cells = _of_grid(mesh)
+        cells, kind = [grid_cells(mesh)], _of_grid(mesh)
     else:
-        cells = None
+        return None, None
     arrays = [data.GetArray(name) for name in names]
-    if cells is None or None in arrays:
-        return None
-    arrays += [vtk_points(mesh).GetData(), data.GetNormals()]
-    forms = [a and (a.GetDataType(), a.GetNumberOfComponents()) for a in arrays]
-    return (cells, *forms)
+    # Arrays of VTK compare value by value, also with None.
+    if kind is None or any(array is None for array in arrays):
+        return None, None
+    points, normals = vtk_points(mesh).GetData(), data.GetNormals()
+    forms = [
+        None if array is None else (array.GetDataType(), array.GetNumberOfComponents())
+        for array in (points, normals, *arrays)
+    ]
+    return (kind, *forms), _Member(number, mesh, cells, points, normals, arrays)
 
 
 def _of_surface(mesh: vtkPolyData) -> object:
@@ -130,15 +150,12 @@ def _of_grid(mesh: vtkUnstructuredGrid) -> object:
     return None if hidden or len(kinds) != 1 or kind in thin or hull.is_curved(mesh) else kind
 
 
-def _joined(
-    every: Mapping[int, Foreign], numbers: list[int], names: Sequence[str]
-) -> Batch | None:
+def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:
     """Return datasets of one kind as one.
 
     None where their sizes differ too much, or some of their normals have no direction.
     """
-    meshes = [every[number] for number in numbers]
-    parts = [as_numpy(vtk_points(mesh).GetData()) for mesh in meshes]
+    parts = [as_numpy(member.points) for member in members]
     ends = np.cumsum([0, *map(len, parts)])
     points, first = np.concatenate(parts), ends[:-1]
     with np.errstate(all="ignore"):
@@ -146,32 +163,33 @@ def _joined(
         size = sizes.max(axis=1).astype(np.float64)
         # Written so that NaN differs, too.
         alike = size.max() <= RATIO * np.min(size, where=size > 0, initial=np.inf)
-    model = meshes[0]
-    normals = point_data(model).GetNormals()
-    rows = np.zeros((0, 3))
-    if normals is not None:
-        rows = np.concatenate([as_numpy(point_data(mesh).GetNormals()) for mesh in meshes])
+    model = members[0]
+    rows = np.ones((1, 3))
+    if model.normals is not None:
+        rows = np.concatenate([as_numpy(member.normals) for member in members])
     # Where some have no direction those of the faces stand in their place.
     if not alike or not np.isfinite(rows).all() or not rows.any(axis=1).all():
         return None
-    whole: Foreign = vtkPolyData() if isinstance(model, vtkPolyData) else vtkUnstructuredGrid()
+    whole: Foreign = vtkPolyData() if isinstance(model.mesh, vtkPolyData) else vtkUnstructuredGrid()
     own = vtkPoints()
     own.SetData(as_vtk(points))
     whole.SetPoints(own)
-    if isinstance(model, vtkPolyData):
+    by_kind = zip(*(member.cells for member in members), strict=True)
+    cells = [_cells(of_kind, first) for of_kind in by_kind]
+    if isinstance(model.mesh, vtkPolyData):
         puts = whole.SetVerts, whole.SetLines, whole.SetPolys, whole.SetStrips
-        for (count, cells), put in zip(POLYDATA, puts, strict=True):
-            if count(model):
-                put(_cells([cells(mesh) for mesh in meshes], first))
+        there = [put for (count, _), put in zip(POLYDATA, puts, strict=True) if count(model.mesh)]
+        for put, of_kind in zip(there, cells, strict=True):
+            put(of_kind)
     else:
-        cells_of_all = _cells([grid_cells(mesh) for mesh in meshes], first)
-        whole.SetCells(model.GetCellType(0), cells_of_all)
-    for name in names:
-        arrays = [as_numpy(point_data(mesh).GetArray(name)) for mesh in meshes]
-        point_data(whole).AddArray(as_vtk(np.concatenate(arrays), name))
-    if normals is not None:
+        whole.SetCells(model.mesh.GetCellType(0), *cells)
+    for i, name in enumerate(names):
+        array = np.concatenate([as_numpy(member.arrays[i]) for member in members])
+        point_data(whole).AddArray(as_vtk(array, name))
+    if model.normals is not None:
         point_data(whole).SetNormals(as_vtk(rows, ACTIVE))
-    return Batch(whole, numbers, ends, np.repeat(np.arange(len(meshes)), np.diff(ends)))
+    numbers = [member.number for member in members]
+    return Batch(whole, numbers, ends, np.repeat(np.arange(len(members)), np.diff(ends)))
 
 
 def _cells(parts: Sequence[vtkCellArray], first: Indices) -> vtkCellArray:

@@ -51,8 +51,8 @@ from vizlight.vtk.orientation import (
     toward_eye,
 )
 from vizlight.vtk.topology import (
-    edge_numbers,
     are_closed,
+    edge_numbers,
     inner_edges,
     place_numbers,
     runs,
@@ -126,6 +126,15 @@ class Sided:
         lean = None if self.lean is None else self.lean[rows]
         border = self.open[rows] if isinstance(self.open, np.ndarray) else self.open
         return dataclasses.replace(self, vectors=self.vectors[rows], lean=lean, open=border)
+
+    def of_blocks(self, chosen: Bools, rows: Indices) -> Sided:
+        """Return the normals of some of several blocks, which have some of the points."""
+        own = self.at(rows)
+        if isinstance(own.sharp, np.ndarray):
+            own = dataclasses.replace(own, sharp=own.sharp[chosen])
+        if isinstance(own.inside, np.ndarray):
+            own = dataclasses.replace(own, inside=own.inside[chosen])
+        return own
 
     def of_block(self, number: int, rows: Slice) -> Sided:
         """Return the normals of one of several blocks, which has some of the points."""
@@ -362,8 +371,9 @@ def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
     # At the outermost points along each axis an outward normal points along it: six votes.
     for axis in range(3):
         for end in (np.maximum, np.minimum) if len(start) else ():
-            most = end.reduceat(points[:, axis], start)
-            at = np.flatnonzero(points[:, axis] == np.repeat(most, np.diff(start, append=len(block))))
+            along = points[:, axis]
+            most = np.repeat(end.reduceat(along, start), np.diff(start, append=len(block)))
+            at = np.flatnonzero(along == most)
             # The first of several in each block.
             at = at[runs(block[at])[0]]
             sign = 1 if end is np.maximum else -1

@@ -222,8 +222,8 @@ class Shape:
                 self.edges += found
                 continue
             of = self.block[self.triangles[one, 0]]
-            for column, kind in zip(self.edges.T, kinds, strict=True):
-                column += np.bincount(of[kind], minlength=len(column))
+            for i, kind in enumerate(kinds):
+                self.edges[:, i] += np.bincount(of[kind], minlength=len(self.edges))
 
     @cached_property
     def frame(self) -> tuple[Array, float]:

@@ -18,7 +18,7 @@ from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Keywords, Slice
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Keywords
     from vizlight.scene import Scene, View
     from vizlight.shading.arrays import Shading
     from vizlight.shading.inputs import ArraySource
@@ -49,15 +49,11 @@ class Part(NamedTuple):
 
     def shadings(self, whole: Shading) -> Iterator[tuple[int, Shading]]:
         """Yield the number and the light of each mesh, given that of all."""
-        if len(self.numbers) == 1:
+        if not len(self.ends):
             yield self.numbers[0], whole
             return
-        for i, (number, rows) in enumerate(zip(self.numbers, self.rows(), strict=True)):
-            yield number, whole.part(i, rows)
-
-    def rows(self) -> Iterator[Slice]:
-        """Yield the points of each of several meshes."""
-        yield from map(slice, self.ends[:-1], self.ends[1:])
+        for i, number in enumerate(self.numbers):
+            yield number, whole.part(i, slice(*self.ends[i : i + 2]))
 
 
 def uses_normals(mesh: Dataset, options: LightOptions) -> bool:
@@ -159,10 +155,7 @@ def _some(part: Part, batch: Batch, chosen: Bools, *, two_sided: bool) -> Part:
     rows = np.flatnonzero(chosen[batch.block])
     arrays: Keywords = {name: x[:][rows] for name, x in part.inputs.arrays().items()}
     inputs = dataclasses.replace(part.inputs, two_sided=two_sided, sides=None, **arrays)
-    sided = part.sided and part.sided.at(rows)
-    for name in ("sharp", "inside"):
-        if isinstance(facts := getattr(sided, name), np.ndarray):
-            sided = dataclasses.replace(sided, **{name: facts[chosen]})
+    sided = part.sided and part.sided.of_blocks(chosen, rows)
     numbers = np.asarray(part.numbers)[chosen].tolist()
     ends = np.cumsum(np.append(0, np.diff(part.ends)[chosen]))
     return part._replace(inputs=inputs, sided=sided, numbers=numbers, ends=ends)
