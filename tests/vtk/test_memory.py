@@ -80,7 +80,7 @@ def test_normals_are_forgotten_with_the_points(shapes):
 
 
 def test_few_things_are_kept(monkeypatch, shapes):
-    monkeypatch.setattr(memory, "MOST", 2)
+    monkeypatch.setattr(memory, "MOST", 2 * ball().n_points)
     meshes = [ball().scale(s) for s in (1, 2, 3)]
     for mesh in meshes:
         normals.computed_normals(mesh)

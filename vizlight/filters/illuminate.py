@@ -218,6 +218,8 @@ def parts_of(
     lighting.refuse_overwriting(
         named, options.name, scene, components=options.components, bundle=bool(options.bundle)
     )
+    if options.feature_angle is not None:
+        normals.compute_ahead(block for block, _ in named if normals.are_computed(block, options))
     # Points are split first: normals, sky and light then belong to the points of the result.
     split = [_split(block, path, options) for block, path in named]
     own = [block for block, _ in split]

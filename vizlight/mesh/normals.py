@@ -18,6 +18,7 @@ from vizlight.geometry.lines.simplices import Simplices
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene import View
+from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (
     connectivity,
     faces_only,
@@ -25,15 +26,23 @@ from vizlight.vtk.cells import (
     has_faces,
     n_points,
     places,
+    point_data,
     triangles,
     vtk_points,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
-from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
+from vizlight.vtk.normals import (
+    Sided,
+    computed_normals,
+    creases,
+    given_normals,
+    remember,
+    sided_normals,
+)
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from typing import TypeVar
 
     from vizlight._types import Array, Indices, Raw
@@ -63,6 +72,24 @@ _KINDS = pv.PolyData | pv.UnstructuredGrid
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
     """Return whether the normals of a mesh are computed from its surface, not an array."""
     return options.normals is None and mesh.point_data.active_normals is None
+
+
+def compute_ahead(meshes: Iterable[pv.DataSet]) -> None:
+    """Compute the normals of small surfaces together, which are then known where each needs them.
+
+    See :mod:`vizlight.vtk.batches`.
+    """
+    surfaces = {
+        i: mesh
+        for i, mesh in enumerate(meshes)
+        if isinstance(mesh, pv.PolyData) and point_data(mesh).GetNormals() is None
+    }
+    for batch in batches(surfaces, (), (KEPT,)):
+        if not has_faces(surfaces[batch.numbers[0]]):
+            continue
+        sided = computed_normals(batch.mesh, block=batch.block, owner=batch.owner)
+        for i, number in enumerate(batch.numbers):
+            remember(surfaces[number], sided.of_block(i, slice(*batch.ends[i : i + 2])))
 
 
 def normals_of(
@@ -212,10 +239,13 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
 ) -> tuple[pv.PolyData, Sided | None]:
-    """Return what :func:`split_edges` does, and its normals, None for a mesh without faces."""
+    """Return what :func:`split_edges` does, and its normals, None where they are found later."""
     split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
         return split, None
+    # Normals of small surfaces are found together.
+    if split is mesh and mesh.n_points <= SMALL:
+        return mesh, None
     return split, kept(split) or computed_normals(split, owner=mesh)
 
 

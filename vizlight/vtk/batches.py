@@ -51,12 +51,15 @@ class Batch(NamedTuple):
         First point of each, and the end of the last.
     block : ndarray of int, shape (n_points,)
         Place in ``numbers`` of the dataset of each point.
+    owner : vtkPolyData or None
+        First dataset, as long as whose points what is computed of all may be kept.
     """
 
     mesh: Dataset
     numbers: list[int]
     ends: Indices
     block: Indices
+    owner: vtkPolyData | None
 
 
 def batches(
@@ -189,7 +192,8 @@ def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:
     if model.normals is not None:
         point_data(whole).SetNormals(as_vtk(rows, ACTIVE))
     numbers = [member.number for member in members]
-    return Batch(whole, numbers, ends, np.repeat(np.arange(len(members)), np.diff(ends)))
+    owner = model.mesh if isinstance(model.mesh, vtkPolyData) else None
+    return Batch(whole, numbers, ends, np.repeat(np.arange(len(members)), np.diff(ends)), owner)
 
 
 def _cells(parts: Sequence[vtkCellArray], first: Indices) -> vtkCellArray:

@@ -492,6 +492,12 @@ def computed_normals(
     return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told, block=block)
 
 
+def remember(mesh: vtkPolyData, sided: Sided) -> None:
+    """Keep normals of a surface, found together with others, as if they were computed alone."""
+    once(mesh, "normals", lambda: _frozen(sided))
+    once(mesh, "creases", lambda: float(sided.sharp))
+
+
 def _frozen(sided: Sided) -> Sided:
     """Return normals whose arrays cannot be written."""
     for array in (sided.vectors, sided.lean, sided.open):

@@ -13,7 +13,7 @@ from vizlight.shading.inputs import ShadingInputs, Sides
 from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
-from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
+from vizlight.vtk.normals import Sided, Told, Turned, computed_normals, sided_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -137,7 +137,11 @@ def part_of(
 
 def parts_of(batch: Batch, scene: Scene, options: LightOptions) -> Iterator[Part]:
     """Yield what several meshes that are joined are lit by, see :func:`part_of`."""
-    part = part_of(batch.mesh, "", scene, options, block=batch.block)
+
+    def kept(mesh: Foreign) -> Sided:
+        return computed_normals(mesh, block=batch.block, owner=batch.owner)
+
+    part = part_of(batch.mesh, "", scene, options, kept_normals=kept, block=batch.block)
     part = part._replace(numbers=batch.numbers, ends=batch.ends)
     sided, border = part.sided, np.ones(len(batch.numbers), dtype=np.bool_)
     if sided is not None and options.facing == "auto" and part.inputs.two_sided:
