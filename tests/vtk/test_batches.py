@@ -197,7 +197,7 @@ def test_nested_blocks_keep_their_places_and_memory(monkeypatch):
 
 def test_a_batch_has_no_more_points_than_are_searched_for_sides():
     mesh = pv.Sphere(theta_resolution=50, phi_resolution=50)
-    found = batches(dict.fromkeys(range(39), mesh), [])
+    found = list(batches(dict.fromkeys(range(39), mesh), []))
     assert [number for batch in found for number in batch.numbers] == list(range(39))
     assert all(batch.mesh.GetNumberOfPoints() <= MOST for batch in found)
 

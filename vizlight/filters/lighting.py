@@ -17,7 +17,7 @@ from vizlight.vtk import parts as vtk_parts
 from vizlight.vtk.batches import batches
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     import pyvista as pv
 
@@ -92,7 +92,7 @@ def parts_of(
 
 def _batches(
     meshes: Sequence[pv.DataSet], options: LightOptions, known: Sequence[Sided | None]
-) -> list[Batch]:
+) -> Iterable[Batch]:
     """Return the meshes that are lit together."""
     values = [getattr(options, name) for name in _ARRAYS]
     names = [value for value in values if isinstance(value, str)]

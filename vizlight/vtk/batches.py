@@ -23,7 +23,7 @@ from vizlight.vtk.cells import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from vizlight._types import Dataset, Foreign, Indices
 
@@ -64,8 +64,8 @@ class Batch(NamedTuple):
 
 def batches(
     meshes: Mapping[int, Dataset], names: Sequence[str], kept: Sequence[str] = ()
-) -> list[Batch]:
-    """Return those of some datasets, by their numbers, that go together.
+) -> Iterator[Batch]:
+    """Yield those of some datasets, by their numbers, that go together.
 
     Parameters
     ----------
@@ -88,8 +88,11 @@ def batches(
         groups[kind][-1].append(member)
         room[kind] -= size
     every = [members for group in groups.values() for members in group if len(members) > 1]
-    made = [_joined(members, names) for members in every]
-    return [batch for batch in made if batch is not None]
+    groups.clear()
+    # One at a time, in the memory of the one before.
+    while every:
+        if (batch := _joined(every.pop(0), names)) is not None:
+            yield batch
 
 
 class _Member(NamedTuple):
