@@ -119,6 +119,19 @@ def test_a_chain_of_light_pictures_and_pages_finds_normals_once(shapes, tmp_path
     assert len(shapes) == count
 
 
+def test_small_blocks_are_looked_at_together_and_once(shapes):
+    mesh = pv.MultiBlock([ball().translate((x, 0, 0), inplace=False) for x in range(3)])
+    scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0.2, 1)))
+    lit = vizlight.illuminate(mesh, scene, feature_angle="auto")
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+    plotter.vizlight.add_mesh(mesh, scene=scene)
+    plotter.close()
+    assert shapes == [3 * mesh[0].n_points]
+    apart = vizlight.illuminate(mesh[1], scene, feature_angle="auto")
+    np.testing.assert_array_equal(lit[1]["luminance"], apart["luminance"])
+    assert len(shapes) == 1
+
+
 def test_split_points_share_no_memory_with_what_is_kept(shapes):
     mesh = box()
     first = split_edges(mesh, "auto")
