@@ -190,10 +190,10 @@ def _read_record(
     """Return what a record says was lit, and its scene or the given one."""
     record = records.provenance(mesh, name)
     recorded = Scene.from_dict(record["scene"])
+    normals.compute_ahead(blocks.all_blocks(mesh))
     used = recorded if scene is None else scene
     if record.get("filter") == "fur":
         return _of_fur(mesh, record["options"], used), used
-    normals.compute_ahead(blocks.all_blocks(mesh))
     found: list[Source] = []
     for block, path in blocks.named_blocks(mesh):
         own = records.read(block, name)
