@@ -89,9 +89,9 @@ def test_a_surface_without_creases_is_surveyed_once(monkeypatch):
     made = []
 
     class Counted(orientation.Shape):
-        def __init__(self, *given):
+        def __init__(self, *given, **options):
             made.append(self)
-            super().__init__(*given)
+            super().__init__(*given, **options)
 
     monkeypatch.setattr(normals, "Shape", Counted)
     ball = plain(pv.Sphere())

@@ -16,9 +16,9 @@ def shapes(monkeypatch):
     found = []
 
     class Counted(normals.Shape):
-        def __init__(self, surface, side=None):
+        def __init__(self, surface, side=None, block=None):
             found.append(surface.GetNumberOfPoints())
-            super().__init__(surface, side)
+            super().__init__(surface, side, block)
 
     monkeypatch.setattr(normals, "Shape", Counted)
     monkeypatch.setattr(memory, "_KEPT", {})
@@ -80,7 +80,7 @@ def test_normals_are_forgotten_with_the_points(shapes):
 
 
 def test_few_things_are_kept(monkeypatch, shapes):
-    monkeypatch.setattr(memory, "MOST", 2)
+    monkeypatch.setattr(memory, "MOST", 2 * ball().n_points)
     meshes = [ball().scale(s) for s in (1, 2, 3)]
     for mesh in meshes:
         normals.computed_normals(mesh)
@@ -117,6 +117,19 @@ def test_a_chain_of_light_pictures_and_pages_finds_normals_once(shapes, tmp_path
         plotter.show()
     vizlight.live_html(mesh, tmp_path / "page.html", scene=scene)
     assert len(shapes) == count
+
+
+def test_small_blocks_are_looked_at_together_and_once(shapes):
+    mesh = pv.MultiBlock([ball().translate((x, 0, 0), inplace=False) for x in range(3)])
+    scene = Scene(lights=Light(direction=(1, 1, 1)), view=View(direction=(0, 0.2, 1)))
+    lit = vizlight.illuminate(mesh, scene, feature_angle="auto")
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+    plotter.vizlight.add_mesh(mesh, scene=scene)
+    plotter.close()
+    assert shapes == [3 * mesh[0].n_points]
+    apart = vizlight.illuminate(mesh[1], scene, feature_angle="auto")
+    np.testing.assert_array_equal(lit[1]["luminance"], apart["luminance"])
+    assert len(shapes) == 1
 
 
 def test_split_points_share_no_memory_with_what_is_kept(shapes):

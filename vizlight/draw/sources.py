@@ -55,6 +55,7 @@ def sources_of(
     given: Keywords = {"feature_angle": angle}
     asked = LightOptions(**(given | options))
     _refuse_without_tangents(mesh, scene, asked)
+    normals.compute_ahead(blocks.all_blocks(mesh))
     mesh = blocks.like(mesh, (with_sharp_edges(block, asked) for block in blocks.all_blocks(mesh)))
     if asked.feature_angle is not None and asked.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check
@@ -14,7 +16,7 @@ from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
 from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.parts import uses_normals
+from vizlight.vtk.parts import Part, uses_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +28,6 @@ if TYPE_CHECKING:
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
     from vizlight.vtk.normals import Sided, Told
-    from vizlight.vtk.parts import Part
 
 
 @named
@@ -195,20 +196,30 @@ def light_mesh(
     """
     scene = as_scene(scene)
     inplace = _check.boolean("inplace", inplace)
-    taken, parts = parts_of(mesh, scene, options, told)
+    taken, parts = parts_of(mesh, scene, options, told, joined=True)
     return light_parts(
         mesh, taken, parts, scene, options, inplace=inplace, progress_bar=progress_bar
     )
 
 
 def parts_of(
-    mesh: MeshT, scene: Scene, options: LightOptions, told: Told | None = None
+    mesh: MeshT,
+    scene: Scene,
+    options: LightOptions,
+    told: Told | None = None,
+    *,
+    joined: bool = False,
 ) -> tuple[list[pv.DataSet], list[Part]]:
-    """Return the datasets of a mesh, with the points that are lit, and what each is lit by."""
+    """Return the datasets of a mesh, with the points that are lit, and what they are lit by.
+
+    With ``joined`` small datasets of one kind have one part, else each has one of its own.
+    """
     named = blocks.check(mesh)
     lighting.refuse_overwriting(
         named, options.name, scene, components=options.components, bundle=bool(options.bundle)
     )
+    if options.feature_angle is not None:
+        normals.compute_ahead(block for block, _ in named if normals.are_computed(block, options))
     # Points are split first: normals, sky and light then belong to the points of the result.
     split = [_split(block, path, options) for block, path in named]
     own = [block for block, _ in split]
@@ -220,10 +231,8 @@ def parts_of(
         sided if one.n_points == other.n_points else None
         for (one, sided), other in zip(split, taken, strict=True)
     ]
-    parts = [
-        lighting.part_of(one, path, scene, options, sided, told)
-        for one, (_, path), sided in zip(taken, named, known, strict=True)
-    ]
+    paths = [path for _, path in named]
+    parts = lighting.parts_of(taken, paths, scene, options, known, told, joined=joined)
     _tell_of_averages(named, options)
     return taken, parts
 
@@ -248,14 +257,20 @@ def light_parts(
         inputs, dimmings = lighting.dimmed(
             taken, inputs, scene, options.bundle, options.name, show=progress_bar
         )
-    shadings, fitted = lighting.light(
+    found, fitted = lighting.light(
         [(given, part.options) for given, part in zip(inputs, parts, strict=True)],
         scene,
         progress_bar=progress_bar,
     )
+    by_number = dict(
+        itertools.chain.from_iterable(map(Part.shadings, parts, found))  # of each dataset
+    )
+    shadings = [by_number[i] for i in range(len(taken))]
     # Of normals that do not stay with a mesh only the facts are kept, which the warnings below
     # need.
-    sides = [normals.to_keep(own, part.sided) for own, part in zip(taken, parts, strict=True)]
+    of_number = dict(pair for part in parts for pair in normals.to_keep(taken, part))
+    sides = [of_number[i] for i in range(len(taken))]
+    inside = sum(int(np.sum(part.sided.inside)) for part in parts if part.sided is not None)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
     parts.clear()
@@ -265,7 +280,6 @@ def light_parts(
             normals.keep(block, kept)
         # An earlier refinement measured the error of another light.
         refining.forget(block, options.name)
-    inside = sum(sided.inside for sided in sides if sided is not None)
     lighting.finish(
         lit, shadings, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
     )

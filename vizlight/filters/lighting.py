@@ -12,10 +12,12 @@ from vizlight import _check, _progress
 from vizlight.mesh import bundles, normals, records, subdivision
 from vizlight.shading import engine
 from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
+from vizlight.verify import report
 from vizlight.vtk import parts as vtk_parts
+from vizlight.vtk.batches import batches
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     import pyvista as pv
 
@@ -24,8 +26,12 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
     from vizlight.shading.results import Record
+    from vizlight.vtk.batches import Batch
     from vizlight.vtk.normals import Sided, Told
     from vizlight.vtk.parts import Part
+
+#: Options that may name an array.
+_ARRAYS = ("tangents", "normals", "positions", "conditioned", "occlusion")
 
 
 def part_of(
@@ -53,6 +59,49 @@ def part_of(
     # Triangles are found only where something asks for them, such as a report between the points.
     cells = lambda: subdivision.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))
+
+
+def parts_of(
+    meshes: Sequence[pv.DataSet],
+    paths: Sequence[str],
+    scene: Scene,
+    options: LightOptions,
+    known: Sequence[Sided | None],
+    told: Told | None = None,
+    *,
+    joined: bool = False,
+) -> list[Part]:
+    """Return what meshes are lit by, each as by :func:`part_of`.
+
+    With ``joined`` small ones of one kind are lit as one.
+    """
+    joint: list[Part] = []
+    try:
+        for batch in _batches(meshes, options, known) if joined and told is None else ():
+            joint += vtk_parts.parts_of(batch, scene, options)
+    except (TypeError, ValueError):
+        # One by one an error names its block.
+        joint.clear()
+    done = {number for part in joint for number in part.numbers}
+    return joint + [
+        part_of(mesh, paths[i], scene, options, known[i], told)._replace(numbers=(i,))
+        for i, mesh in enumerate(meshes)
+        if i not in done
+    ]
+
+
+def _batches(
+    meshes: Sequence[pv.DataSet], options: LightOptions, known: Sequence[Sided | None]
+) -> Iterable[Batch]:
+    """Return the meshes that are lit together."""
+    values = [getattr(options, name) for name in _ARRAYS]
+    names = [value for value in values if isinstance(value, str)]
+    # An array without a name belongs to one mesh; a bundle and a report look at each by itself.
+    without_name = any(not isinstance(value, str | bool | None) for value in values)
+    if without_name or options.bundle or report.is_open():
+        return []
+    unknown = {i: mesh for i, mesh in enumerate(meshes) if known[i] is None}
+    return batches(unknown, names, (normals.KEPT, subdivision.TANGENTS))
 
 
 def light(

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
-from vizlight.mesh import blocks, bundles, records
+from vizlight.mesh import blocks, bundles, normals, records
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
 from vizlight.shading import engine
@@ -190,6 +190,7 @@ def _read_record(
     """Return the sources of a record, and its scene or the given one."""
     record = records.provenance(mesh, name)
     recorded = Scene.from_dict(record["scene"])
+    normals.compute_ahead(blocks.all_blocks(mesh))
     used = recorded if scene is None else scene
     if record.get("filter") == "fur":
         return _of_fur(mesh, record["options"], used), used

@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vizlight import _check
 from vizlight.mesh import joining
 from vizlight.vtk import hull
-from vizlight.vtk.cells import check_whole, has_faces
+from vizlight.vtk.cells import cell_data, check_whole, field_data, has_faces, point_data
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
 DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 _NAME = vtkCompositeDataSet.NAME()
+#: Numbers of components of arrays that are neither complex nor tensors.
+_PLAIN = {1, 3}
 
 
 def check(mesh: object) -> list[tuple[pv.DataSet, str]]:
@@ -131,17 +133,21 @@ def all_blocks(mesh: object) -> Iterator[pv.DataSet]:
 
 def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str]]:
     """Yield the datasets of a MultiBlock at every depth, each with its path."""
-    if not isinstance(mesh, pv.MultiBlock):
-        if not isinstance(mesh, pv.DataSet):
-            where = f"block {path}: " if path else ""
-            got = type(mesh).__name__
-            raise TypeError(where + _check.message("mesh", "a PyVista mesh", got))
+    if isinstance(mesh, pv.DataSet):
         yield mesh, path
         return
+    if not isinstance(mesh, pv.MultiBlock):
+        where = f"block {path}: " if path else ""
+        raise TypeError(where + _check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     for i in range(mesh.n_blocks):
         if (block := _block(mesh, i)) is not None:
-            about = vtkMultiBlockDataSet.GetMetaData(mesh, i)
-            yield from named_blocks(block, f"{path}/{about.Get(_NAME) or i}")
+            # By the key: VTK's method of the information tries the types of all keys.
+            own = f"{path}/{_NAME.Get(vtkMultiBlockDataSet.GetMetaData(mesh, i)) or i}"
+            # Without a generator for each of many blocks.
+            if isinstance(block, pv.DataSet):
+                yield block, own
+            else:
+                yield from named_blocks(block, own)
 
 
 def _block(mesh: pv.MultiBlock, i: int) -> object:
@@ -177,12 +183,31 @@ def placed(
     """
     own = list(all_blocks(mesh))
     if not inplace:
-        lit = [new.copy() if new is old else new for new, old in zip(made, own, strict=True)]
+        lit = [_copied(new) if new is old else new for new, old in zip(made, own, strict=True)]
         return like(mesh, iter(lit)), lit
     for new, old in zip(made, own, strict=True):
         if new is not old:
             old.ShallowCopy(new)
     return mesh, own
+
+
+def _copied(mesh: DataSetT) -> DataSetT:
+    """Return a copy, by VTK alone where PyVista has nothing to remember beside the data.
+
+    It remembers which arrays hold truth values or complex numbers, stored as bytes and pairs, and
+    which of the points' and the cells' arrays are active.
+    """
+    bare = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    if not bare or cell_data(mesh).GetNumberOfArrays():
+        return mesh.copy()
+    for data in (point_data(mesh), field_data(mesh)):
+        for i in range(data.GetNumberOfArrays()):
+            array = data.GetAbstractArray(i)
+            if array.GetNumberOfComponents() not in _PLAIN or array.GetDataTypeSize() == 1:
+                return mesh.copy()
+    made = type(mesh)()
+    made.DeepCopy(mesh)
+    return made
 
 
 def isosurface(mesh: pv.DataSet, name: str, level: float) -> pv.PolyData:

@@ -10,31 +10,45 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import VTK_FLOAT
+from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
 from vizlight.geometry.lines.simplices import Simplices
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene import View
+from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (
     connectivity,
     faces_only,
     first_twins,
     has_faces,
+    n_points,
     places,
+    point_data,
     triangles,
+    vtk_points,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
-from vizlight.vtk.normals import Sided, computed_normals, creases, given_normals, sided_normals
+from vizlight.vtk.normals import (
+    Sided,
+    computed_normals,
+    creases,
+    given_normals,
+    remember,
+    sided_normals,
+)
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from typing import TypeVar
 
     from vizlight._types import Array, Indices, Raw
     from vizlight.scene import Scene
     from vizlight.shading.options import FeatureAngle, LightOptions
+    from vizlight.vtk.parts import Part
 
     SurfaceT = TypeVar("SurfaceT")
 
@@ -51,11 +65,31 @@ FEWEST = 256
 #: Numbers of meshes, and of triangles of each, whose normals are compared with the faces, and share
 #: of the area from which they contradict them.
 MOST_MESHES, MOST_FACES, CONTRADICT = 16, 4096, 0.25
+#: Kinds of meshes that normals stay with.
+_KINDS = pv.PolyData | pv.UnstructuredGrid
 
 
 def are_computed(mesh: pv.DataSet, options: LightOptions) -> bool:
     """Return whether the normals of a mesh are computed from its surface, not an array."""
     return options.normals is None and mesh.point_data.active_normals is None
+
+
+def compute_ahead(meshes: Iterable[pv.DataSet]) -> None:
+    """Compute the normals of small surfaces together, which are then known where each needs them.
+
+    See :mod:`vizlight.vtk.batches`.
+    """
+    surfaces = {
+        i: mesh
+        for i, mesh in enumerate(meshes)
+        if isinstance(mesh, pv.PolyData) and point_data(mesh).GetNormals() is None
+    }
+    for batch in batches(surfaces, (), (KEPT,)):
+        if not has_faces(surfaces[batch.numbers[0]]):
+            continue
+        sided = computed_normals(batch.mesh, block=batch.block, owner=batch.owner)
+        for i, number in enumerate(batch.numbers):
+            remember(surfaces[number], sided.of_block(i, slice(*batch.ends[i : i + 2])))
 
 
 def normals_of(
@@ -88,14 +122,24 @@ def warn_of_edges(share: float, splits: bool) -> None:
 
 def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
     """Warn if float32 points so far from the origin are rounded that computed normals suffer."""
-    worst = 0.0
-    for mesh in meshes:
-        if isinstance(mesh, pv.PointSet | pv.PolyData) and mesh.points.dtype == np.float32:
-            middle, side = blocks.box(mesh)
-            # Distance of neighbouring float32 numbers there, against the mean spacing of points on
-            # a surface.
-            step = float(np.spacing(np.float32(np.abs(middle).max() + side / 2)))
-            worst = max(worst, step * mesh.n_points**0.5 / side)
+    float32 = [
+        mesh
+        for mesh in meshes
+        if isinstance(mesh, pv.PointSet | pv.PolyData)
+        and n_points(mesh)
+        and vtk_points(mesh).GetDataType() == VTK_FLOAT
+    ]
+    bounds = np.array([vtkDataSet.GetBounds(mesh) for mesh in float32]).reshape(-1, 3, 2)
+    with np.errstate(all="ignore"):
+        side, far = np.max(bounds[..., 1] - bounds[..., 0], axis=1), np.abs(bounds).max(axis=(1, 2))
+    # Points that are not finite are left out one mesh at a time.
+    for i in np.flatnonzero(~(np.isfinite(far) & (side > 0))):
+        middle, side[i] = blocks.box(float32[i])
+        far[i] = np.abs(middle).max() + side[i] / 2
+    # Distance of neighbouring float32 numbers there, against the mean spacing of points on a
+    # surface.
+    spacing = side / np.sqrt([n_points(mesh) for mesh in float32])
+    worst = float(np.max(np.spacing(far.astype(np.float32)) / spacing, initial=0.0))
     if worst > ROUNDED:
         _check.warn(
             f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
@@ -195,10 +239,13 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
 ) -> tuple[pv.PolyData, Sided | None]:
-    """Return what :func:`split_edges` does, and its normals, None for a mesh without faces."""
+    """Return what :func:`split_edges` does, and its normals, None where they are found later."""
     split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
         return split, None
+    # Normals of small surfaces are found together.
+    if split is mesh and mesh.n_points <= SMALL:
+        return mesh, None
     return split, kept(split) or computed_normals(split, owner=mesh)
 
 
@@ -307,20 +354,30 @@ def _rows(mesh: pv.PolyData) -> Indices:
 def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
     """Return whether normals are kept with a mesh of this kind and size."""
     made = normals.computed and not normals.kept and normals.lean is not None
-    kind = isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
-    return made and kind and len(normals.vectors) >= FEWEST
+    return made and n_points(mesh) >= FEWEST and isinstance(mesh, _KINDS)
 
 
-def to_keep(mesh: pv.DataSet, normals: Sided | None) -> Sided | None:
-    """Return normals, without the rows of points where these do not stay with a mesh."""
-    if normals is None or _stay(mesh, normals):
-        return normals
-    return dataclasses.replace(normals, vectors=np.empty(0), lean=None, open=0)
+def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sided | None]]:
+    """Yield the number and the normals of each mesh of a part.
+
+    Without the rows of points where these do not stay with a mesh; ``sharp`` is then the largest.
+    """
+    normals = part.sided
+    facts = normals and dataclasses.replace(
+        normals, vectors=np.empty(0), lean=None, open=0, sharp=float(np.max(normals.sharp))
+    )
+    for i, number in enumerate(part.numbers):
+        if normals is None or not _stay(meshes[number], normals):
+            yield number, facts
+        elif len(part.ends):
+            yield number, normals.of_block(i, slice(*part.ends[i : i + 2]))
+        else:
+            yield number, normals
 
 
 def keep(mesh: pv.DataSet, normals: Sided) -> None:
     """Attach normals that were computed to a mesh, unless it is small; see :func:`records.keep`."""
-    if not _stay(mesh, normals):
+    if not len(normals.vectors) or not _stay(mesh, normals):
         return
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     # One array, so that it travels with the mesh through files as a whole or not at all.

@@ -85,7 +85,7 @@ def digest(array: Raw) -> str:
     """Return a digest of the shape and the bytes of an array."""
     # The shape is in it, since the same bytes of another shape are another array.
     rows = np.ascontiguousarray(array)
-    return f"{'x'.join(str(n) for n in rows.shape)}:{zlib.crc32(rows.view(np.uint8).data):08x}"
+    return f"{'x'.join(map(str, rows.shape))}:{zlib.crc32(rows.view(np.uint8).data):08x}"
 
 
 def of_light(shading: Shading, filter_name: str, scene: Scene, options: object) -> Record:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkAbstractArray
     from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
-    from vizlight._types import AnyArray, Bools, Foreign, Indices, Raw
+    from vizlight._types import AnyArray, Bools, Foreign, Indices, Raw, RawType
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
@@ -47,6 +48,16 @@ grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
 vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Foreign = numpy_support
+#: Number of an array of VTK by the type of its values, which VTK looks for in a list.
+_vtk_type: Callable[[RawType], int] = functools.cache(_SUPPORT.get_vtk_array_type)
+
+
+def n_points(mesh: Foreign) -> int:
+    """Return the number of points of a dataset."""
+    # Of a class's method VTK takes that class's own code, which only a surface has here.
+    if isinstance(mesh, vtkPolyData):
+        return vtkPolyData.GetNumberOfPoints(mesh)
+    return int(mesh.GetNumberOfPoints())
 
 
 def as_numpy(array: vtkAbstractArray) -> AnyArray:
@@ -77,7 +88,7 @@ def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:
     # Values in the byte order of another machine are swapped as they are assigned below.
     kind = own.dtype.newbyteorder("=")
     # Twice as fast as VTK's own way, which counts where there are many small meshes.
-    array: Foreign = vtkDataArray.CreateDataArray(_SUPPORT.get_vtk_array_type(kind))
+    array: Foreign = vtkDataArray.CreateDataArray(_vtk_type(kind))
     array.SetName(name)
     array.SetNumberOfComponents(1 if own.ndim == 1 else own.shape[1])
     array.SetNumberOfTuples(len(own))
@@ -346,7 +357,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     """
     if not isinstance(mesh, vtkDataSet):
         return
-    count = mesh.GetNumberOfPoints()
+    count = n_points(mesh)
     if isinstance(mesh, vtkStructuredGrid):
         # Versions of VTK count by the points or by the extent.
         there = math.prod(dimensions(mesh))
@@ -359,7 +370,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     ):
         for i in range(data.GetNumberOfArrays()):
             array = data.GetAbstractArray(i)
-            if array is not None and array.GetNumberOfTuples() != rows:
+            if array.GetNumberOfTuples() != rows:
                 expected = f"{of} arrays of {rows} rows, one per {of}"
                 got = f"{array.GetName()!r} with {array.GetNumberOfTuples()}"
                 raise ValueError(where + _check.message(name, expected, got, "remove the array"))

@@ -182,16 +182,16 @@ STAND_APART = 0.5
 CORNERS_APART = 0.7
 
 
-def crease_share(counts: Indices) -> float:
+def crease_share(counts: Indices) -> Array:
     """Return the share of sharp edges where these are creases, else 0.
 
     Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
     are more of those, and no edge is meant to be seen. ``counts`` are
-    :attr:`.orientation.Shape.edges`.
+    :attr:`.orientation.Shape.edges`, and each block has a share of its own.
     """
-    beyond, share, nearly = counts[1:] / np.maximum(counts[0], 1)
+    beyond, share, nearly = (counts[..., 1:] / np.maximum(counts[..., :1], 1)).T
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
-    return float(share) if apart or nearly - share <= STAND_APART * share else 0.0
+    return np.where(apart | (nearly - share <= STAND_APART * share), share, 0.0)
 
 
 #: Degrees by which an angle may be off by rounding: the edges of a cylinder of 12 sides, which are

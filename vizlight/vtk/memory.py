@@ -20,19 +20,21 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
-#: Number of things that are kept at most, the last ones.
-MOST = 1 << 8
+#: Number of points of all surfaces of which something is kept at most, the last ones.
+MOST = 1 << 26
 
 
 class _Kept(NamedTuple):
-    """A value, and the points as long as which it is kept."""
+    """A value, the points as long as which it is kept, and the number of points that it is of."""
 
     points: vtkWeakReference
     value: object
+    size: int
 
 
 _KEPT: dict[tuple[str, ...], _Kept] = {}
-#: Where more things than this are kept, those of deleted points are looked for after so many calls.
+#: Where more things than this are kept, those of deleted points are looked for after so many calls,
+#: or after a part of as many as are kept.
 _SWEEP = 16
 _CALLS = itertools.count()
 _LOCK = threading.Lock()
@@ -67,13 +69,21 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     points = vtkWeakReference()
     points.Set((mesh if owner is None else owner).GetPoints())
     with _LOCK:
-        if len(_KEPT) <= _SWEEP or next(_CALLS) % _SWEEP == 0:
-            for old in [old for old, kept in _KEPT.items() if kept.points.Get() is None]:
-                del _KEPT[old]
-        while len(_KEPT) >= MOST:
-            del _KEPT[next(iter(_KEPT))]
-        _KEPT[key] = _Kept(points, value)
+        _KEPT[key] = _Kept(points, value, mesh.GetNumberOfPoints())
+        if len(_KEPT) <= _SWEEP or next(_CALLS) % max(_SWEEP, len(_KEPT) // _SWEEP) == 0:
+            _forget()
     return value
+
+
+def _forget() -> None:
+    """Forget what is of deleted points, and the oldest things where there is too much."""
+    for key in [key for key, kept in _KEPT.items() if kept.points.Get() is None]:
+        del _KEPT[key]
+    size = sum(kept.size for kept in _KEPT.values())
+    for key in list(_KEPT):
+        if size <= MOST:
+            break
+        size -= _KEPT.pop(key).size
 
 
 def _digests(mesh: vtkPolyData) -> list[str]:

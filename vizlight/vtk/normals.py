@@ -14,6 +14,7 @@ from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
+from vizlight.shading.results import digest
 from vizlight.vtk import hull
 from vizlight.vtk.arrays import vectors_of
 from vizlight.vtk.cells import (
@@ -50,10 +51,11 @@ from vizlight.vtk.orientation import (
     toward_eye,
 )
 from vizlight.vtk.topology import (
+    are_closed,
     edge_numbers,
     inner_edges,
-    is_closed,
     place_numbers,
+    runs,
     single_edges,
     topology,
 )
@@ -63,7 +65,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
     from vizlight.scene import View
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
@@ -91,13 +93,14 @@ class Sided:
         1 for points of pieces with a border, or whose faces have no common side, as in a Klein
         bottle: either side may be seen. From 2 on the number of such a piece that is a height
         field; 0 for others.
-    sharp : float
-        Share of edges that are creases, across which normals were averaged.
+    sharp : float or ndarray
+        Share of edges that are creases, across which normals were averaged; where these are the
+        points of several blocks one of each, and so is ``inside``.
     kept : bool
         Whether the normals come from an earlier result.
     computed : bool
         Whether they are computed from the surface, not an array of the user.
-    inside : int
+    inside : int or ndarray
         Number of points of a volume that are not on its surface.
     averted : ndarray of bool, or None
         By the numbers of ``open``, the height fields that show the eye their back, where that is
@@ -107,10 +110,10 @@ class Sided:
     vectors: Array
     lean: Array | None = None
     open: Indices | int = 0
-    sharp: float = 0.0
+    sharp: float | Array = 0.0
     kept: bool = False
     computed: bool = False
-    inside: int = 0
+    inside: int | Indices = 0
     averted: Bools | None = None
 
     @property
@@ -123,6 +126,33 @@ class Sided:
         lean = None if self.lean is None else self.lean[rows]
         border = self.open[rows] if isinstance(self.open, np.ndarray) else self.open
         return dataclasses.replace(self, vectors=self.vectors[rows], lean=lean, open=border)
+
+    def of_blocks(self, chosen: Bools, rows: Indices) -> Sided:
+        """Return the normals of some of several blocks, which have some of the points."""
+        own = self.at(rows)
+        if isinstance(own.sharp, np.ndarray):
+            own = dataclasses.replace(own, sharp=own.sharp[chosen])
+        if isinstance(own.inside, np.ndarray):
+            own = dataclasses.replace(own, inside=own.inside[chosen])
+        return own
+
+    def of_block(self, number: int, rows: Slice) -> Sided:
+        """Return the normals of one of several blocks, which has some of the points."""
+        border = self.open
+        if isinstance(border, np.ndarray):
+            # The height fields of a block have numbers one after the other.
+            border = border[rows]
+            first = np.min(border, where=border > 1, initial=len(self.vectors) + 2)
+            border = np.where(border > 1, border - first + 2, border)
+        sharp, inside = (
+            each[number] if isinstance(each, np.ndarray) else each
+            for each in (self.sharp, self.inside)
+        )
+        lean = None if self.lean is None else self.lean[rows]
+        return dataclasses.replace(
+            self, vectors=self.vectors[rows], lean=lean, open=border,
+            sharp=float(sharp), inside=int(inside),
+        )  # fmt: skip
 
     def facts(self) -> Array:
         """Return for each point its lean, and its number of :attr:`open`."""
@@ -257,11 +287,13 @@ def sided_normals(
     *,
     kept: Callable[[Foreign], Sided | None] | None = None,
     told: Told | None = None,
+    block: Indices | None = None,
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
     ``kept`` is a function of the mesh that returns normals of its surface which are known already,
     or None. ``told`` is what the whole, of which the mesh is a part, decides of its sides.
+    ``block`` is the number of the block of each point, where the mesh is several.
 
     Raises
     ------
@@ -271,10 +303,10 @@ def sided_normals(
     given = given_normals(mesh, value, n)
     if given is None:
         if facing == "as given":
-            return computed_normals(mesh, as_wound=True, sides=False)
+            return computed_normals(mesh, as_wound=True, sides=False, block=block)
         if told is not None:
             return computed_normals(mesh, told=told)
-        return (kept and kept(mesh)) or computed_normals(mesh)
+        return (kept and kept(mesh)) or computed_normals(mesh, block=block)
     # Integers without a sign, such as normals in bytes, could not be turned over.
     if given.dtype.kind != "f":
         given = given.astype(np.float64)
@@ -287,22 +319,37 @@ def sided_normals(
     if surface is None:
         return Sided(given)
     own = given if origin is None else given[origin]
+    of = block if block is None or origin is None else block[origin]
     if told is None:
-        closed, alike = is_closed(surface)
-        # A closed surface whose faces have no common side, such as Boy's, has no outside.
-        closed = closed and (alike or not _inside_out(surface))
-        inward = closed and _inward(places(surface), np.flatnonzero(used(surface)), own)
-        # Given normals agree with each other by themselves, so that the mesh counts as one piece.
-        number = sides_of(given, None, np.array([not closed]))
+        inward, border = _of_given(surface, own, of)
+        # Given normals agree with each other by themselves, so that a block counts as one piece.
+        number = sides_of(given, block, border)
     else:
-        inward, number = bool(told.sign[0] < 0), told.number
-    if inward:
-        given = -given
-    side, lean = int(number[0]), None
-    if side > 1:
-        lean = _lean_of_given(Shape(surface), own)
+        inward, number = told.sign[:1] < 0, told.number
+    if inward.any():
+        given = -given if block is None else np.where(inward[block, np.newaxis], -given, given)
+    lean = None
+    if np.any(number > 1):
+        lean = _lean_of_given(Shape(surface, block=of), own)
         lean = lean if origin is None else scattered(lean, origin, len(given))
+        lean = lean if block is None else np.where(number[block] > 1, lean, 0)
+    side = int(number[0]) if block is None else number[block]
     return Sided(given, lean, open=side, averted=None if told is None else told.averted)
+
+
+def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tuple[Bools, Bools]:
+    """Return which blocks of a surface have normals that point inside, and which have a border."""
+    of = np.zeros(len(normals), dtype=np.intp) if block is None else block
+    count = int(of.max(initial=0)) + 1
+    closed, alike = are_closed(surface, of, count)
+    doubtful = closed & ~alike
+    if doubtful.any():
+        # A closed surface whose faces have no common side, such as Boy's, has no outside.
+        closed &= alike | ~_inside_out(surface, of, count)
+    if not closed.any():
+        return closed, ~closed
+    ids = np.flatnonzero(used(surface))
+    return closed & _inward(places(surface)[ids], normals[ids], of[ids], count), ~closed
 
 
 def _lean_of_given(shape: Shape, normals: Array) -> Array:
@@ -311,17 +358,26 @@ def _lean_of_given(shape: Shape, normals: Array) -> Array:
     return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
 
 
-def _inward(points: Array, ids: Indices, normals: Array) -> bool:
-    """Return whether the normals of a closed mesh at its outermost points point inside."""
-    ids = ids[np.isfinite(points[ids]).all(axis=1) & np.isfinite(normals[ids]).all(axis=1)]
-    outward = 0.0
-    if not len(ids):
-        return False
+def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
+    """Return of which closed blocks the normals at the outermost points point inside."""
+    known = np.isfinite(points).all(axis=1) & np.isfinite(normals).all(axis=1)
+    if not known.all():
+        points, normals, block = points[known], normals[known], block[known]
+    if np.any(block[1:] < block[:-1]):
+        order = np.argsort(block, kind="stable")
+        points, normals, block = points[order], normals[order], block[order]
+    start, own = runs(block)
+    outward = np.zeros(count)
     # At the outermost points along each axis an outward normal points along it: six votes.
     for axis in range(3):
-        for sign in (1, -1):
-            along = sign * points[ids, axis]
-            outward += sign * normals[ids[along.argmax()], axis]
+        for end in (np.maximum, np.minimum) if len(start) else ():
+            along = points[:, axis]
+            most = np.repeat(end.reduceat(along, start), np.diff(start, append=len(block)))
+            at = np.flatnonzero(along == most)
+            # The first of several in each block.
+            at = at[runs(block[at])[0]]
+            sign = 1 if end is np.maximum else -1
+            outward[own] += sign * normals[at, axis]
     return outward < 0
 
 
@@ -351,7 +407,7 @@ def _sided_grid(mesh: Grid, given: Array) -> Sided:
         points.append(where[ends])
         normals.append(own[ends])
     outermost, own = np.concatenate(points), np.concatenate(normals)
-    inward = _inward(outermost, np.arange(len(outermost)), own)
+    inward = _inward(outermost, own, np.zeros(len(own), dtype=np.intp), 1)[0]
     return Sided(-given if inward else given)
 
 
@@ -390,6 +446,7 @@ def computed_normals(
     sides: bool = True,
     told: Told | None = None,
     owner: vtkPolyData | None = None,
+    block: Indices | None = None,
 ) -> Sided:
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
@@ -416,6 +473,8 @@ def computed_normals(
         What the whole, of which this is a part, decides of the pieces.
     owner : vtkPolyData, optional
         Surface as long as whose points the normals are kept; by default the mesh.
+    block : ndarray of int, shape (n_points,), optional
+        Number of the block of each point, where the mesh is several that have nothing in common.
 
     Raises
     ------
@@ -428,8 +487,15 @@ def computed_normals(
     and may not be changed.
     """
     if view is None and sides and told is None and not as_wound:
-        return once(mesh, "normals", lambda: _frozen(_computed(mesh)), owner)
-    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told)
+        name = "normals" if block is None else f"normals {digest(block)}"
+        return once(mesh, name, lambda: _frozen(_computed(mesh, block=block)), owner)
+    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told, block=block)
+
+
+def remember(mesh: vtkPolyData, sided: Sided) -> None:
+    """Keep normals of a surface, found together with others, as if they were computed alone."""
+    once(mesh, "normals", lambda: _frozen(sided))
+    once(mesh, "creases", lambda: float(sided.sharp))
 
 
 def _frozen(sided: Sided) -> Sided:
@@ -448,6 +514,7 @@ def _computed(
     sides: bool = True,
     told: Told | None = None,
     outer: Outer | None = None,
+    block: Indices | None = None,
 ) -> Sided:
     """Compute normals; see :func:`computed_normals`."""
     count = mesh.GetNumberOfPoints()
@@ -456,6 +523,8 @@ def _computed(
     if told is None and hull.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     part = None if told is None else told.side
+    if block is not None:
+        outer = outer_shape(mesh, block=block)
     # First normals that agree with each other on each piece, then the side of each piece as a
     # whole.
     found = wound_normals(mesh, as_wound=as_wound, side=part, outer=outer)
@@ -468,7 +537,8 @@ def _computed(
     shape, vectors, first, origin = found
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
-    sharp, inside = 0.0, 0
+    sharp: float | Array = 0.0
+    inside: int | Indices = 0
     if sides or not as_wound:
         sums, leaning = shape.survey(vectors)
         if told is not None:
@@ -480,12 +550,15 @@ def _computed(
             side = sides_of(vectors, shape.piece, border) if told is None else told.number
             # What has no two sides is no height field, even where its normals fit in a half space.
             side = np.where(shape.inside_out, 1, side)
-            sharp = crease_share(shape.edges)
+            share = crease_share(shape.edges)
+            sharp = float(share) if block is None else share
     number = side[shape.piece]
     if origin is not None:
         if dimension(mesh) == 3 or not isinstance(mesh, vtkUnstructuredGrid):
             # Points inside a volume or of hidden cells have no normal; they are no fault.
             inside = count - len(origin)
+            if block is not None:
+                inside = np.bincount(block) - np.bincount(block[origin], minlength=block[-1] + 1)
         vectors = scattered(vectors, origin, count)
         number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)
@@ -548,15 +621,18 @@ class Outer(NamedTuple):
     origin: Indices | None
 
 
-def outer_shape(mesh: Dataset, side: NDArray[np.int8] | None = None) -> Outer | None:
+def outer_shape(
+    mesh: Dataset, side: NDArray[np.int8] | None = None, block: Indices | None = None
+) -> Outer | None:
     """Return the outer surface of a mesh, None where it has none; see :func:`wound_normals`."""
     if side is None:
         surface, origin = surface_of(mesh)
         if not has_faces(surface):
             return None
+        block = block if block is None or origin is None else block[origin]
         # Faces that are there twice are rare, and the edges tell that there are none.
         bare = finite_faces(bare_faces(surface))
-        shape = Shape(bare)
+        shape = Shape(bare, block=block)
         if not shape.doubtful or first_twins(surface.GetPolys()) is None:
             return Outer(shape, bare, origin)
     skin, origin = _skin(mesh)
@@ -569,7 +645,7 @@ def outer_shape(mesh: Dataset, side: NDArray[np.int8] | None = None) -> Outer | 
             # Where the part is cut from the others faces arise that join what is apart.
             around = finite_faces(skin, side == 0)
             skin = around if has_faces(around) else skin
-    return Outer(Shape(skin, side), skin, origin)
+    return Outer(Shape(skin, side, block), skin, origin)
 
 
 def creases(mesh: vtkPolyData) -> float:
@@ -582,7 +658,7 @@ def creases(mesh: vtkPolyData) -> float:
 
 def _creases(mesh: vtkPolyData) -> float:
     outer = outer_shape(mesh)
-    share = 0.0 if outer is None else crease_share(outer.shape.edges)
+    share = 0.0 if outer is None else float(crease_share(outer.shape.edges))
     if not share:
         once(mesh, "normals", lambda: _frozen(_computed(mesh, outer=outer)))
     return share
@@ -687,7 +763,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         vectors,
         lean if sides else None,
         int(side[0]),
-        crease_share(counts) if sides else 0.0,
+        float(crease_share(counts)) if sides else 0.0,
         computed=True,
         inside=count - on_surface,
     )
@@ -725,11 +801,11 @@ def _orienter() -> Foreign:
     return orient
 
 
-def _inside_out(surface: vtkPolyData) -> bool:
-    """Return whether a surface has a piece without an outer side, such as a Klein bottle."""
-    shape = Shape(surface)
+def _inside_out(surface: vtkPolyData, block: Indices, count: int) -> Bools:
+    """Return which blocks have a piece without an outer side, such as a Klein bottle."""
+    shape = Shape(surface, block=block)
     _wound(surface, shape, as_wound=False)
-    return bool(shape.inside_out.any())
+    return np.bincount(block, shape.inside_out[shape.piece], count) > 0
 
 
 def piece_numbers(mesh: Dataset) -> Indices:

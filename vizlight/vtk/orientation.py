@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -101,17 +102,27 @@ class Shape:
     """The triangles of a surface, its connected pieces, and which of those have a border.
 
     Coincident points are connected, so that triangles that share no point can form one piece.
+    ``block`` is the number of the block of each point, where several are worked on at once: these
+    have no piece in common.
     """
 
-    def __init__(self, surface: vtkPolyData, side: NDArray[np.int8] | None = None) -> None:
+    def __init__(
+        self,
+        surface: vtkPolyData,
+        side: NDArray[np.int8] | None = None,
+        block: Indices | None = None,
+    ) -> None:
         #: Of a part of a surface: 0 for its own points, 1 for points of the next part, -1 for
         #: points of the one before. Cells belong to the part in which they begin.
         self.side = side
+        self.block = block
         self.points = places(surface)
         self.finite = finite_points(self.points)
         self.triangles = triangles(surface)
-        #: Number of edges of two faces, and of sharp ones by three limits.
+        #: Number of edges of two faces, and of sharp ones by three limits; a row for each block.
         self.edges = np.zeros(4, dtype=np.intp)
+        if block is not None:
+            self.edges = np.zeros((int(block.max(initial=-1)) + 1, 4), dtype=np.intp)
         #: Whether faces may be there twice: these are folded upon each other.
         self.doubtful = False
         self._find_directions()
@@ -120,7 +131,7 @@ class Shape:
     def _find_pieces(self, surface: vtkPolyData) -> None:
         """Find the connected pieces."""
         own = None if self.side is None else self.side == 0
-        found = topology(self.triangles, self.points, own, self._count)
+        found = topology(self.triangles, self.points, own, self._count, self.block)
         self.piece, self.open, self.alike, folded, self.same = found
         # A polygon and a strip have two triangles less than corners.
         self.triangular = (
@@ -204,9 +215,15 @@ class Shape:
             against = edges.forward[at] != edges.forward[at + 1]
             cosine = kernels.dot(self._unit.take(one, axis=1), self._unit.take(other, axis=1))
             cosine = np.where(against, cosine, -cosine)
-            found = [np.count_nonzero(full & (cosine < beyond)) for beyond in (2.0, *least)]
-            self.edges += found
+            kinds = [full & (cosine < beyond) for beyond in (2.0, *least)]
+            found = [np.count_nonzero(kind) for kind in kinds]
             self.doubtful |= bool(found[0] < len(full) or found[1])
+            if self.block is None:
+                self.edges += found
+                continue
+            of = self.block[self.triangles[one, 0]]
+            for i, kind in enumerate(kinds):
+                self.edges[:, i] += np.bincount(of[kind], minlength=len(self.edges))
 
     @cached_property
     def frame(self) -> tuple[Array, float]:
@@ -220,8 +237,10 @@ class Shape:
         largest = 0.0
         for block in _pool.blocks(len(self.points), BLOCK):
             largest = max(largest, float(np.abs(self._from_middle(block, middle)).max()))
-        # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow.
-        return middle, largest or 1.0
+        # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow; by
+        # a power of two, which rounds nothing.
+        known = 0 < largest < np.inf
+        return middle, math.ldexp(0.5, math.frexp(largest)[1]) if known else largest or 1.0
 
     def _from_middle(self, rows: Indices | Slice, middle: Array) -> Array:
         """Return the ways from the centroids of the pieces to some points."""

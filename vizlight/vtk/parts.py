@@ -13,23 +13,47 @@ from vizlight.shading.inputs import ShadingInputs, Sides
 from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
-from vizlight.vtk.normals import Sided, Told, Turned, sided_normals
+from vizlight.vtk.normals import Sided, Told, Turned, computed_normals, sided_normals
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Array, Dataset, Foreign
+    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Keywords
     from vizlight.scene import Scene, View
+    from vizlight.shading.arrays import Shading
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
+    from vizlight.vtk.batches import Batch
 
 
 class Part(NamedTuple):
-    """What one mesh is lit by: inputs of the engine, options, and its normals, None without."""
+    """What one mesh is lit by, or several at once.
+
+    Attributes
+    ----------
+    inputs : ShadingInputs
+    options : LightOptions
+    sided : Sided or None
+        Normals, None without.
+    numbers : list of int
+        Numbers of the meshes.
+    ends : ndarray of int
+        First point of each of several meshes, and the end of the last.
+    """
 
     inputs: ShadingInputs
     options: LightOptions
     sided: Sided | None
+    numbers: Sequence[int] = (0,)
+    ends: Sequence[int] | Indices = ()
+
+    def shadings(self, whole: Shading) -> Iterator[tuple[int, Shading]]:
+        """Yield the number and the light of each mesh, given that of all."""
+        if not len(self.ends):
+            yield self.numbers[0], whole
+            return
+        for i, number in enumerate(self.numbers):
+            yield number, whole.part(i, slice(*self.ends[i : i + 2]))
 
 
 def uses_normals(mesh: Dataset, options: LightOptions) -> bool:
@@ -49,11 +73,12 @@ def part_of(
     kept_normals: Callable[[Foreign], Sided | None] | None = None,
     kept_tangents: Callable[[Foreign], Array | None] | None = None,
     told: Told | None = None,
+    block: Indices | None = None,
 ) -> Part:
     """Return what one mesh is lit by; an error names the path of its block.
 
-    With ``told`` it is a part of a whole, see :mod:`vizlight.vtk.sides`. Without a view both sides
-    of an open surface are lit alike.
+    With ``told`` it is a part of a whole, see :mod:`vizlight.vtk.sides`, and with ``block`` it is
+    several, see :func:`parts_of`. Without a view both sides of an open surface are lit alike.
 
     Raises
     ------
@@ -77,6 +102,7 @@ def part_of(
                 options.facing,
                 kept=kept_normals,
                 told=told,
+                block=block,
             )
             # Lines and vertices beside faces: each point is lit as what it is, in one call of the
             # engine.
@@ -107,6 +133,36 @@ def part_of(
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
     return Part(inputs, options, sided)
+
+
+def parts_of(batch: Batch, scene: Scene, options: LightOptions) -> Iterator[Part]:
+    """Yield what several meshes that are joined are lit by, see :func:`part_of`."""
+
+    def kept(mesh: Foreign) -> Sided:
+        return computed_normals(mesh, block=batch.block, owner=batch.owner)
+
+    part = part_of(batch.mesh, "", scene, options, kept_normals=kept, block=batch.block)
+    part = part._replace(numbers=batch.numbers, ends=batch.ends)
+    sided, border = part.sided, np.ones(len(batch.numbers), dtype=np.bool_)
+    if sided is not None and options.facing == "auto" and part.inputs.two_sided:
+        border = np.bincount(batch.block, sided.open > 0) > 0
+    if border.all():
+        yield part
+        return
+    # Without a view the sides of open meshes alone are lit alike.
+    for two_sided in (False, True):
+        yield _some(part, batch, border == two_sided, two_sided=two_sided)
+
+
+def _some(part: Part, batch: Batch, chosen: Bools, *, two_sided: bool) -> Part:
+    """Return what some of several meshes are lit by."""
+    rows = np.flatnonzero(chosen[batch.block])
+    arrays: Keywords = {name: x[:][rows] for name, x in part.inputs.arrays().items()}
+    inputs = dataclasses.replace(part.inputs, two_sided=two_sided, sides=None, **arrays)
+    sided = part.sided and part.sided.of_blocks(chosen, rows)
+    numbers = np.asarray(part.numbers)[chosen].tolist()
+    ends = np.cumsum(np.append(0, np.diff(part.ends)[chosen]))
+    return part._replace(inputs=inputs, sided=sided, numbers=numbers, ends=ends)
 
 
 def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:

@@ -236,4 +236,4 @@ def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices,
 
 def creases(looks: Sequence[Look]) -> bool:
     """Return whether the sharp edges of the whole are creases."""
-    return crease_share(np.sum([one.edges for one in looks], axis=0)) > 0
+    return bool(crease_share(np.sum([one.edges for one in looks], axis=0)) > 0)

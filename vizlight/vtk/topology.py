@@ -149,16 +149,18 @@ def topology(
     points: Raw,
     own: Bools | None = None,
     visit: Callable[[SortedEdges], object] = len,
+    block: Indices | None = None,
 ) -> Topology:
     """Return the pieces of a surface.
 
     With ``own``, a mask of points, only an edge between two of these makes a border. ``visit`` is
-    called with all edges, range by range.
+    called with all edges, range by range. ``block`` is the number of the block of each point:
+    points of two blocks are apart, wherever they are.
     """
     count = len(points)
     # Half the memory where that is enough: the ends of all edges are the largest array here.
     kind = np.int32 if max(count, len(corners)) < 2**31 else np.int64
-    same = coincident(points)
+    same = coincident(points, block)
     single: list[Indices] = []
     folded: list[Indices] = []
     # What is not filled takes no memory.
@@ -205,8 +207,8 @@ def ends_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
     return keys >> 32, keys & 0xFFFFFFFF
 
 
-def _new(keys: NDArray[np.int64]) -> Bools:
-    """Return whether each of some sorted numbers is the first of its kind, and true for the end."""
+def _new(keys: Indices) -> Bools:
+    """Return whether each of some numbers differs from the one before, and true for the end."""
     new = np.ones(len(keys) + 1, dtype=np.bool_)
     np.not_equal(keys[1:], keys[:-1], out=new[1:-1])
     return new
@@ -281,38 +283,62 @@ def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
     return root[:count], root[count:]
 
 
-def coincident(points: Raw) -> Indices | None:
+def coincident(points: Raw, block: Indices | None = None) -> Indices | None:
     """Return the first point at the place of each point, None if all places differ.
 
-    Points that are not finite differ from all others.
+    Points that are not finite differ from all others, and so do those of another block.
     """
-    same = firsts(place_numbers(points))
+    number = place_numbers(points)
+    if block is not None:
+        number = mixed(number + mixed(block.astype(np.uint64)))
+    same = firsts(number)
     if same is None:
         return None
     again = np.flatnonzero(same != np.arange(len(points)))
     # Two places may have one number by chance, and NaN differs from itself: coordinates decide.
     apart = np.any(points[again] != points[same[again]], axis=1)
+    if block is not None:
+        apart |= block[again] != block[same[again]]
     same[again[apart]] = again[apart]
     return None if apart.all() else same
 
 
-def is_closed(surface: vtkPolyData) -> tuple[bool, bool]:
+def are_closed(surface: vtkPolyData, block: Indices, count: int) -> tuple[Bools, Bools]:
     """Return whether all edges have an even number of faces, and whether these are wound alike.
 
     Places make an edge. The numbers of the edges, made from the coordinates of their ends, cancel
     by pairs, and with a sign where the two faces are wound alike.
+
+    Parameters
+    ----------
+    surface : vtkPolyData
+    block : ndarray of int, shape (n_points,)
+        Number of the block of each point.
+    count : int
+        Number of blocks.
+
+    Returns
+    -------
+    closed, alike : ndarray of bool, shape (count,)
     """
     rows, number = triangles(surface), place_numbers(places(surface))
-    # By blocks and without a sort, which would hold several numbers for each edge at once.
-    odd = sums = np.uint64(0)
-    for block in _pool.blocks(len(rows), BLOCK):
-        a, b = number[rows[block].ravel()], number[rows[block][:, [1, 2, 0]].ravel()]
+    # Without a sort, which would hold several numbers for each edge at once.
+    odd, sums = np.zeros((2, count), dtype=np.uint64)
+    for part in _pool.blocks(len(rows), BLOCK):
+        a, b = number[rows[part]].ravel(), number[rows[part][:, [1, 2, 0]]].ravel()
         edges = edge_numbers(a, b)
         # The negative number in two's complement, as these integers have no sign.
         signed = np.where(a < b, edges, ~edges + np.uint64(1))
-        odd = np.bitwise_xor.reduce(edges, initial=odd)
-        sums = np.add.reduce(signed, initial=sums)
-    return bool(odd == 0), bool(sums == 0)
+        start, own = runs(block[rows[part, 0]])
+        np.bitwise_xor.at(odd, own, np.bitwise_xor.reduceat(edges, 3 * start))
+        np.add.at(sums, own, np.add.reduceat(signed, 3 * start))
+    return odd == 0, sums == 0
+
+
+def runs(numbers: Indices) -> tuple[Indices, Indices]:
+    """Return where each run of equal numbers begins, and its number."""
+    start = np.flatnonzero(_new(numbers)[:-1])
+    return start, numbers[start]
 
 
 #: Number of points or triangles that are worked on at once.
