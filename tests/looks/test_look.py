@@ -159,7 +159,7 @@ def test_a_look_is_a_page_a_mesh_and_a_movie(tmp_path):
     assert page.rstrip().endswith("</html>")
     lit = pv.read(look.save(tmp_path / "a.vtp"))
     assert {"p", "luminance"} <= set(lit.point_data)
-    with pytest.warns(UserWarning, match="the light that follows the view"):
+    with pytest.warns(UserWarning, match="the headlight as from the scene's view"):
         assert look.save(tmp_path / "a.glb").stat().st_size > 1000
     pytest.importorskip("imageio")
     with Image.open(look.save(tmp_path / "a.gif")) as movie:

@@ -16,7 +16,7 @@ from vizlight.vtk import letters
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
 
-__all__ = ["box_axes"]
+__all__ = ["box_axes", "box_edges"]
 
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
@@ -55,9 +55,7 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
     TypeError, ValueError
         If the mesh has no finite box, or a height is not positive.
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
-    box = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
+    box = _box_of(mesh)
     height, size = _check.positive("height", height), _check.positive("size", size)
     eye = _Eye(camera, height)
     parts = [part for axis in range(3) for part in _along(box, axis, eye, size)]
@@ -67,6 +65,45 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
     ids = np.concatenate([ids + start for (_, ids), start in zip(parts, starts, strict=False)])
     faces = np.column_stack([np.full(len(ids), 3), ids]).ravel()
     return pv.PolyData(np.concatenate([points for points, _ in parts]), faces)
+
+
+def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
+    """Return the edges of the box of a mesh that do not stand before it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh, whose bounding box counts.
+    camera : pyvista.Camera
+        Camera of the picture.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Lines of two points.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the mesh has no finite box.
+    """
+    box, eye = _box_of(mesh), _Eye(camera, 1.0)
+    ends = [
+        edge
+        for axis in range(3)
+        for edge in _edges(box, axis)
+        if not all(_sides_seen(box, axis, edge, eye))
+    ]
+    lines = np.column_stack([np.full(len(ends), 2), np.arange(2 * len(ends)).reshape(-1, 2)])
+    return pv.PolyData(np.concatenate(ends), lines=lines.ravel())
+
+
+def _box_of(mesh: pv.DataSet) -> Array:
+    """Return the ends of the box of a mesh along x, y and z."""
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
+    return box
 
 
 class _Eye:
@@ -106,7 +143,7 @@ class _Eye:
 
 def _along(box: Array, axis: int, eye: _Eye, size: float) -> list[tuple[Array, Indices]]:
     """Return the ticks, numbers and the name along the best edge of an axis, in parts."""
-    edges = [edge for edge in _edges(box, axis) if _is_outline(box, axis, edge, eye)]
+    edges = [edge for edge in _edges(box, axis) if len({*_sides_seen(box, axis, edge, eye)}) == 2]
     if not edges:
         return []
     # The left one of z, and the lower ones of x and y.
@@ -149,14 +186,14 @@ def _others(axis: int) -> tuple[int, int]:
     return first, second
 
 
-def _is_outline(box: Array, axis: int, edge: Array, eye: _Eye) -> bool:
-    """Return whether one of the two sides that meet at an edge is seen, and the other not."""
+def _sides_seen(box: Array, axis: int, edge: Array, eye: _Eye) -> list[bool]:
+    """Return which of the two sides that meet at an edge are seen from outside."""
     seen = []
     for other in _others(axis):
         normal = np.zeros(3)
         normal[other] = 1.0 if edge[0, other] == box[other, 1] else -1.0
         seen.append(eye.sees(edge[0], normal))
-    return seen[0] != seen[1]
+    return seen
 
 
 def _tick(place: Array, out: Array, eye: _Eye, size: float) -> tuple[Array, Indices]:

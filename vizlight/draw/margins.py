@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingCore import (
 
 from vizlight.draw.live import in_view, items
 from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
-from vizlight.draw.ticks import FEW, even_numbers, numerals_of
+from vizlight.draw.ticks import along_bar, numerals_of
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, TITLE, WORDS
 from vizlight.filters.tint import RGB
 
@@ -34,8 +34,8 @@ MARGIN, LETTERS = 0.025, 0.032
 #: Width of a bar as a share of a disc, least height of a single one as a share of its strip, and
 #: most numbers for which a bar is made longer.
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
-#: Height of a bar that lies, in letters, and most numbers below it.
-BAR_HIGH, MOST_LYING = 0.8, 9
+#: Height of a bar that lies, in letters.
+BAR_HIGH = 0.8
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
 #: height of its band in letters of keys.
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
@@ -113,7 +113,8 @@ class Margin:
             if self._keys[0].lies:
                 self._split = split[1]
             elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
-                self._beside(room, min(width, height), _box_of(renderer, data=True)[[1, 3]])
+                rows = _box_of(renderer, data=True)[[1, 3]]
+                self._beside(room, min(width, height), rows, alone=_is_map(renderer))
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
@@ -155,17 +156,17 @@ class Margin:
             text.SetInput("\n".join(lines))
             text.SetPosition(gap, y)
 
-    def _beside(self, room: tuple[float, float], short: int, rows: Array) -> None:
+    def _beside(self, room: tuple[float, float], short: int, rows: Array, *, alone: bool) -> None:
         """Put a single bar beside the data, between their rows as far as there is room."""
         (key,) = self._keys
         letters, gap = LETTERS * short, MARGIN * short
-        wide = key.fit(short, letters, room[0] - gap, 0.0, True)[0]
+        wide = key.fit(short, letters, room[0] - gap, 0.0, alone)[0]
         letters *= min((room[0] - gap) / wide, 1.0)
         low, top = np.clip(rows, gap, room[1] - gap)
         least = LEAST_BAR * room[1]
         if top - low < least:
             low, top = np.mean(rows) - least / 2, np.mean(rows) + least / 2
-        box = key.fit(short, letters, room[0] - gap, top - low, True)
+        box = key.fit(short, letters, room[0] - gap, top - low, alone)
         # What stands above the bar has to have room too.
         over = max(low - letters / 2 + box[1] - room[1], 0.0)
         high = box[1] - over
@@ -248,7 +249,7 @@ class MarginKey:
         self._whole = written(_first(mesh, TITLE))
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
-        self._marks = _marks(mesh, words, MOST_LYING if lying else FEW)
+        self._marks = _marks(mesh, words)
         ends = mesh.field_data.get(RANGE)
         low, high = (0.0, 1.0) if ends is None else (float(end) for end in ends)
         self._zero = -low / ((high - low) or 1.0)
@@ -293,11 +294,12 @@ class MarginKey:
         tall : float
             Height of a bar; 0 for that of its own.
         alone : bool
-            Whether the title of the key stands above the data.
+            Whether the title right above the data is that of the key.
         """
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        head = self._unit if alone else f"{self._title} ({self._unit})" * bool(self._title)
+        name = self._title.partition(";")[0]
+        head = self._unit if alone else f"{name} ({self._unit})" * bool(name)
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
@@ -431,7 +433,7 @@ def _first(mesh: pv.PolyData, name: str) -> str:
     return str(mesh.field_data[name][0]) if name in mesh.field_data else ""
 
 
-def _marks(mesh: pv.PolyData, words: list[str], most: int) -> list[tuple[float, str]]:
+def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     """Return the words along a bar with their shares of its height; none of a disc."""
     if len(words) == 1:
         return []
@@ -441,7 +443,7 @@ def _marks(mesh: pv.PolyData, words: list[str], most: int) -> list[tuple[float, 
     if RANGE not in mesh.field_data:
         return [(0.0, words[0]), (1.0, words[-1])]
     low, high = (float(value) for value in mesh.field_data[RANGE])
-    ticks = even_numbers(low, high, most)
+    ticks = along_bar(low, high)
     if LEVELS in mesh.field_data:
         levels = [float(level) for level in mesh.field_data[LEVELS]]
         ticks = list(zip(levels, numerals_of(levels), strict=True))

@@ -20,7 +20,7 @@ from vizlight.draw.backends import (
     probe,
     window_class,
 )
-from vizlight.draw.box_axes import box_axes
+from vizlight.draw.box_axes import box_axes, box_edges
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
@@ -53,6 +53,7 @@ __all__ = [
     "PlotterKeywords",
     "Probe",
     "box_axes",
+    "box_edges",
     "camera_on",
     "canvas",
     "choose_backend",

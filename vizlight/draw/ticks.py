@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 #: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
 FEW = 5
+#: Most numbers along a bar that has some at its ends, and length of such a bar at most, in that of
+#: its values.
+MOST, WASTE = 10, 1.08
 
 
 def even_levels(low: float, high: float, most: int = 5) -> list[float]:
@@ -51,6 +54,40 @@ def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, st
     """Return at most some round numbers within a range, and their digits; see `even_levels`."""
     levels = even_levels(low, high, most)
     return list(zip(levels, numerals_of(levels), strict=True))
+
+
+def even_ends(low: float, high: float) -> tuple[float, float]:
+    """Return the ends of a bar: round numbers just outside of a range, where they waste little.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range.
+    """
+    for most in range(FEW, MOST):
+        levels = even_levels(low, high, most)
+        if len(levels) < 2:
+            continue
+        step = levels[1] - levels[0]
+        first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+        if last - first < MOST and (last - first) * step <= WASTE * (high - low):
+            return float(f"{first * step:.12g}"), float(f"{last * step:.12g}")
+    return low, high
+
+
+def along_bar(low: float, high: float) -> list[tuple[float, str]]:
+    """Return the numbers along a bar and their digits: those at both ends too if these are round.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the bar.
+    """
+    for most in range(FEW, MOST + 1):
+        ticks = even_numbers(low, high, most)
+        if ticks and (ticks[0][0], ticks[-1][0]) == (low, high):
+            return ticks
+    return even_numbers(low, high, FEW)
 
 
 def _count(low: float, high: float, step: float) -> int:

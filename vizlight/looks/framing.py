@@ -27,6 +27,8 @@ SAMPLE = 20_000
 OPEN = 0.6
 #: Azimuths and altitudes of the eye, in degrees, among which the best one is taken.
 AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
+#: How much more a view counts in which vectors run to the right.
+RIGHTWARD = 0.1
 #: Pixels along each side of the picture in which self-occlusion is counted.
 PIXELS = 64
 #: Width over height of the place for data in a picture.
@@ -63,7 +65,8 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Ey
     contents : Contents
         What the data hold, of which it is drawn.
     shown : str, optional
-        Name of an array of one component, much of whose range should be seen.
+        Name of an array: values, much of whose range should be seen, or the vectors of a volume,
+        which should run across the picture.
     """
     if contents.flat_axis is not None:
         return _above(mesh, contents.flat_axis)
@@ -74,7 +77,16 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Ey
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
         # What lies in a slab, such as a flow between two plates, is seen across it.
         return _above(mesh, int(np.argmin(extent)))
-    return _of_points(points)
+    rows = _vectors(mesh, shown) if contents.dimension == 3 else None
+    return _of_points(points, rows)
+
+
+def _vectors(mesh: pv.DataSet, shown: str | None) -> Array | None:
+    """Return some finite vectors of the points of a mesh, None where there are none."""
+    if shown is None or shown not in mesh.point_data or mesh.point_data[shown].ndim != 2:
+        return None
+    rows = _some(np.asarray(mesh.point_data[shown], dtype=np.float64))
+    return rows[np.isfinite(rows).all(axis=1)]
 
 
 def _above(mesh: pv.DataSet, axis: int) -> Eye:
@@ -143,8 +155,8 @@ def _around(corners: Array, normals: Array, areas: Array, values: Array | None =
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
 
-def _of_points(points: Array) -> Eye:
-    """Return the eye from which points spread most."""
+def _of_points(points: Array, vectors: Array | None = None) -> Eye:
+    """Return the eye from which points spread most, and vectors run across the picture."""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
         return ISOMETRIC
@@ -153,7 +165,14 @@ def _of_points(points: Array) -> Eye:
         right, up = _plane(way)
         flat = np.stack([points @ right, points @ up], axis=1)
         wide, tall = np.subtract(*np.percentile(flat, (98, 2), axis=0))
-        spreads.append((float(wide * tall) + 1e-3 * float(wide) ** 2, way))
+        spread = float(wide * tall) + 1e-3 * float(wide) ** 2
+        if vectors is not None:
+            across = np.hypot(vectors @ right, vectors @ up).sum()
+            whole = np.linalg.norm(vectors, axis=1).sum() or 1.0
+            # Flow is read from left to right.
+            rightward = float((vectors @ right).sum() / whole)
+            spread *= float(across / whole) ** 2 * (1 + RIGHTWARD * rightward)
+        spreads.append((spread, way))
     best = max(spreads, key=lambda pair: pair[0])[1]
     return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from vizlight.draw.ticks import even_ends
+
 if TYPE_CHECKING:
     from vizlight._types import Array
 
@@ -64,13 +66,15 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     Returns
     -------
     Range
-        From the least to the largest value, unless few values far outside take much of the bar, or
-        lengths are skewed.
+        From the least to the largest value, or round numbers near them; of most values alone where
+        few others take much of the bar; of decades where lengths are skewed.
     """
     low, high = float(values.min()), float(values.max())
     first, median, third, top = np.percentile(values, (25, 50, 75, 98))
     if lengths and top > SKEWED * median > 0:
-        bottom = max(_rounded(high / DECADES, high / DECADES, np.floor), low)
+        # Ends of which a bar tells one, two or three in a decade.
+        high = next(end for end in _of_decades(high) if end >= high)
+        bottom = max(high / DECADES, low)
         return Range(bottom, high, logarithmic=True, clipped=(low < bottom, False))
     fences = (
         max(low, median + FENCE * (first - median)), min(high, median + FENCE * (third - median)),
@@ -84,12 +88,18 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
     is_few = np.mean(below | above) <= MOST_OUTSIDE
     if not step or not is_few or (freed < LEAST_FREED and not is_apart):
-        return Range(low, high)
+        return Range(*even_ends(low, high))
     ends = (
         _rounded(fences[0], step, np.floor) if cut[0] else low,
         _rounded(fences[1], step, np.ceil) if cut[1] else high,
     )
     return Range(*ends, clipped=cut, apart=is_apart)
+
+
+def _of_decades(value: float) -> list[float]:
+    """Return the round numbers of the decade of a value, and the first of the next."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return [float(f"{digit * power:.6g}") for digit in (1, 2, 3, 5, 10)]
 
 
 def _rounded(value: float, step: float, way: np.ufunc) -> float:

@@ -58,6 +58,11 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
     ``"shadow"`` a lamp over the left shoulder.
     """
+    if question == "value":
+        # Colours of data are read best where a lamp at the eye dims steep places alone, and little.
+        lights = [Step("", "vizlight.Light.headlight")]
+        material = Step("", "vizlight.Material", ambient=0.5, diffuse=0.5)
+        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question in PRESETS:
         return Step("scene", f"vizlight.presets.{question}", view)
     if question == "none":

@@ -166,8 +166,15 @@ class Drawing:
 
     @property
     def of_turns(self) -> Drawing:
-        """Drawing for a movie of a turn: without words that face one eye."""
-        kept = [layer for layer in self.layers if layer.mesh.path != "render.box_axes"]
+        """Drawing for a movie of a turn: with whole boxes, and no words that face one eye."""
+        kept = [
+            dataclasses.replace(layer, mesh=box)
+            if layer.mesh.path == "render.box_edges"
+            and isinstance(box := layer.mesh.arguments[0], Step)
+            else layer
+            for layer in self.layers
+            if layer.mesh.path != "render.box_axes"
+        ]
         return dataclasses.replace(self, layers=kept)
 
     def suffix(self) -> str:
@@ -246,7 +253,7 @@ class Case:
             Step of the camera, set by :meth:`camera` of what is in a box.
         """
         edges: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
-        layers = [Layer(box, edges, live=False)]
+        layers = [Layer(Step("", "render.box_edges", box, camera), edges, live=False)]
         if self.wishes.frame is None:
             axes = self.wishes.box_axes(box, camera)
             ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
@@ -258,7 +265,7 @@ class Case:
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
         array = self.array
-        shown = array.name if array is not None and array.role in ("values", "heights") else None
+        shown = None if array is None or array.role in ("kinds", "colors") else array.name
         return eye_of(mesh.run(), self.contents, shown)
 
     @cached_property
