@@ -7,13 +7,13 @@ import pytest
 import pyvista as pv
 from PIL import Image, ImageDraw
 from scipy.ndimage import gaussian_filter
+from sheets import seen_as
 
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
 from vizlight.draw.live import matrix_of
 from vizlight.observers import crossings
-from vizlight.observers.eye import SeenPicture
 from vizlight.observers.lines import JUMP, Segments
 
 pytestmark = pytest.mark.opengl
@@ -309,8 +309,8 @@ def test_borders_that_differ_by_three_deviations_tell_the_nearer_line(gap, told)
     across, along = (slice(38, 42), slice(56, 65)) if gap > 0 else (slice(35, 46), slice(58, 62))
     colors[across, along, 0] -= abs(gap)
     colors[38:42, 58:62, 0] = 50.0
-    seen = SeenPicture(colors, np.ones((80, 120, 3)), np.zeros(3))
+    seen = seen_as(colors)
     assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [told]
     # A border on one side is none.
     colors[40:, :60, 0] = colors[:40, :60, 0] = colors[:40, :, 0] = 50.0
-    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [0]
+    assert crossings.told(found_in(lines), lines, seen_as(colors), 2.3).tolist() == [0]

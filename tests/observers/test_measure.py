@@ -348,8 +348,8 @@ def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
     colors = np.zeros((101, 3))
     colors[:, 1] = np.linspace(0, how["wide"], 101)
     place = SimpleNamespace(
-        here=SimpleNamespace(points=np.zeros((1, 3))), by_form=how["by_form"],
-        part=SimpleNamespace(values=how["values"]),
+        here=SimpleNamespace(points=np.zeros((1, 3))),
+        part=SimpleNamespace(values=how["values"], by_form=how["by_form"]),
         colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
     )  # fmt: skip
     reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
@@ -359,8 +359,9 @@ def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
 def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
     random = np.random.default_rng(0)
     place = SimpleNamespace(
-        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=None),
-        by_form=False, colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
+        here=SimpleNamespace(points=np.zeros((1, 3))),
+        part=SimpleNamespace(values=None, by_form=False),
+        colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
         unit=np.full(64, 0.5),
     )  # fmt: skip
     for bits, error, unread in ((0.5, 5, 0), (0.2, 5, 1), (0.5, 42, 1), (0.5, 40, 0)):

@@ -175,7 +175,7 @@ def _straight(lines: Segments, at: Array, one: Indices, other: Indices) -> Bools
 def _read(seen: SeenPicture, places: Array) -> Array:
     """Return what the eye sees at places, shape (N, 3) in CIELAB."""
     column, row = np.floor(places).astype(np.intp).T
-    return np.asarray(seen.colors[row, column])
+    return seen.colors_at(row, column)
 
 
 def _number(lines: Segments, places: Array) -> Indices:

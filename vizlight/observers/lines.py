@@ -191,7 +191,7 @@ def _window(eye: Eye) -> int:
     return max(1, round(WINDOW / 60 * eye.pixels_per_degree))
 
 
-def grain_of(seen: SeenPicture, eye: Eye, random: np.random.Generator) -> Array:
+def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     """Return the structure that a reader sees around each pixel: the grain of marks and textures.
 
     It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
@@ -204,14 +204,15 @@ def grain_of(seen: SeenPicture, eye: Eye, random: np.random.Generator) -> Array:
         What the eye sees of the picture.
     eye : Eye
         Eye, whose noise is added to each pixel.
-    random : numpy.random.Generator
-        Source of the noise.
+    seed : int
+        Seed of the noise.
 
     Returns
     -------
     ndarray, shape (H, W, 3)
         Mean products of the changes to the right and down: xx, xy, yy.
     """
+    random = np.random.default_rng(seed)
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
     # A Gaussian of the variance of the window.
     spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)

@@ -118,11 +118,6 @@ class Places:
     thing: Indices
     length: Array | None = None
 
-    @property
-    def by_form(self) -> bool:
-        """Whether marks tell directions by their form, since colours do not by their hue."""
-        return self.part.kind == "line" or not self.part.lit
-
     def take(self, rows: Bools | Indices) -> Places:
         """Return some of the places."""
         return dataclasses.replace(
@@ -206,7 +201,8 @@ def measure(
     ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
-    grain = grain_of(seen, eye, np.random.default_rng(seed))
+    has_marks = any(part.by_form and part.inputs.tangents is not None for part in parts)
+    grain = grain_of(seen, eye, seed) if has_marks else np.zeros_like(seen.colors)
     has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
@@ -471,7 +467,7 @@ class _Reader:
         colors = np.concatenate([one.colors.lab for one in groups])
         if float(np.median(deviation)) > 3 * self.eye.noise:
             return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
-        if question == "direction" and groups[0].by_form:
+        if question == "direction" and groups[0].part.by_form:
             return "marks are too fine or too faint, cross, or do not follow the data"
         # The standard deviation by the 10 % and 90 % quantiles, but for places at borders.
         spread = np.ptp(np.quantile(colors, (0.1, 0.9), axis=0), axis=0) / 2.563
@@ -482,8 +478,8 @@ class _Reader:
 
     def direction(self) -> Direction | None:
         """Return which way tangents run in the picture, by hue or by form: what tells more."""
-        by_hue = self._with("direction", lambda p: not p.by_form and p.here.has_one_tangent)
-        some = [p for p in self.groups if p.by_form and p.here.has_one_tangent]
+        by_hue = self._with("direction", lambda p: not p.part.by_form and p.here.has_one_tangent)
+        some = [p for p in self.groups if p.part.by_form and p.here.has_one_tangent]
         by_form = _kept(some, lambda p: p.here.valid)
         start = float(self.random.uniform(0.0, 180.0)) if by_hue or by_form else 0.0
         ways = []
@@ -496,7 +492,7 @@ class _Reader:
                     groups,
                     [
                         readers.read_grain(p.grain, p.course, start)
-                        if p.by_form
+                        if p.part.by_form
                         else readers.read_direction(p.here, self.middle, p.colors, start)
                         for p in groups
                     ],
@@ -533,23 +529,14 @@ class _Reader:
         groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
         if not groups:
             return None
-
-        by_axes = {
-            i: readers.read_axes(p.here, self.middle, p.colors)
-            for i, p in enumerate(groups)
+        ways = [
+            [readers.read_axes(p.here, self.middle, p.colors)] * len(readers.SHARES)
             if p.part.by_axes
-        }
+            else readers.read_heading(p.here, self.middle, p.colors)
+            for p in groups
+        ]
         # How much darker than the key lines are drawn is seen by the whole picture.
-        ways = (
-            [
-                by_axes[i]
-                if i in by_axes
-                else readers.read_heading(p.here, self.middle, p.colors, share)
-                for i, p in enumerate(groups)
-            ]
-            for share in readers.SHARES
-        )
-        found = max(ways, key=readers.told)
+        found = max(map(list, zip(*ways, strict=True)), key=readers.told)
         none = np.full(sum(len(p.here) for p in groups), np.nan)
         common = self._common("heading", groups, found, none)
         return Heading(**_angles(found, common), **common)

@@ -242,6 +242,11 @@ class Part:
     by_axes: bool = False
 
     @property
+    def by_form(self) -> bool:
+        """Whether marks tell directions by their form, since colours do not by their hue."""
+        return self.kind == "line" or not self.lit
+
+    @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
         if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):

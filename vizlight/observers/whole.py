@@ -22,6 +22,7 @@ from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure, toward
+from vizlight.observers.pixels import frame_of
 from vizlight.observers.samples import GLYPH, of_glyphs, part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
@@ -92,10 +93,9 @@ def legibility_of(
     """
     if not plotter.camera_set:
         plotter.renderer.view_isometric(render=False)
-    # PyVista takes the frame that it has, even if the camera has moved since.
+    # PyVista's own picture may be older than the camera.
     assert plotter.render_window is not None
-    plotter.render_window.Render()
-    whole = np.asarray(plotter.screenshot(return_img=True))[..., :3] / 255.0
+    whole = frame_of(plotter.render_window) / 255.0
     renderer = plotter.renderer
     (left, low), (wide, high) = renderer.GetOrigin(), renderer.GetSize()
     top = len(whole) - low - high
