@@ -27,6 +27,7 @@ from vizlight import presets
 from vizlight.draw.cameras import camera_on
 from vizlight.observers import measure, readers
 from vizlight.observers.eye import Eye, linear
+from vizlight.observers.lines import Segments
 from vizlight.observers.pixels import Pixels
 
 pytestmark = pytest.mark.opengl
@@ -296,6 +297,20 @@ def test_a_reader_of_a_surface_looks_between_the_lines_on_it():
     alone, number = pixels_of(np.zeros((4, 4), dtype=int))
     found = measure._between(alone, number, 0, number[1], Eye(60.0))
     np.testing.assert_array_equal(found, [[1] * 4, range(4)])
+
+
+def test_a_line_is_seen_in_pieces_of_eight_arc_minutes():
+    pixels, number = pixels_of(np.array([[0] * 60 + [1] * 4]))
+    shown = np.where(number < 60, 0, -1)
+    line = Segments(
+        shown, np.array([[0.0, 0.5]]), np.array([[60.0, 0]]), *np.zeros((1, 1)),
+        np.zeros(1, dtype=int), np.ones(1), np.zeros(1),
+    )  # fmt: skip
+    parts = [SimpleNamespace(kind=kind) for kind in ("line", "surface")]
+    # A pixel is an arc minute.
+    thing = measure._things(pixels, parts, line, None, Eye(60.0))
+    assert np.unique(thing[:60], return_counts=True)[1].tolist() == [4, *[8] * 7]
+    np.testing.assert_array_equal(thing[60:], measure.NO_THING)
 
 
 def test_the_pixel_beside_is_of_the_same_mesh():

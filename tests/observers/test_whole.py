@@ -40,6 +40,17 @@ def test_a_moved_actor_is_read_like_a_moved_mesh(question, how):
     assert figures[0].median == pytest.approx(figures[1].median, rel=0.1)
 
 
+def test_values_without_light_are_left_out():
+    mesh = sheet()
+    mesh["swirl"][np.asarray(mesh.points)[:, 0] < 0] = 0
+    with pytest.warns(UserWarning, match="could not be lit"):
+        plotter, _ = plotter_of(mesh, **DIRECTION, scalars="height", show_scalar_bar=False)
+    found = plotter.vizlight.legibility(**HOW)
+    plotter.close()
+    assert found.value.samples == pytest.approx(HOW["samples"] / 2, rel=0.1)
+    assert any("have no value" in note for note in found.notes)
+
+
 def test_position_and_scale_of_plain_colors_are_read():
     mesh = sheet()
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
@@ -273,9 +284,9 @@ def mapped(plotter, *, scaled=False):
     mapper.SetOrientationArray("swirl")
     mapper.SetScaleModeToNoDataScaling()
     mapper.SetScaleFactor(0.22)
+    mapper.SetScaleArray("speed")
     if scaled:
         mapper.SetScaleModeToScaleByMagnitude()
-        mapper.SetScaleArray("speed")
     mapper.ScalarVisibilityOff()
     actor = vtkActor()
     actor.SetMapper(mapper)
@@ -312,6 +323,8 @@ def test_a_moved_actor_of_glyphs_is_read_where_it_is(lit):
     """Glyphs that are turned by 70 degrees before they become data, and back by their actor."""
     glyphs = arrows(sheet(9))
     turned = glyphs.rotate_z(70, inplace=False, transform_all_input_vectors=True)
+    # VTK turns active vectors by itself.
+    turned.set_active_vectors(None)
 
     def add(plotter):
         how = {"scene": vizlight.Scene()} if lit else {}
@@ -342,7 +355,8 @@ def read_texture(pattern, *, vectors="swirl", turn=0.0):
     mesh = sheet(40)
     # A swirl about the middle of a side looks different when it is turned.
     mesh["aside"] = mesh["swirl"] - (0, 1, 0)
-    mesh.active_texture_coordinates = (np.asarray(mesh.points)[:, :2] + 1) / 2
+    corners = {"origin": (-1, -1, 0), "point_u": (1, -1, 0), "point_v": (-1, 1, 0)}
+    mesh.texture_map_to_plane(**corners, inplace=True)
     mesh.point_data.active_vectors_name = vectors
     right, up = np.meshgrid(*2 * [np.linspace(-1, 1, 512)])
     gray = (127 + 100 * pattern(right, up)).astype(np.uint8)
