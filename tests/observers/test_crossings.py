@@ -322,7 +322,7 @@ def test_borders_that_differ_by_three_deviations_tell_the_nearer_line(gap, told)
     colors[across, along, 0] -= abs(gap)
     colors[38:42, 58:62, 0] = 50.0
     seen = seen_as(colors)
-    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [told]
+    assert crossings.answers(found_in(lines), lines, seen, 2.3).tolist() == [told]
     # A border on one side is none.
     colors[40:, :60, 0] = colors[:40, :60, 0] = colors[:40, :, 0] = 50.0
-    assert crossings.told(found_in(lines), lines, seen_as(colors), 2.3).tolist() == [0]
+    assert crossings.answers(found_in(lines), lines, seen_as(colors), 2.3).tolist() == [0]

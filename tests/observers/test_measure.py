@@ -323,6 +323,15 @@ def test_the_pixel_beside_is_of_the_same_mesh():
         np.testing.assert_array_equal(found, expected)
 
 
+def test_values_have_their_places_on_a_bar():
+    table = pv.LookupTable("viridis", scalar_range=(0.1, 1000))
+    values = np.array([-1, 0.1, 1, 100, 1e5])
+    even = measure._shares(table, values)
+    np.testing.assert_allclose(even, [0, 0, 0.9 / 999.9, 99.9 / 999.9, 1], atol=1e-12)
+    table.log_scale = True
+    np.testing.assert_allclose(measure._shares(table, values), [0, 0, 0.25, 0.75, 1], atol=1e-12)
+
+
 def test_angles_are_a_share_and_a_median_unless_they_are_chance():
     error = np.array([2.0, 10.0, 11.0, 40.0])
     found = [readers.Reading(part, None, 8, part, None) for part in (error[:1], error[1:])]

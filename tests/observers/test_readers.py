@@ -172,9 +172,9 @@ def reading_of(logarithms, right):
 def test_what_all_places_have_in_common_is_not_told():
     right = np.arange(64) % 8
     sure = np.where(np.eye(8)[right] > 0, 0.0, -50.0)
-    assert abs(readers.told([reading_of(sure, right)]) - 3) < 0.1
+    assert abs(readers.bits_told([reading_of(sure, right)]) - 3) < 0.1
     alike = np.zeros(64, dtype=int)
-    assert readers.told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
+    assert readers.bits_told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
     assert readers.information([reading_of(sure[:1].repeat(64, 0), alike)]) > 2.9
 
 
@@ -348,7 +348,7 @@ def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=MATTE)
     normals, tangents = np.array([[0, 0, 1.0], [0, 0, -1]]), np.tile([1.0, 0, 0], (2, 1))
     sample = places(scene, tangents, normals)
-    given = sample.given(sample.tangents, normals)
+    given = sample.inputs(sample.tangents, normals)
     assert given.normals is None
     np.testing.assert_allclose(sample.light(sample.tangents, normals), 0.9)
     options = dataclasses.replace(sample.options, conditioned=True)
@@ -368,12 +368,12 @@ def test_a_grain_is_read_as_far_as_it_is_one():
     }
     # Candidates are a degree apart; the height of a Gaussian of 3.7 degrees is 4.28 bits above 180.
     assert found["sure"].error.max() < 0.51
-    assert readers.told([found["sure"]]) == pytest.approx(4.25, abs=0.02)
-    assert 3 < readers.told([found["half"]]) < 3.5
-    assert readers.told([found["none"]]) < 0.01
+    assert readers.bits_told([found["sure"]]) == pytest.approx(4.25, abs=0.02)
+    assert 3 < readers.bits_told([found["half"]]) < 3.5
+    assert readers.bits_told([found["none"]]) < 0.01
     across = readers.read_grain(-np.exp(2j * np.radians(angle)), angle, 0.3)
     assert across.error.min() > 89
-    assert readers.told([across]) == 0
+    assert readers.bits_told([across]) == 0
 
 
 def test_dark_colours_are_known_less_than_the_bright_ones_around_them():

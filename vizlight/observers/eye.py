@@ -24,8 +24,8 @@ WHITE = XYZ.sum(axis=1)
 #: Opponent channels of XYZ: light and dark, red and green, blue and yellow (Poirson and Wandell
 #: 1993, as Zhang and Wandell 1997 use them).
 POIRSON = np.array([[0.279, 0.72, -0.107], [-0.449, 0.29, -0.077], [0.086, -0.59, 0.501]])
-#: The same without what the channels of chroma have of gray: filtered by themselves they would give
-#: gray edges a hue (Johnson, Song, Montag and Fairchild, Color Res. Appl. 35, 2010).
+#: The same with gray taken out of both channels of chroma, whose other filters would give gray
+#: edges a hue (Johnson, Song, Montag and Fairchild, Color Res. Appl. 35, 2010).
 OPPONENT = POIRSON - np.outer([0, *(POIRSON[1:] @ WHITE)], POIRSON[0]) / (POIRSON[0] @ WHITE)
 #: Weights and spreads in degrees of the Gaussians whose sum filters each channel (Zhang and Wandell
 #: 1997, table 1).
@@ -125,16 +125,16 @@ class Eye:
         return np.asarray((rows * weight / weight.sum()) @ columns.T)
 
     def share(self, width: float) -> Array:
-        """Return the share that a disc of some pixels has of each channel at its middle.
+        """Return how much of each channel at the middle of a disc is from the disc itself.
 
-        The integral of the filter over it, as :meth:`filtered` has it.
+        It is the integral of the filter of :meth:`filtered` over a disc of some pixels.
         """
-        found = []
+        shares = []
         for channel in FILTERS:
-            own = ((width / 2 / self.pixels_per_degree / spread) ** 2 for _, spread in channel)
-            shares = sum(-w * math.expm1(-x) for (w, _), x in zip(channel, own, strict=True))
-            found.append(shares / sum(weight for weight, _ in channel))
-        return np.array(found)
+            squares = ((width / 2 / self.pixels_per_degree / spread) ** 2 for _, spread in channel)
+            share = sum(-w * math.expm1(-x) for (w, _), x in zip(channel, squares, strict=True))
+            shares.append(share / sum(weight for weight, _ in channel))
+        return np.array(shares)
 
     def look(self, picture: Array, drawn: Bools) -> SeenPicture:
         """Return what the eye sees of a picture.

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 ANGLES = 180
 #: Least length of a unit tangent in the picture whose direction there is read.
 SHORTEST = 0.35
-#: Logarithm of the likelihood of a course along a grain along which nothing changes, to that of an
-#: even grain: a posterior of 3.7 degrees, which the sharpness of a belief makes wider.
+#: Logarithm of the likelihood of a course along a perfect grain, over that without any grain: a
+#: posterior of 3.7 degrees, which a lower sharpness makes wider.
 BELIEF = 60.0
 #: Number of classes of a magnitude, largest number of classes of a signal, and least number of
 #: places in each of the latter. With 128 places in 32 classes noise alone would tell 1.8 bits.
@@ -93,19 +93,19 @@ def colors_at(
     much as colours differ in the picture, for all that is drawn but ``share``, its own share of
     each channel. Lines run beside others like them.
     """
-    found = seen.colors_at(row, column)
-    noisy = found + random.normal(0.0, noise, found.shape)
+    mixed = seen.colors_at(row, column)
+    noisy = mixed + random.normal(0.0, noise, mixed.shape)
     cover = np.maximum(seen.cover[row, column], LEAST_COVER)
     channels = xyz_of_lab(noisy) @ OPPONENT.T
     alone = (channels - (1 - cover) * seen.ground) / cover
-    own = lab_of_opponent(alone)
+    colors = lab_of_opponent(alone)
     # CIELAB is steeper in dark colours, by the power 2/3 of luminance that lightness is from.
-    steeper = np.maximum((found[:, :1] + 16) / (own[:, :1] + 16), 1.0) ** 2
+    steeper = np.maximum((mixed[:, :1] + 16) / (colors[:, :1] + 16), 1.0) ** 2
     deviation = math.hypot(noise, ROUNDING) / np.minimum(cover, 1.0) * steeper
     if share is not None:
         beside = np.clip(1 - share / cover, 0.0, 1.0)
-        deviation = np.hypot(deviation, beside * own.std(axis=0))
-    return Colors(own, deviation)
+        deviation = np.hypot(deviation, beside * colors.std(axis=0))
+    return Colors(colors, deviation)
 
 
 class Reading(NamedTuple):
@@ -116,12 +116,12 @@ class Reading(NamedTuple):
     error : ndarray, shape (M,)
         Error of each answer.
     truth : ndarray, shape (S, M)
-        Probability that the reader gives the right candidate, for each sharpness.
+        Probability that the reader gives to the right candidate, for each sharpness.
     candidates : int
         Number of candidates.
     other_error, other_truth : ndarray
-        The same for what is right at another place, at random: what guessing gives, since all data
-        may be alike.
+        The same, compared with the data of other places, at random: what guessing gives where data
+        are alike.
     """
 
     error: Array
@@ -210,23 +210,25 @@ def _compared(
 def information(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of candidates that are equally likely before.
 
-    It is ``log2(A) + E[log2(q)]``, q the probability that the reader gives the right one of A
+    It is ``log2(A) + E[log2(q)]``, q the probability that the reader gives to the right one of A
     candidates: what a reader believes counts only as far as it is true (logarithmic score, Good
     1952). The reader knows how far the picture is to be trusted, so that the best sharpness and
     the best share of lapses are taken; with lapses alone the bits are 0.
     """
     best = 0.0
     for level in range(len(SHARPNESS)):
-        gains = [one.candidates * one.truth[level] for one in readings]
+        gains = [reading.candidates * reading.truth[level] for reading in readings]
         gain = np.concatenate(gains)
         for lapse in LAPSES:
             best = max(best, float(np.log2((1 - lapse) * gain + lapse).mean()))
     return best
 
 
-def told(readings: list[Reading]) -> float:
+def bits_told(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of its places, beyond what all places have in common."""
-    return max(0.0, information(readings) - information([one.elsewhere for one in readings]))
+    return max(
+        0.0, information(readings) - information([reading.elsewhere for reading in readings])
+    )
 
 
 def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) -> Reading:
@@ -299,8 +301,8 @@ def _drawn(logarithms: Array) -> Indices:
     """Return the likeliest candidate of each place; of those that are alike the middle one."""
     best = logarithms >= logarithms.max(axis=1, keepdims=True) - 1e-9
     rank = np.cumsum(best, axis=1)
-    found: Indices = np.argmax(rank >= (rank[:, -1:] + 1) // 2, axis=1)
-    return found
+    middle: Indices = np.argmax(rank >= (rank[:, -1:] + 1) // 2, axis=1)
+    return middle
 
 
 def course(sample: Sample) -> Array:
@@ -602,8 +604,8 @@ def ranked_error(magnitude: Array, signal: Array) -> Array:
     rank = (ranks(magnitude) - 0.5) / len(magnitude)
     count = min(SIGNALS, max(2, len(signal) // EACH))
     bounds = np.unique(np.quantile(signal, np.linspace(0, 1, count + 1)[1:-1]))
-    own = np.searchsorted(bounds, signal)
+    label = np.searchsorted(bounds, signal)
     answers = np.zeros(len(bounds) + 1)
-    for number in np.unique(own):
-        answers[number] = np.median(rank[own == number])
-    return np.abs(answers[own] - rank)
+    for number in np.unique(label):
+        answers[number] = np.median(rank[label == number])
+    return np.abs(answers[label] - rank)
