@@ -109,8 +109,8 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
 def answers(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: float) -> Array:
     """Return which line a reader takes for the nearer one: 1 that, -1 the other, 0 neither.
 
-    It is the line whose borders are seen on both sides of it: they differ by 3 deviations of the
-    noise at least, and by half as much more than the borders of the other line.
+    It is the line whose borders are seen on both sides: differences of 3 deviations of the noise at
+    least, and by half as much more than at the borders of the other.
 
     Parameters
     ----------
