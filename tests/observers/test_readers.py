@@ -1,6 +1,7 @@
 """Readers give the answers that are known beforehand."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -327,6 +328,15 @@ def test_a_channel_of_halves_tells_a_bit_and_equal_ranks_are_shared():
     np.testing.assert_allclose(error, np.abs(x % 0.5 - 0.25), atol=2e-4)
 
 
+def test_candidates_of_planes_have_two_tangents_across_the_normal():
+    normals, tangents = readers.candidates(30, 2, 0.3)
+    axes = dict(zip(("right", "up", "eye"), np.eye(3)[:, np.newaxis].repeat(60, 1), strict=True))
+    place = SimpleNamespace(tangents=np.zeros((60, 2, 3)), light=lambda *given: given, **axes)
+    frames, facing = readers._ball(place, normals, tangents)
+    whole = np.concatenate([frames, facing[:, np.newaxis]], axis=1)
+    np.testing.assert_allclose(whole @ whole.transpose(0, 2, 1), [np.eye(3)] * 60, atol=1e-12)
+
+
 def test_lines_along_the_axes_are_read_whichever_way_they_run():
     turn, slope = np.radians([0.0, 179.9, 90.0, 45.0]), np.radians([30.5, -20.5, 89.5, 0.5])
     ways = np.stack(
@@ -387,7 +397,7 @@ def test_dark_colours_are_known_less_than_the_bright_ones_around_them():
     np.testing.assert_allclose(found.lab[:, 0], 116 * np.cbrt(y) - 16, atol=1e-6)
     steeper = ((lab(np.full(3, 0.9))[0] + 16) / (116 * np.cbrt(y))) ** 2
     np.testing.assert_allclose(found.deviation, eye.ROUNDING / 0.5 * steeper, rtol=1e-6)
-    # What is beside a point that has a quarter of the light adds half of what colours differ.
-    some = readers.colors_at(seen, *at, np.random.default_rng(0), 0.0, np.full(3, 0.25))
-    own = found.deviation**2 + (0.5 * found.lab.std(axis=0)) ** 2
+    # What is beside a point that has an eighth of the light adds 3/4 of what colours differ.
+    some = readers.colors_at(seen, *at, np.random.default_rng(0), 0.0, np.full(3, 0.125))
+    own = found.deviation**2 + (0.75 * found.lab.std(axis=0)) ** 2
     np.testing.assert_allclose(some.deviation**2, own, rtol=1e-6)
