@@ -398,6 +398,11 @@ def test_dark_colours_are_known_less_than_the_bright_ones_around_them():
     steeper = ((lab(np.full(3, 0.9))[0] + 16) / (116 * np.cbrt(y))) ** 2
     np.testing.assert_allclose(found.deviation, eye.ROUNDING / 0.5 * steeper, rtol=1e-6)
     # What is beside a point that has an eighth of the light adds 3/4 of what colours differ.
-    some = readers.colors_at(seen, *at, np.random.default_rng(0), 0.0, np.full(3, 0.125))
+    channels = eye.opponent(np.array([[[0.9] * 3, [0.8] * 3]]))
+    seen = eye.SeenPicture(channels, seen.cover, seen.ground)
+    found, some = (
+        readers.colors_at(seen, *at, np.random.default_rng(0), 0.0, share)
+        for share in (None, np.full(3, 0.125))
+    )
     own = found.deviation**2 + (0.75 * found.lab.std(axis=0)) ** 2
     np.testing.assert_allclose(some.deviation**2, own, rtol=1e-6)
