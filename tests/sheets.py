@@ -5,6 +5,7 @@ import pyvista as pv
 
 from vizlight import Material, Scene, presets
 from vizlight.draw.cameras import camera_on
+from vizlight.observers.eye import OPPONENT, SeenPicture, xyz_of_lab
 
 SIZE = (360, 240)
 HOW = {"samples": 768, "size_mm": 30}
@@ -61,3 +62,8 @@ def drawn_plain(mesh, **how):
     picture, camera = plotter.screenshot(return_img=True) / 255, plotter.camera.copy()
     plotter.close()
     return picture, camera
+
+
+def seen_as(colors):
+    """Return a picture that is seen in colours of CIELAB, all of which is drawn."""
+    return SeenPicture(xyz_of_lab(colors) @ OPPONENT.T, np.ones_like(colors), np.zeros(3))

@@ -7,13 +7,13 @@ import pytest
 import pyvista as pv
 from PIL import Image, ImageDraw
 from scipy.ndimage import gaussian_filter
+from sheets import seen_as
 
 import vizlight
 from vizlight import presets
 from vizlight.draw.cameras import camera_on
 from vizlight.draw.live import matrix_of
 from vizlight.observers import crossings
-from vizlight.observers.eye import SeenPicture
 from vizlight.observers.lines import JUMP, Segments
 
 pytestmark = pytest.mark.opengl
@@ -203,6 +203,18 @@ def test_lines_that_bend_at_their_crossing_are_left_out():
         assert (0 if found is None else found.samples) == count
 
 
+@pytest.mark.parametrize(("bend", "straight"), [(-35, False), (-25, True), (25, True), (35, False)])
+def test_lines_turn_by_thirty_degrees_at_most_beside_a_crossing(bend, straight):
+    """A line bends 3 pixels beyond the other one; 6.5 are looked at."""
+    after = 60 * np.array([np.cos(np.radians(bend)), np.sin(np.radians(bend))])
+    starts, ways = np.array([[0.0, 40], [60, 40], [57, 0]]), np.array([[60.0, 0], after, [0, 80]])
+    along, line = np.array([0, 60, JUMP]), np.array([0, 0, 1])
+    shown = np.full((80, 120), -1)
+    lines = Segments(shown, starts, ways, along, line, np.full(3, 3.0), np.zeros(3))
+    pair = np.array([0]), np.array([2])
+    assert crossings._straight(lines, np.array([[57.0, 40]]), *pair).tolist() == [straight]
+
+
 def test_a_line_that_crosses_itself_is_asked():
     turn = np.linspace(0, 2 * np.pi, 400)[:-2]
     knot = np.stack(
@@ -309,8 +321,8 @@ def test_borders_that_differ_by_three_deviations_tell_the_nearer_line(gap, told)
     across, along = (slice(38, 42), slice(56, 65)) if gap > 0 else (slice(35, 46), slice(58, 62))
     colors[across, along, 0] -= abs(gap)
     colors[38:42, 58:62, 0] = 50.0
-    seen = SeenPicture(colors, np.ones((80, 120, 3)), np.zeros(3))
-    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [told]
+    seen = seen_as(colors)
+    assert crossings.answers(found_in(lines), lines, seen, 2.3).tolist() == [told]
     # A border on one side is none.
     colors[40:, :60, 0] = colors[:40, :60, 0] = colors[:40, :, 0] = 50.0
-    assert crossings.told(found_in(lines), lines, seen, 2.3).tolist() == [0]
+    assert crossings.answers(found_in(lines), lines, seen_as(colors), 2.3).tolist() == [0]

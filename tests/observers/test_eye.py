@@ -85,6 +85,10 @@ def test_what_is_drawn_covers_a_share_of_what_is_seen_and_the_rest_is_ground():
     picture[:, 20:], drawn[:, 20:] = 0.75, True
     seen = Eye(60.0).look(picture, drawn)
     np.testing.assert_allclose(seen.ground, eye.opponent(np.full(3, 0.25)), atol=1e-12)
+    # A title or a key on the background is not the background.
+    titled = picture.copy()
+    titled[:5, :20] = 0.9
+    np.testing.assert_array_equal(Eye(60.0).look(titled, drawn).ground, seen.ground)
     np.testing.assert_allclose(seen.cover[:, 19] + seen.cover[:, 20], 1, atol=1e-9)
     assert np.all(np.diff(seen.cover[5, 12:28, 0]) > 0)
     whole = Eye(60.0).look(picture, np.ones((40, 40), dtype=bool))

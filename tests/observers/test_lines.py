@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import pyvista as pv
-from sheets import arrows, drawn_plain, rings, sheet
+from sheets import arrows, drawn_plain, rings, seen_as, sheet
 
 import vizlight
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.eye import Eye, SeenPicture
+from vizlight.observers.eye import Eye
 from vizlight.observers.lines import (
     JUMP,
     Glyphs,
@@ -184,7 +184,7 @@ def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
         number, np.array([[15.0, 20.5]]), np.array([[90.0, 0]]), np.zeros(1),
         np.zeros(1, dtype=int), np.full(1, 3.0), np.array([float(ahead)]),
     )  # fmt: skip
-    seen = SeenPicture(colors, np.ones((40, 120, 3)), np.zeros(3))
+    seen = seen_as(colors)
     # A window of a pixel: 8 arc minutes.
     found = strokes_of(lines, seen, Eye(7.5))
     # Middles of the two outer thirds are two thirds of the stroke apart.
@@ -196,7 +196,7 @@ def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
     # Surroundings of 8 pixels, 4 windows of 2, have darker ground beside the last third: 16 of 40
     # in the mean of the three rows of the stroke.
     colors[:18, 60:, 0] -= 40
-    wide = strokes_of(lines, seen, Eye(15))
+    wide = strokes_of(lines, seen_as(colors), Eye(15))
     np.testing.assert_allclose(wide.light, [36 * ahead], atol=0.7)
     none = lines._replace(ahead=np.zeros(1))
     assert len(strokes_of(none, seen, Eye(7.5)).ink) == 0
@@ -214,7 +214,7 @@ def test_the_round_end_of_a_stroke_belongs_to_its_end():
     )  # fmt: skip
     # The ground is as the stroke: only the step within the first third of 20 pixels is seen.
     colors[number < 0] = (0, 0, 0)
-    found = strokes_of(lines, SeenPicture(colors, np.ones((40, 120, 3)), np.zeros(3)), Eye(7.5))
+    found = strokes_of(lines, seen_as(colors), Eye(7.5))
     np.testing.assert_allclose(found.light, [30], atol=1e-9)
 
 
@@ -287,10 +287,10 @@ def test_glyphs_of_another_field_are_chance():
 def test_stripes_have_their_course_and_shading_has_none(turn):
     right, down = np.meshgrid(np.arange(64.0), np.arange(48.0))
     across = right * np.sin(np.radians(turn)) + down * np.cos(np.radians(turn))
-    for colors, noise in ((50 + 20 * np.cos(across), 0.0), (2 * across, 2.3)):
+    for colors, noise in ((50 + 20 * np.cos(across), 0.0), (140 + 2 * across, 2.3)):
         picture = np.repeat(colors[..., np.newaxis], 3, axis=2)
-        seen = SeenPicture(picture, np.ones_like(picture), np.zeros(3))
-        tensor = grain_of(seen, Eye(60.0, noise), np.random.default_rng(0))
+        seen = seen_as(picture)
+        tensor = grain_of(seen, Eye(60.0, noise), 0)
         grain = along_grain(tensor)[24, 32]
         # Light that changes by 2 from pixel to pixel is as nothing beside the noise.
         assert abs(grain) > 0.98 if noise == 0 else abs(grain) < 0.4

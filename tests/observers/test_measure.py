@@ -27,6 +27,7 @@ from vizlight import presets
 from vizlight.draw.cameras import camera_on
 from vizlight.observers import measure, readers
 from vizlight.observers.eye import Eye, linear
+from vizlight.observers.lines import Segments
 from vizlight.observers.pixels import Pixels
 
 pytestmark = pytest.mark.opengl
@@ -298,6 +299,20 @@ def test_a_reader_of_a_surface_looks_between_the_lines_on_it():
     np.testing.assert_array_equal(found, [[1] * 4, range(4)])
 
 
+def test_a_line_is_seen_in_pieces_of_eight_arc_minutes():
+    pixels, number = pixels_of(np.array([[0] * 60 + [1] * 4]))
+    shown = np.where(number < 60, 0, -1)
+    line = Segments(
+        shown, np.array([[0.0, 0.5]]), np.array([[60.0, 0]]), *np.zeros((1, 1)),
+        np.zeros(1, dtype=int), np.ones(1), np.zeros(1),
+    )  # fmt: skip
+    parts = [SimpleNamespace(kind=kind) for kind in ("line", "surface")]
+    # A pixel is an arc minute.
+    thing = measure._things(pixels, parts, line, None, Eye(60.0))
+    assert np.unique(thing[:60], return_counts=True)[1].tolist() == [4, *[8] * 7]
+    np.testing.assert_array_equal(thing[60:], measure.NO_THING)
+
+
 def test_the_pixel_beside_is_of_the_same_mesh():
     part = np.array([[0, 0, 1, -1], [0, 1, 1, 1]])
     pixels, number = pixels_of(part)
@@ -306,6 +321,15 @@ def test_the_pixel_beside_is_of_the_same_mesh():
     ):  # fmt: skip
         found = measure._beside(pixels, number, np.arange(7), step)
         np.testing.assert_array_equal(found, expected)
+
+
+def test_values_have_their_places_on_a_bar():
+    table = pv.LookupTable("viridis", scalar_range=(0.1, 1000))
+    values = np.array([-1, 0.1, 1, 100, 1e5])
+    even = measure._shares(table, values)
+    np.testing.assert_allclose(even, [0, 0, 0.9 / 999.9, 99.9 / 999.9, 1], atol=1e-12)
+    table.log_scale = True
+    np.testing.assert_allclose(measure._shares(table, values), [0, 0, 0.25, 0.75, 1], atol=1e-12)
 
 
 def test_angles_are_a_share_and_a_median_unless_they_are_chance():
@@ -348,8 +372,8 @@ def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
     colors = np.zeros((101, 3))
     colors[:, 1] = np.linspace(0, how["wide"], 101)
     place = SimpleNamespace(
-        here=SimpleNamespace(points=np.zeros((1, 3))), by_form=how["by_form"],
-        part=SimpleNamespace(values=how["values"]),
+        here=SimpleNamespace(points=np.zeros((1, 3))),
+        part=SimpleNamespace(values=how["values"], by_form=how["by_form"]),
         colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
     )  # fmt: skip
     reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
@@ -359,8 +383,9 @@ def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
 def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
     random = np.random.default_rng(0)
     place = SimpleNamespace(
-        here=SimpleNamespace(points=np.zeros((1, 3))), part=SimpleNamespace(values=None),
-        by_form=False, colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
+        here=SimpleNamespace(points=np.zeros((1, 3))),
+        part=SimpleNamespace(values=None, by_form=False),
+        colors=readers.Colors(random.normal(0, 20, (64, 3)), np.full((64, 3), 2.3)),
         unit=np.full(64, 0.5),
     )  # fmt: skip
     for bits, error, unread in ((0.5, 5, 0), (0.2, 5, 1), (0.5, 42, 1), (0.5, 40, 0)):

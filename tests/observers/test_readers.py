@@ -1,6 +1,7 @@
 """Readers give the answers that are known beforehand."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -105,7 +106,7 @@ def test_the_light_of_one_gray_tells_no_normal():
 def test_lines_in_space_are_read_by_their_key_whichever_way_they_run(turned):
     ways = turned * unit(np.random.default_rng(2).normal(size=(1000, 3)))
     sample = places(presets.heading(), ways, kind="line")
-    reading = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0))
+    (reading,) = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0), (1.0,))
     assert np.median(reading.error) < 3
     assert readers.information([reading]) > 3
 
@@ -115,7 +116,7 @@ def test_lines_darker_than_their_key_are_read_by_a_share_of_its_light():
     sample = places(presets.heading(), ways, kind="line")
     light = linear(readers.shown(sample.light(sample.tangents, None)))
     dark = Colors(lab_of_xyz(0.5 * light @ XYZ.T), np.full((1000, 3), 0.5))
-    whole, half = (readers.read_heading(sample, np.zeros(3), dark, share) for share in (1.0, 0.5))
+    whole, half = readers.read_heading(sample, np.zeros(3), dark, (1.0, 0.5))
     assert np.median(half.error) < 3 < 0.3 * np.median(whole.error)
     assert readers.information([half]) > 3
 
@@ -123,7 +124,7 @@ def test_lines_darker_than_their_key_are_read_by_a_share_of_its_light():
 def test_a_headlight_leaves_the_near_end_of_a_line_open():
     ways = unit(np.random.default_rng(2).normal(size=(1000, 3)))
     sample = places(presets.slope(), ways, kind="line")
-    reading = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0))
+    (reading,) = readers.read_heading(sample, np.zeros(3), colors(sample, 0.0), (1.0,))
     toward = np.degrees(np.arcsin(np.abs(ways[:, 2])))
     mirrored = np.minimum(2 * toward, 180 - 2 * toward)
     near = np.minimum(reading.error, np.abs(reading.error - mirrored))
@@ -165,17 +166,16 @@ def test_light_on_a_gray_bar_leaves_the_value_open():
 
 
 def reading_of(logarithms, right):
-    truth = readers.of_truth(logarithms, right)
-    other = readers.of_truth(logarithms, right[readers.elsewhere(len(right))])
+    truth, other = readers.of_truth(logarithms, right, right[readers.elsewhere(len(right))])
     return readers.Reading(np.zeros(len(right)), truth, 8, np.zeros(len(right)), other)
 
 
 def test_what_all_places_have_in_common_is_not_told():
     right = np.arange(64) % 8
     sure = np.where(np.eye(8)[right] > 0, 0.0, -50.0)
-    assert abs(readers.told([reading_of(sure, right)]) - 3) < 0.1
+    assert abs(readers.bits_told([reading_of(sure, right)]) - 3) < 0.1
     alike = np.zeros(64, dtype=int)
-    assert readers.told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
+    assert readers.bits_told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
     assert readers.information([reading_of(sure[:1].repeat(64, 0), alike)]) > 2.9
 
 
@@ -270,11 +270,15 @@ def test_likelihoods_are_those_of_a_gaussian():
     seen = Colors(random.normal(size=(5, 3)), random.uniform(0.5, 2, (5, 3)))
     table = random.normal(size=(7, 3))
     off = (seen.lab[:, np.newaxis] - table) / seen.deviation[:, np.newaxis]
-    found = readers.likelihood(seen, table)
+    found = readers.likelihood(seen, table[np.newaxis])
     np.testing.assert_allclose(found, -0.5 * (off**2).sum(axis=2), atol=1e-12)
-    share = readers.posterior(found, 0.4)
+    first, last = readers.of_truth(found, np.zeros(5, dtype=int), np.full(5, 6))
     expected = np.exp(0.4 * found)
-    np.testing.assert_allclose(share, expected / expected.sum(axis=1, keepdims=True))
+    expected /= expected.sum(axis=1, keepdims=True)
+    np.testing.assert_allclose([first[1], last[1]], expected[:, [0, 6]].T)
+    several = readers.likelihood(seen, np.stack([table, table + 0.3]))
+    other = readers.likelihood(seen, table[np.newaxis] + 0.3)
+    np.testing.assert_allclose(several, np.logaddexp(found, other), atol=1e-12)
 
 
 def test_of_answers_that_are_alike_the_middle_one_is_taken():
@@ -324,6 +328,15 @@ def test_a_channel_of_halves_tells_a_bit_and_equal_ranks_are_shared():
     np.testing.assert_allclose(error, np.abs(x % 0.5 - 0.25), atol=2e-4)
 
 
+def test_candidates_of_planes_have_two_tangents_across_the_normal():
+    normals, tangents = readers.candidates(30, 2, 0.3)
+    axes = dict(zip(("right", "up", "eye"), np.eye(3)[:, np.newaxis].repeat(60, 1), strict=True))
+    place = SimpleNamespace(tangents=np.zeros((60, 2, 3)), light=lambda *given: given, **axes)
+    frames, facing = readers._ball(place, normals, tangents)
+    whole = np.concatenate([frames, facing[:, np.newaxis]], axis=1)
+    np.testing.assert_allclose(whole @ whole.transpose(0, 2, 1), [np.eye(3)] * 60, atol=1e-12)
+
+
 def test_lines_along_the_axes_are_read_whichever_way_they_run():
     turn, slope = np.radians([0.0, 179.9, 90.0, 45.0]), np.radians([30.5, -20.5, 89.5, 0.5])
     ways = np.stack(
@@ -331,20 +344,21 @@ def test_lines_along_the_axes_are_read_whichever_way_they_run():
     )
     sample = places(presets.heading(), np.vstack([ways, -ways]), kind="line")
     exact = Colors(lab(readers.shown(sample.light(sample.tangents, None))), np.full((8, 3), 0.1))
-    reading = readers.read_heading(sample, np.zeros(3), exact)
+    (reading,) = readers.read_heading(sample, np.zeros(3), exact, (1.0,))
     assert reading.error.max() < 1e-4
     assert reading.truth[0].min() > 0.2
     np.testing.assert_allclose(readers.steepness(sample)[:4], np.abs(np.sin(slope)))
     toward = places(presets.heading(), np.array([[0, 0, 1.0], [0, 0, -1.0]]), kind="line")
     exact = Colors(lab(readers.shown(toward.light(toward.tangents, None))), np.full((2, 3), 0.1))
-    assert readers.read_heading(toward, np.zeros(3), exact).error.max() < 2
+    (reading,) = readers.read_heading(toward, np.zeros(3), exact, (1.0,))
+    assert reading.error.max() < 2
 
 
 def test_conditioned_light_of_a_key_leaves_what_faces_away_dark():
     scene = Scene(lights=Light(direction=(0, 0, 1)), material=MATTE)
     normals, tangents = np.array([[0, 0, 1.0], [0, 0, -1]]), np.tile([1.0, 0, 0], (2, 1))
     sample = places(scene, tangents, normals)
-    given = sample.given(sample.tangents, normals)
+    given = sample.inputs(sample.tangents, normals)
     assert given.normals is None
     np.testing.assert_allclose(sample.light(sample.tangents, normals), 0.9)
     options = dataclasses.replace(sample.options, conditioned=True)
@@ -364,28 +378,31 @@ def test_a_grain_is_read_as_far_as_it_is_one():
     }
     # Candidates are a degree apart; the height of a Gaussian of 3.7 degrees is 4.28 bits above 180.
     assert found["sure"].error.max() < 0.51
-    assert readers.told([found["sure"]]) == pytest.approx(4.25, abs=0.02)
-    assert 3 < readers.told([found["half"]]) < 3.5
-    assert readers.told([found["none"]]) < 0.01
+    assert readers.bits_told([found["sure"]]) == pytest.approx(4.25, abs=0.02)
+    assert 3 < readers.bits_told([found["half"]]) < 3.5
+    assert readers.bits_told([found["none"]]) < 0.01
     across = readers.read_grain(-np.exp(2j * np.radians(angle)), angle, 0.3)
     assert across.error.min() > 89
-    assert readers.told([across]) == 0
+    assert readers.bits_told([across]) == 0
 
 
 def test_dark_colours_are_known_less_than_the_bright_ones_around_them():
-    class Seen:  # a picture of two pixels, half of each covered
-        colors = lab(np.full((1, 2, 3), 0.9))
-        cover = np.full((1, 2, 3), 0.5)
-        ground = eye.opponent(np.ones((1, 1, 3)))[0, 0]
-
+    white, gray = (eye.opponent(np.full((1, 2, 3), value)) for value in (1.0, 0.9))
+    # Two pixels, half of each covered.
+    seen = eye.SeenPicture(gray, np.full((1, 2, 3), 0.5), white[0, 0])
     at = np.zeros(2, dtype=int), np.arange(2)
-    found = readers.colors_at(Seen, *at, np.random.default_rng(0), 0.0)
+    found = readers.colors_at(seen, *at, np.random.default_rng(0), 0.0)
     # Half of the light is the background's, so that the thing itself has 2 Y - 1.
     y = 2 * linear(np.array(0.9)) - 1
     np.testing.assert_allclose(found.lab[:, 0], 116 * np.cbrt(y) - 16, atol=1e-6)
     steeper = ((lab(np.full(3, 0.9))[0] + 16) / (116 * np.cbrt(y))) ** 2
     np.testing.assert_allclose(found.deviation, eye.ROUNDING / 0.5 * steeper, rtol=1e-6)
-    # What is beside a point that has a quarter of the light adds half of what colours differ.
-    some = readers.colors_at(Seen, *at, np.random.default_rng(0), 0.0, np.full(3, 0.25))
-    own = found.deviation**2 + (0.5 * found.lab.std(axis=0)) ** 2
+    # What is beside a point that has an eighth of the light adds 3/4 of what colours differ.
+    channels = eye.opponent(np.array([[[0.9] * 3, [0.8] * 3]]))
+    seen = eye.SeenPicture(channels, seen.cover, seen.ground)
+    found, some = (
+        readers.colors_at(seen, *at, np.random.default_rng(0), 0.0, share)
+        for share in (None, np.full(3, 0.125))
+    )
+    own = found.deviation**2 + (0.75 * found.lab.std(axis=0)) ** 2
     np.testing.assert_allclose(some.deviation**2, own, rtol=1e-6)

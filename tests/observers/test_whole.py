@@ -40,6 +40,17 @@ def test_a_moved_actor_is_read_like_a_moved_mesh(question, how):
     assert figures[0].median == pytest.approx(figures[1].median, rel=0.1)
 
 
+def test_values_without_light_are_left_out():
+    mesh = sheet()
+    mesh["swirl"][np.asarray(mesh.points)[:, 0] < 0] = 0
+    with pytest.warns(UserWarning, match="could not be lit"):
+        plotter, _ = plotter_of(mesh, **DIRECTION, scalars="height", show_scalar_bar=False)
+    found = plotter.vizlight.legibility(**HOW)
+    plotter.close()
+    assert found.value.samples == pytest.approx(HOW["samples"] / 2, rel=0.1)
+    assert any("have no value" in note for note in found.notes)
+
+
 def test_position_and_scale_of_plain_colors_are_read():
     mesh = sheet()
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
@@ -273,9 +284,9 @@ def mapped(plotter, *, scaled=False):
     mapper.SetOrientationArray("swirl")
     mapper.SetScaleModeToNoDataScaling()
     mapper.SetScaleFactor(0.22)
+    mapper.SetScaleArray("speed")
     if scaled:
         mapper.SetScaleModeToScaleByMagnitude()
-        mapper.SetScaleArray("speed")
     mapper.ScalarVisibilityOff()
     actor = vtkActor()
     actor.SetMapper(mapper)
@@ -312,6 +323,8 @@ def test_a_moved_actor_of_glyphs_is_read_where_it_is(lit):
     """Glyphs that are turned by 70 degrees before they become data, and back by their actor."""
     glyphs = arrows(sheet(9))
     turned = glyphs.rotate_z(70, inplace=False, transform_all_input_vectors=True)
+    # VTK turns active vectors by itself.
+    turned.set_active_vectors(None)
 
     def add(plotter):
         how = {"scene": vizlight.Scene()} if lit else {}
@@ -335,3 +348,47 @@ def test_line_integral_convolution_of_vtk_tells_the_course():
     assert found.direction.readable > 0.4
     assert found.sense is None
     assert found.scale.question == "direction"
+
+
+def read_texture(pattern, *, vectors="swirl", turn=0.0):
+    """Return what is read of a sheet on which a pattern of x and y is painted as a texture."""
+    mesh = sheet(40)
+    # A swirl about the middle of a side looks different when it is turned.
+    mesh["aside"] = mesh["swirl"] - (0, 1, 0)
+    corners = {"origin": (-1, -1, 0), "point_u": (1, -1, 0), "point_v": (-1, 1, 0)}
+    mesh.texture_map_to_plane(**corners, inplace=True)
+    mesh.point_data.active_vectors_name = vectors
+    right, up = np.meshgrid(*2 * [np.linspace(-1, 1, 512)])
+    gray = (127 + 100 * pattern(right, up)).astype(np.uint8)
+    texture = pv.Texture(np.repeat(gray[..., np.newaxis], 3, axis=2))
+
+    def add(plotter):
+        plotter.add_mesh(mesh, texture=texture, lighting=False).rotate_z(turn)
+
+    return read_marks(add)
+
+
+@pytest.mark.parametrize(("vectors", "middle", "turn"), [("swirl", 0, 0), ("aside", 1, 70)])
+def test_a_texture_tells_the_course_of_vectors_that_it_runs_along(vectors, middle, turn):
+    rings = read_texture(
+        lambda x, y: np.cos(80 * np.hypot(x - middle, y)), vectors=vectors, turn=turn
+    )
+    assert rings.direction.median < 1
+    assert rings.direction.readable > 0.95
+    assert rings.shape is None
+
+
+@pytest.mark.parametrize("waves", [60, 0])
+def test_a_texture_across_vectors_or_of_one_colour_tells_no_course(waves):
+    found = read_texture(lambda x, y: np.cos(waves * np.arctan2(y, x))).direction
+    assert found.unreadable
+    assert found.median == 45
+
+
+def test_a_texture_tells_speed_by_its_lightness_and_nothing_without_vectors():
+    found = read_texture(lambda x, y: np.hypot(x, y) - 0.7)
+    assert found.speed.spearman > 0.97
+    assert found.speed.bits > 2
+    assert found.direction.unreadable
+    bare = read_texture(np.hypot, vectors=None)
+    assert bare.notes == ("nothing that is shown has a key by which it could be read",)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,8 @@ WHITE = XYZ.sum(axis=1)
 #: Opponent channels of XYZ: light and dark, red and green, blue and yellow (Poirson and Wandell
 #: 1993, as Zhang and Wandell 1997 use them).
 POIRSON = np.array([[0.279, 0.72, -0.107], [-0.449, 0.29, -0.077], [0.086, -0.59, 0.501]])
-#: The same without what the channels of chroma have of gray: filtered by themselves they would give
-#: gray edges a hue (Johnson, Song, Montag and Fairchild, Color Res. Appl. 35, 2010).
+#: The same with gray taken out of both channels of chroma, whose other filters would give gray
+#: edges a hue (Johnson, Song, Montag and Fairchild, Color Res. Appl. 35, 2010).
 OPPONENT = POIRSON - np.outer([0, *(POIRSON[1:] @ WHITE)], POIRSON[0]) / (POIRSON[0] @ WHITE)
 #: Weights and spreads in degrees of the Gaussians whose sum filters each channel (Zhang and Wandell
 #: 1997, table 1).
@@ -105,37 +106,35 @@ class Eye:
     def filtered(self, channels: Array) -> Array:
         """Return opponent channels of a picture, shape (H, W, 3), as the eye resolves them.
 
+        Of shape (H, W, 1) all channels are alike.
+
         Each channel is convolved with ``sum(w k exp(-(x^2 + y^2) / s^2)) / sum(w)``, k such that
         each Gaussian sums to 1 (Zhang and Wandell 1997, eq. 2). The picture is mirrored at its
         borders.
         """
-        out = np.empty(channels.shape)
-        for i in range(3):
-            spectrum = fft.dctn(channels[..., i], type=2, norm="ortho")
-            out[..., i] = fft.idctn(spectrum * self._transfer(spectrum.shape, i), norm="ortho")
-        return out
+        spectra = [fft.dctn(channel, norm="ortho") for channel in np.moveaxis(channels, 2, 0)]
+        passed = [spectra[i % len(spectra)] * self._transfer(channels.shape, i) for i in range(3)]
+        return np.stack([fft.idctn(spectrum, norm="ortho") for spectrum in passed], axis=2)
 
     def _transfer(self, shape: tuple[int, ...], channel: int) -> Array:
         """Return the share of each frequency of a cosine transform that a channel passes."""
         # The k-th cosine of n pixels has k / (2 n) cycles per pixel.
-        rows, columns = (self.pixels_per_degree * np.arange(n) / (2 * n) for n in shape)
-        total = np.zeros(shape)
-        for weight, spread in FILTERS[channel]:
-            along = [np.exp(-((np.pi * spread * f) ** 2)) for f in (rows, columns)]
-            total += weight * np.outer(*along)
-        return np.asarray(total / sum(weight for weight, _ in FILTERS[channel]))
+        weight, spread = np.array(FILTERS[channel]).T
+        frequencies = (self.pixels_per_degree * np.arange(n) / (2 * n) for n in shape[:2])
+        rows, columns = (np.exp(-((np.pi * np.outer(f, spread)) ** 2)) for f in frequencies)
+        return np.asarray((rows * weight / weight.sum()) @ columns.T)
 
     def share(self, width: float) -> Array:
-        """Return the share that a disc of some pixels has of each channel at its middle.
+        """Return how much of each channel at the middle of a disc is from the disc itself.
 
-        The integral of the filter over it, as :meth:`filtered` has it.
+        It is the integral of the filter of :meth:`filtered` over a disc of some pixels.
         """
-        found = []
+        shares = []
         for channel in FILTERS:
-            own = ((width / 2 / self.pixels_per_degree / spread) ** 2 for _, spread in channel)
-            shares = sum(-w * math.expm1(-x) for (w, _), x in zip(channel, own, strict=True))
-            found.append(shares / sum(weight for weight, _ in channel))
-        return np.array(found)
+            squares = ((width / 2 / self.pixels_per_degree / spread) ** 2 for _, spread in channel)
+            share = sum(-w * math.expm1(-x) for (w, _), x in zip(channel, squares, strict=True))
+            shares.append(share / sum(weight for weight, _ in channel))
+        return np.array(shares)
 
     def look(self, picture: Array, drawn: Bools) -> SeenPicture:
         """Return what the eye sees of a picture.
@@ -148,11 +147,10 @@ class Eye:
             Pixels that show anything but the background.
         """
         channels = opponent(picture)
-        cover = np.repeat(drawn[..., np.newaxis].astype(np.float64), 3, axis=-1)
         ground = np.zeros(3) if drawn.all() else np.median(channels[~drawn], axis=0)
         return SeenPicture(
-            colors=lab_of_opponent(self.filtered(channels)),
-            cover=self.filtered(cover),
+            channels=self.filtered(channels),
+            cover=self.filtered(drawn[..., np.newaxis].astype(np.float64)),
             ground=ground,
         )
 
@@ -163,17 +161,26 @@ class SeenPicture:
 
     Attributes
     ----------
-    colors : ndarray, shape (H, W, 3)
-        CIELAB of the filtered picture.
+    channels : ndarray, shape (H, W, 3)
+        Opponent channels of the filtered picture.
     cover : ndarray, shape (H, W, 3)
         Share of what is drawn in each channel of each pixel; the rest is background.
     ground : ndarray, shape (3,)
         Opponent channels of the background.
     """
 
-    colors: Array
+    channels: Array
     cover: Array
     ground: Array
+
+    @cached_property
+    def colors(self) -> Array:
+        """CIELAB of the filtered picture, shape (H, W, 3)."""
+        return lab_of_opponent(self.channels)
+
+    def colors_at(self, row: Indices, column: Indices) -> Array:
+        """Return CIELAB of some pixels, shape (M, 3)."""
+        return lab_of_opponent(self.channels[row, column])
 
     def pooled(self, row: Indices, column: Indices, group: Indices) -> SeenPicture:
         """Return the picture with the mean of each group of pixels in place of its colours.
@@ -185,12 +192,12 @@ class SeenPicture:
         group : ndarray of int, shape (M,)
             Numbers of their groups, 0 or more.
         """
-        colors, cover = self.colors.copy(), self.cover.copy()
-        # Light is mixed in linear channels.
-        channels = xyz_of_lab(colors[row, column]) @ OPPONENT.T
-        colors[row, column] = lab_of_opponent(means(channels, group)[group])
+        channels, cover = self.channels.copy(), self.cover.copy()
+        # The eye sees no less than no light.
+        light = np.maximum(channels[row, column] @ np.linalg.inv(OPPONENT).T, 0.0)
+        channels[row, column] = (means(light, group) @ OPPONENT.T)[group]
         cover[row, column] = means(cover[row, column], group)[group]
-        return dataclasses.replace(self, colors=colors, cover=cover)
+        return dataclasses.replace(self, channels=channels, cover=cover)
 
 
 def means(rows: Array, group: Indices, count: int = 0) -> Array:

@@ -22,8 +22,7 @@ class Figure:
     Attributes
     ----------
     bits : float
-        Information that the picture gives, after the eye, of candidates that were equally likely
-        before.
+        Information that the picture, as the eye sees it, gives about equally likely candidates.
     readable : float
         Share of the drawn places at which the answer is right within a tolerance, less what
         guessing gives (Abbott 1925): 0 is chance, 1 is all of the picture.
@@ -63,7 +62,7 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True)
 class Direction(Figure):
-    """Which way tangents run in the picture, by their hues on the key or as marks run.
+    """Course of tangents in the picture, read by hues of the key or by the form of marks.
 
     Attributes
     ----------
@@ -90,8 +89,8 @@ class Slope(Figure):
     ----------
     spearman : float
         Rank correlation of lightness with steepness, the cosine of the angle between a line and
-        the line of sight; -1 or 1 where lightness orders all lines, 0 by chance. ``bits`` are
-        those of lightness in 32 classes of steepness in 16, 4 at most.
+        the line of sight; -1 or 1 where lightness orders all lines, 0 by chance. ``bits`` compare
+        32 classes of lightness with 16 of steepness, and are 4 at most.
     """
 
     spearman: float
@@ -101,7 +100,7 @@ class Slope(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Heading(Direction):
-    """Direction of lines in space, which end is near included.
+    """Direction of lines in space, including which end is nearer.
 
     The reader knows the course of a line in the picture, and finds its colour on a key of all
     directions. ``within_10`` and ``median`` are those of angles in space.
@@ -110,7 +109,7 @@ class Heading(Direction):
 
 @dataclass(frozen=True, kw_only=True)
 class Shape(Figure):
-    """How surfaces stand, as a reader finds their colours on a ball in the same light.
+    """Normals of surfaces, whose colours a reader finds on a ball in the same light.
 
     Attributes
     ----------
@@ -152,8 +151,8 @@ class Speed(Figure):
     Attributes
     ----------
     spearman : float
-        Rank correlation of the length with that signal which tells most; 0 by chance.
-        ``bits`` are those of 32 classes of the colour about 16 of the length, 4 at most.
+        Rank correlation of the length with the signal that tells most; 0 by chance.
+        ``bits`` compare 32 classes of the signal with 16 of the length, and are 4 at most.
     """
 
     spearman: float
@@ -163,7 +162,7 @@ class Speed(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class TwoSided(Figure):
-    """Which of two sides is right, told at some places, told wrongly at others, or not at all.
+    """Answers to a question of two sides: right at some places, wrong or none at others.
 
     ``readable`` is the share of right answers minus the share of wrong ones. ``bits`` is the
     information per place, at most 1, as for a yes or no.
@@ -194,8 +193,9 @@ class Order(TwoSided):
 class Sense(TwoSided):
     """Which of two opposite ways a stroke or a glyph runs, told by its form or lightness along it.
 
-    Places are strokes, all of whose ends ahead a reader takes for the wider, the narrower, the
-    lighter or the darker one, whichever is right more often, and glyphs, whose form is known.
+    Places are strokes and glyphs. Of all strokes a reader takes the same end to be ahead, the
+    wider, the narrower, the lighter or the darker one, whichever is right more often. The form of
+    glyphs is known.
     """
 
 

@@ -196,11 +196,11 @@ def legibility(
     if scalars is None and (cmap is not None or clim is not None):
         name = "cmap" if cmap is not None else "clim"
         raise ValueError(_check.message(name, "scalars= beside it", "none"))
-    asked: Keywords = {"conditioned": _check.boolean("conditioned", conditioned)}
-    asked |= {"exponent": exponent, "model": model}
-    asked = {name: value for name, value in asked.items() if value != DEFAULTS[name]} | options
+    drawing: Keywords = {"conditioned": _check.boolean("conditioned", conditioned)}
+    drawing |= {"exponent": exponent, "model": model}
+    drawing = {name: value for name, value in drawing.items() if value != DEFAULTS[name]} | options
     if tangents is not None:
-        asked["tangents"] = tangents
+        drawing["tangents"] = tangents
     how: Keywords = {"distance_mm": distance_mm, "screen": screen, "noise": noise}
     how |= {"samples": samples, "seed": seed}
     if picture is not None:
@@ -210,8 +210,8 @@ def legibility(
             got = _check.describe(camera)
             raise TypeError(_check.message("camera", "a pyvista.Camera", got, remedy))
         checked = reading(rgb.shape[1], size_mm, distance_mm, screen, noise, samples, seed)
-        own = camera_of(mesh, None, camera, 1.0)
-        return measure(rgb, _parts(mesh, key, asked, scalars, own), own, **checked)
+        eye = camera_of(mesh, None, camera, 1.0)
+        return measure(rgb, _parts(mesh, key, drawing, scalars, eye), eye, **checked)
     if cmap is not None:
         color_table([], cmap=cmap)
     for name, value in (("key", key), ("camera", camera)):
@@ -229,18 +229,18 @@ def legibility(
     plotter = _plotter(mesh, size)
     try:
         if scalars is not None:
-            asked |= {"scalars": scalars, "cmap": cmap, "show_scalar_bar": False}
-            asked |= {} if clim is None else {"clim": _check.limits("clim", clim)}
-        strokes = [stroke_of(block, {"halo": None} | asked) for block in blocks.all_blocks(mesh)]
+            drawing |= {"scalars": scalars, "cmap": cmap, "show_scalar_bar": False}
+            drawing |= {} if clim is None else {"clim": _check.limits("clim", clim)}
+        strokes = [stroke_of(block, {"halo": None} | drawing) for block in blocks.all_blocks(mesh)]
         is_plain = _of_lines(mesh) and not any(stroke != Stroke() for stroke in strokes)
         pixel = SUPERSAMPLED if is_plain else 1.0
-        asked["line_width"] = pixel * asked.get("line_width", 1.0)
+        drawing["line_width"] = pixel * drawing.get("line_width", 1.0)
         component: Foreign = plotter.vizlight
-        component.add_mesh(mesh, scene=scene, render=False, **asked)
+        component.add_mesh(mesh, scene=scene, render=False, **drawing)
         plotter.camera = eye
         plotter.reset_camera_clipping_range()
-        found: Legibility = component.legibility(size_mm=size_mm, **how)
-        return found
+        figures: Legibility = component.legibility(size_mm=size_mm, **how)
+        return figures
     finally:
         plotter.close()
 
@@ -261,27 +261,27 @@ def _plotter(mesh: pv.DataSet | pv.MultiBlock, size: tuple[int, int]) -> pv.Plot
 def _parts(
     mesh: pv.DataSet | pv.MultiBlock,
     key: Foreign,
-    asked: Keywords,
+    drawing: Keywords,
     scalars: str | ArrayLike | None,
     camera: pv.Camera,
 ) -> list[Part]:
     """Return the meshes of a picture whose colours mean what a key says."""
     keys = key if isinstance(key, list) else [key]
     scene, bar = None, None
-    for one in keys:
-        if isinstance(one, Scene | str):
-            scene = required_scene(one)
-        elif isinstance(one, tuple) and len(one) == 2:
-            bar = one
+    for meaning in keys:
+        if isinstance(meaning, Scene | str):
+            scene = required_scene(meaning)
+        elif isinstance(meaning, tuple) and len(meaning) == 2:
+            bar = meaning
         else:
             expected = "a vizlight.Scene, a pair (cmap, clim), or a list of both"
-            raise TypeError(_check.message("key", expected, _check.describe(one)))
+            raise TypeError(_check.message("key", expected, _check.describe(meaning)))
     view = View.from_camera(camera)
     lit = scene is not None
     scene = Scene(lights=Light.headlight()) if scene is None else scene
-    given: Keywords = {"feature_angle": "auto"}
-    given |= {name: value for name, value in asked.items() if name in LIGHT}
-    options = LightOptions(**given)
+    light: Keywords = {"feature_angle": "auto"}
+    light |= {name: value for name, value in drawing.items() if name in LIGHT}
+    options = LightOptions(**light)
     shown = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
@@ -295,11 +295,11 @@ def _parts(
         some = values_of_blocks([block for block, _ in shown], scalars)
         table = color_table(some, cmap=bar[0], clim=bar[1])
         values = list(some)
-    width = float(asked.get("line_width", 1.0))
+    width = float(drawing.get("line_width", 1.0))
     return [
         part_on(
-            block, scene.replace(view=view), options, path, lit=lit, values=own, table=table,
+            block, scene.replace(view=view), options, path, lit=lit, values=array, table=table,
             width=width,
         )
-        for (block, path), own in zip(shown, values, strict=True)
+        for (block, path), array in zip(shown, values, strict=True)
     ]  # fmt: skip

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 #: Number of deviations of noise by which a difference is seen (Rose, J. Opt. Soc. Am. 38, 1948: 3
 #: at least).
 SEEN = 3.0
-#: Distance in pixels along a picture between different lines, so that no two are neighbours.
+#: Distance in pixels, in ``Segments.along``, between different lines, so that no two are near.
 JUMP = 1e6
 #: Width in arc minutes of the window in which a reader sees how much of a stroke there is, and
 #: width of the one in which what is around it is seen, in widths of the first.
 WINDOW, AROUND = 8.0, 4
-#: Least number of pixels of either end of a stroke that is asked for its sense.
+#: Least number of pixels of both ends of a stroke whose sense is read.
 END = 3
 
 
@@ -42,7 +42,7 @@ class Segments(NamedTuple):
     number : ndarray of int, shape (H, W)
         Segment that each pixel shows, -1 without one.
     start, way : ndarray, shape (S, 2)
-        Beginning of each segment, to the right and down, and what leads to its end.
+        Beginning of each segment, to the right and down, and the vector from there to its end.
     along : ndarray, shape (S,)
         Length of the line before the segment; different lines are far apart.
     line : ndarray of int, shape (S,)
@@ -90,8 +90,8 @@ def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Seg
     for i, part in enumerate(parts):
         if part.kind != "line":
             continue
-        own = pixels.part == i
-        number[pixels.row[own], pixels.column[own]] = count + pixels.cell[own]
+        shows = pixels.part == i
+        number[pixels.row[shows], pixels.column[shows]] = count + pixels.cell[shows]
         points = np.asarray(part.inputs.points[:], dtype=np.float64)
         places = in_pixels(camera, pixels.size, points)
         cells = part.cells
@@ -114,7 +114,7 @@ def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Seg
 
 
 class Strokes(NamedTuple):
-    """What a reader has of strokes whose data have a sense.
+    """What a reader sees of strokes whose data have a sense.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ class Strokes(NamedTuple):
 
 
 def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
-    """Return the difference of both thirds at the ends of each stroke that is seen.
+    """Return how the third ahead differs from the third behind, of each stroke that is seen.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
 
 
 def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
-    """Return how colours differ from those around, in a wider window and where nothing covers it.
+    """Return how colours differ from the bare ground around them.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def _window(eye: Eye) -> int:
     return max(1, round(WINDOW / 60 * eye.pixels_per_degree))
 
 
-def grain_of(seen: SeenPicture, eye: Eye, random: np.random.Generator) -> Array:
+def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     """Return the structure that a reader sees around each pixel: the grain of marks and textures.
 
     It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
@@ -204,14 +204,15 @@ def grain_of(seen: SeenPicture, eye: Eye, random: np.random.Generator) -> Array:
         What the eye sees of the picture.
     eye : Eye
         Eye, whose noise is added to each pixel.
-    random : numpy.random.Generator
-        Source of the noise.
+    seed : int
+        Seed of the noise.
 
     Returns
     -------
     ndarray, shape (H, W, 3)
         Mean products of the changes to the right and down: xx, xy, yy.
     """
+    random = np.random.default_rng(seed)
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
     # A Gaussian of the variance of the window.
     spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
@@ -292,12 +293,12 @@ def _turned(part: Part) -> tuple[Cells, Array, Array]:
     glyph = np.full(len(points), -1)
     glyph[part.cells] = part.glyph[:, np.newaxis]
     used = glyph >= 0
-    own, ways = glyph[used], unit_rows(vectors[used])
-    mean, way = means(points[used], own), means(ways, own)
-    along = dots(points[used] - mean[own], ways)
+    number, ways = glyph[used], unit_rows(vectors[used])
+    mean, way = means(points[used], number), means(ways, number)
+    along = dots(points[used] - mean[number], ways)
     low, high = np.full(len(mean), np.inf), np.full(len(mean), -np.inf)
-    np.minimum.at(low, own, along)
-    np.maximum.at(high, own, along)
+    np.minimum.at(low, number, along)
+    np.maximum.at(high, number, along)
     middle = mean + ((low + high) / 2)[:, np.newaxis] * way
     end = middle + ((high - low) / 2)[:, np.newaxis] * way
     turned = pv.vtk_points(2 * middle[glyph] - points)
@@ -307,16 +308,16 @@ def _turned(part: Part) -> tuple[Cells, Array, Array]:
 def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:
     """Return what each pixel of a picture shows by numbers of the cells of parts, else -1."""
     width, height = pixels.size
-    found = np.full((height, width), -1, dtype=np.intp)
+    shown = np.full((height, width), -1, dtype=np.intp)
     for part, number in enumerate(numbers):
         if len(number):
-            own = pixels.part == part
-            found[pixels.row[own], pixels.column[own]] = number[pixels.cell[own]]
-    return found
+            shows = pixels.part == part
+            shown[pixels.row[shows], pixels.column[shows]] = number[pixels.cell[shows]]
+    return shown
 
 
 def ahead_of(glyphs: Glyphs, ink: Array, bare: Bools, eye: Eye) -> Array:
-    """Return whether glyphs are seen as they are, or turned round, by what differs between both.
+    """Return whether glyphs look as they are or as if turned round, by the pixels that differ.
 
     This is the contrast of the pixels that a glyph has and would not have if it were turned, less
     that of the bare pixels that it would have then. It is seen if it is the noise of the eye at
@@ -345,10 +346,11 @@ def ahead_of(glyphs: Glyphs, ink: Array, bare: Bools, eye: Eye) -> Array:
         there = there & (number >= 0)
         mean = means(ink[there][:, np.newaxis], number[there], count)[:, 0]
         sides.append((mean, np.bincount(number[there], minlength=count)))
-    (own, pixels), (other, others) = sides
+    (as_it_is, pixels), (round_about, others) = sides
     minutes = np.minimum(pixels, others) / (eye.pixels_per_degree / 60) ** 2
     least = eye.noise * np.maximum(1.0, SEEN * np.sqrt(2 / np.maximum(minutes, 1e-3)))
-    answer = np.sign(own - other) * (np.abs(own - other) >= least) * (minutes > 0)
+    more = as_it_is - round_about
+    answer = np.sign(more) * (np.abs(more) >= least) * (minutes > 0)
     shown = np.bincount(glyphs.number[glyphs.number >= 0], minlength=count) > 0
     return np.where(shown, answer, np.nan)
 
@@ -361,18 +363,18 @@ def lengths_of(glyphs: Glyphs, ink: Array, least: float) -> Array:
     far = math.ceil(1.5 * float(glyphs.reach.max(initial=0.0)))
     steps = np.arange(-far, far + 1)[:, np.newaxis]
     height, width = ink.shape
-    found = np.zeros(len(glyphs.way))
+    lengths = np.zeros(len(glyphs.way))
     for i in np.flatnonzero(glyphs.reach > 0):
         column, row = np.floor(glyphs.middle[i] + steps * glyphs.way[i]).astype(np.intp).T
         inside = (column >= 0) & (row >= 0) & (column < width) & (row < height)
-        own = np.where(inside, ink[row.clip(0, height - 1), column.clip(0, width - 1)], 0.0)
-        ends = np.flatnonzero(own < max(least, own[far] / 2))
+        profile = np.where(inside, ink[row.clip(0, height - 1), column.clip(0, width - 1)], 0.0)
+        ends = np.flatnonzero(profile < max(least, profile[far] / 2))
         before, after = ends[ends <= far], ends[ends >= far]
-        found[i] = after.min(initial=2 * far + 1) - before.max(initial=-1) - 1
-    return np.maximum(found, 0.0)
+        lengths[i] = after.min(initial=2 * far + 1) - before.max(initial=-1) - 1
+    return np.maximum(lengths, 0.0)
 
 
-def two_sides(told: int, wrongly: int, total: int) -> float:
+def two_sides(right: int, wrong: int, total: int) -> float:
     """Return the bits that answers give of a question of two sides.
 
     It is the information of a channel that is silent at some places and wrong at others,
@@ -381,13 +383,13 @@ def two_sides(told: int, wrongly: int, total: int) -> float:
 
     Parameters
     ----------
-    told, wrongly : int
+    right, wrong : int
         Numbers of right and of wrong answers.
     total : int
         Number of places, at least 1.
     """
-    if told <= wrongly:
+    if right <= wrong:
         return 0.0
-    right = told / (told + wrongly)
-    entropy = sum(-p * np.log2(p) for p in (right, 1 - right) if p > 0)
-    return max(0.0, float((told + wrongly) / total * (1 - entropy) - 1 / (2 * total * np.log(2))))
+    share = right / (right + wrong)
+    entropy = sum(-p * np.log2(p) for p in (share, 1 - share) if p > 0)
+    return max(0.0, float((right + wrong) / total * (1 - entropy) - 1 / (2 * total * np.log(2))))

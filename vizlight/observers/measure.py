@@ -65,12 +65,13 @@ TURN = 90.0
 FEW, HALF = 32, 0.5
 #: Share of the error of chance above which an answer is chance.
 NEAR = 0.9
-#: Distances in arc minutes: from another mesh beyond which a colour has little of it (the filter of
-#: lightness is 2.8 wide at half height), and in which a reader looks for such a place.
+#: Distance in arc minutes from another mesh beyond which that hardly changes a colour (the
+#: filter of lightness is 2.8 wide at half height), and how far away a reader looks for such a
+#: place.
 BLURRED, CLOSE = 2.5, 10.0
 #: Length in arc minutes of a piece of a line that is seen as one colour.
 PIECE = 8.0
-#: Number of what is not seen as a whole; those of pieces of lines are less.
+#: Number of pixels that are part of no whole; those of pieces of lines are less.
 NO_THING = -1
 #: Least number of strokes that are asked for their sense.
 STROKES = 8
@@ -118,11 +119,6 @@ class Places:
     thing: Indices
     length: Array | None = None
 
-    @property
-    def by_form(self) -> bool:
-        """Whether marks tell directions by their form, since colours do not by their hue."""
-        return self.part.kind == "line" or not self.part.lit
-
     def take(self, rows: Bools | Indices) -> Places:
         """Return some of the places."""
         return dataclasses.replace(
@@ -142,10 +138,10 @@ class Places:
         times : int, default: 1
             Angles between these vectors as multiples of those of the data.
         """
-        own = turn(self.here)
+        here = turn(self.here)
         steps = []
         for other in (self.right, self.up):
-            cosine = np.einsum("ij,ij->i", own, turn(other))
+            cosine = np.einsum("ij,ij->i", here, turn(other))
             steps.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
         change = np.hypot(*steps) / times
         change[~self.apart] = np.nan
@@ -206,7 +202,8 @@ def measure(
     ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
-    grain = grain_of(seen, eye, np.random.default_rng(seed))
+    has_marks = any(part.by_form and part.inputs.tangents is not None for part in parts)
+    grain = grain_of(seen, eye, seed) if has_marks else np.zeros_like(seen.colors)
     has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
@@ -215,15 +212,15 @@ def measure(
         if len(ids):
             places = has.places(part, number[_between(pixels, number, i, ids, eye)])
             if glyphs is not None and part.glyph is not None:
-                own = places.thing - (len(parts) << 40)
-                places = dataclasses.replace(places, length=lengths[own])
+                glyph = places.thing - (len(parts) << 40)
+                places = dataclasses.replace(places, length=lengths[glyph])
             groups.append(places)
     reader = _Reader(groups, seed, eye, list(notes))
     figures = reader.figures()
     answers = ahead[np.isfinite(ahead)]
     if lines is not None:
-        found = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
-        figures["order"] = _order(crossings.told(found, lines, seen, noise))
+        at_crossings = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
+        figures["order"] = _order(crossings.answers(at_crossings, lines, seen, noise))
         strokes = _of_strokes(*strokes_of(lines, seen, eye), noise)
         answers = np.concatenate([answers, strokes])
     figures["sense"] = _sense(answers)
@@ -256,13 +253,13 @@ class _Seen(NamedTuple):
     def places(self, part: Part, ids: Indices) -> Places:
         """Return the places of some pixels, all of which show one mesh."""
         pixels, camera = self.pixels, self.camera
-        own = pixels.take(ids)
+        chosen = pixels.take(ids)
         share = self.eye.share(part.width) if part.kind == "point" else None
         colors = readers.colors_at(
-            self.things, own.row, own.column, self.random, self.eye.noise, share
+            self.things, chosen.row, chosen.column, self.random, self.eye.noise, share
         )
         beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
-        here = sample(part, own, camera)
+        here = sample(part, chosen, camera)
         right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
         course = np.zeros(len(ids))
         if here.tangents is not None and here.has_one_tangent:
@@ -272,7 +269,7 @@ class _Seen(NamedTuple):
             part=part, here=here, right=right, up=up, colors=colors, course=course,
             apart=(beside[0] != ids) & (beside[1] != ids), thing=self.thing[ids],
             unit=footprint(camera, here.points, pixels.size[1]),
-            grain=along_grain(self.tensor[own.row, own.column]),
+            grain=along_grain(self.tensor[chosen.row, chosen.column]),
         )  # fmt: skip
 
 
@@ -342,9 +339,9 @@ def _between(
         return row, column
     other = np.zeros(number.shape, dtype=np.bool_)
     other[pixels.row[others], pixels.column[others]] = True
-    own = (number >= 0) & ~other
+    alone = (number >= 0) & ~other
     minute = eye.pixels_per_degree / 60
-    free = own & (distance_transform_edt(~other) > BLURRED * minute)
+    free = alone & (distance_transform_edt(~other) > BLURRED * minute)
     if not free.any():
         return row, column
     far, near = distance_transform_edt(~free, return_indices=True)
@@ -355,15 +352,15 @@ def _between(
 
 def _beside(pixels: Pixels, number: Indices, ids: Indices, step: tuple[int, int]) -> Indices:
     """Return the pixels one step on either side of pixels, of the same mesh; else themselves."""
-    found = ids.copy()
+    beside = ids.copy()
     for sign in (-1, 1):
         row = np.clip(pixels.row[ids] + sign * step[0], 0, number.shape[0] - 1)
         column = np.clip(pixels.column[ids] + sign * step[1], 0, number.shape[1] - 1)
         other = number[row, column]
         fits = (other >= 0) & (pixels.part[np.maximum(other, 0)] == pixels.part[ids])
         # Beyond the border of the picture there is only the pixel itself.
-        found = np.where(fits & (other != ids), other, found)
-    return np.asarray(found)
+        beside = np.where(fits & (other != ids), other, beside)
+    return np.asarray(beside)
 
 
 def _order(answers: Array) -> Order | None:
@@ -392,15 +389,15 @@ def _sense(answers: Array) -> Sense | None:
 
 def _two_sided(answers: Array, remedy: str) -> Keywords:
     """Return the figures of answers of two sides; shares are kept where they are unreadable."""
-    told, wrongly = int(np.count_nonzero(answers > 0)), int(np.count_nonzero(answers < 0))
-    bits = two_sides(told, wrongly, len(answers))
-    silent = told + wrongly < len(answers) / 2
+    right, wrong = int(np.count_nonzero(answers > 0)), int(np.count_nonzero(answers < 0))
+    bits = two_sides(right, wrong, len(answers))
+    silent = right + wrong < len(answers) / 2
     why = "most places look alike on both sides" if silent else "too many places tell it wrongly"
     return {
-        "told": told / len(answers),
-        "wrongly": wrongly / len(answers),
+        "told": right / len(answers),
+        "wrongly": wrong / len(answers),
         "bits": bits,
-        "readable": 0.0 if bits < FLOOR else (told - wrongly) / len(answers),
+        "readable": 0.0 if bits < FLOOR else (right - wrong) / len(answers),
         "samples": len(answers),
         "reason": f"{why}; {remedy}" if bits < FLOOR else "",
     }
@@ -413,38 +410,38 @@ class _Reader:
         self.groups, self.eye, self.notes = groups, eye, notes
         self.random = np.random.default_rng(seed)
         # The key lies amid what it explains, since the light of near lamps depends on the place.
-        self.middle = np.concatenate([one.here.points for one in groups]).mean(axis=0)
+        self.middle = np.concatenate([p.here.points for p in groups]).mean(axis=0)
         self.scale: Scale | None = None
 
     def figures(self) -> Keywords:
         """Return the figures by their questions."""
-        known: dict[str, Callable[[], Figure | None]] = {
+        questions: dict[str, Callable[[], Figure | None]] = {
             "direction": self.direction, "value": self.value, "shape": self.shape,
             "slope": self.slope, "heading": self.heading, "speed": self.speed,
         }  # fmt: skip
-        return {name: function() for name, function in known.items()}
+        return {name: function() for name, function in questions.items()}
 
     def _with(self, question: str, has_it: Callable[[Places], bool]) -> list[Places]:
         """Return the places where a question of light has an answer, and note those without."""
-        told = [one for one in self.groups if one.part.lit or one.part.by_axes]
-        some = [one for one in told if has_it(one)]
-        kept = [one.take(one.here.valid) for one in some]
-        total, left = (sum(len(one.here) for one in each) for each in (some, kept))
+        lit = [p for p in self.groups if p.part.lit or p.part.by_axes]
+        some = [p for p in lit if has_it(p)]
+        kept = [p.take(p.here.valid) for p in some]
+        total, left = (sum(len(p.here) for p in each) for each in (some, kept))
         if left < total:
             text = "places have no direction of tangents or normals, left out"
             self.notes.append(f"{question}: {total - left} of {total} {text}")
-        return [one for one in kept if len(one.here)]
+        return [p for p in kept if len(p.here)]
 
     def _common(
         self, question: str, groups: list[Places], readings: list[Reading], lengths: Array
     ) -> Keywords:
         """Return what all figures of matched colours have, and find the scale."""
         error = _errors(readings)
-        bits = readers.told(readings)
+        bits = readers.bits_told(readings)
         right = error <= TOLERANCE[question]
-        other = np.concatenate([one.other_error for one in readings])
+        other = np.concatenate([reading.other_error for reading in readings])
         guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
-        unit = np.concatenate([one.unit for one in groups])
+        unit = np.concatenate([p.unit for p in groups])
         if self.scale is None and np.isfinite(lengths).any():
             self.scale = _scale(question, lengths, unit, right, guessed)
         chance = TURN / 2 if question != "value" else 0.25
@@ -464,14 +461,14 @@ class _Reader:
             turns = max(1, round(float(np.median(finite))))
             return f"the data turn within {turns} pixels; show less of them, or lines"
         if question in ("direction", "heading", "shape") and any(
-            one.part.values is not None for one in groups
+            p.part.values is not None for p in groups
         ):
             return "the colours show values; draw the light without scalars"
-        deviation = np.concatenate([one.colors.deviation for one in groups])
-        colors = np.concatenate([one.colors.lab for one in groups])
+        deviation = np.concatenate([p.colors.deviation for p in groups])
+        colors = np.concatenate([p.colors.lab for p in groups])
         if float(np.median(deviation)) > 3 * self.eye.noise:
             return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
-        if question == "direction" and groups[0].by_form:
+        if question == "direction" and groups[0].part.by_form:
             return "marks are too fine or too faint, cross, or do not follow the data"
         # The standard deviation by the 10 % and 90 % quantiles, but for places at borders.
         spread = np.ptp(np.quantile(colors, (0.1, 0.9), axis=0), axis=0) / 2.563
@@ -482,8 +479,8 @@ class _Reader:
 
     def direction(self) -> Direction | None:
         """Return which way tangents run in the picture, by hue or by form: what tells more."""
-        by_hue = self._with("direction", lambda p: not p.by_form and p.here.has_one_tangent)
-        some = [p for p in self.groups if p.by_form and p.here.has_one_tangent]
+        by_hue = self._with("direction", lambda p: not p.part.by_form and p.here.has_one_tangent)
+        some = [p for p in self.groups if p.part.by_form and p.here.has_one_tangent]
         by_form = _kept(some, lambda p: p.here.valid)
         start = float(self.random.uniform(0.0, 180.0)) if by_hue or by_form else 0.0
         ways = []
@@ -496,7 +493,7 @@ class _Reader:
                     groups,
                     [
                         readers.read_grain(p.grain, p.course, start)
-                        if p.by_form
+                        if p.part.by_form
                         else readers.read_direction(p.here, self.middle, p.colors, start)
                         for p in groups
                     ],
@@ -504,7 +501,7 @@ class _Reader:
             )
         if not ways:
             return None
-        groups, found = max(ways, key=lambda way: readers.told(way[1]))
+        groups, readings = max(ways, key=lambda way: readers.bits_told(way[1]))
         # Beside a place on a line or a glyph there is often another one.
         spread = [p.part.kind != "line" and p.part.glyph is None for p in groups]
         lengths = np.concatenate(
@@ -513,8 +510,8 @@ class _Reader:
                 for p, there in zip(groups, spread, strict=True)
             ]
         )
-        common = self._common("direction", groups, found, lengths)
-        return Direction(**_angles(found, common), **common)
+        common = self._common("direction", groups, readings, lengths)
+        return Direction(**_angles(readings, common), **common)
 
     def slope(self) -> Slope | None:
         """Return how steeply lines run."""
@@ -533,26 +530,17 @@ class _Reader:
         groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
         if not groups:
             return None
-
-        by_axes = {
-            i: readers.read_axes(p.here, self.middle, p.colors)
-            for i, p in enumerate(groups)
+        ways = [
+            [readers.read_axes(p.here, self.middle, p.colors)] * len(readers.SHARES)
             if p.part.by_axes
-        }
+            else readers.read_heading(p.here, self.middle, p.colors)
+            for p in groups
+        ]
         # How much darker than the key lines are drawn is seen by the whole picture.
-        ways = (
-            [
-                by_axes[i]
-                if i in by_axes
-                else readers.read_heading(p.here, self.middle, p.colors, share)
-                for i, p in enumerate(groups)
-            ]
-            for share in readers.SHARES
-        )
-        found = max(ways, key=readers.told)
+        readings = max(map(list, zip(*ways, strict=True)), key=readers.bits_told)
         none = np.full(sum(len(p.here) for p in groups), np.nan)
-        common = self._common("heading", groups, found, none)
-        return Heading(**_angles(found, common), **common)
+        common = self._common("heading", groups, readings, none)
+        return Heading(**_angles(readings, common), **common)
 
     def shape(self) -> Shape | None:
         """Return how surfaces stand."""
@@ -562,17 +550,17 @@ class _Reader:
         if not groups:
             return None
         phase = float(self.random.uniform(0.0, 2 * np.pi))
-        found = []
+        readings = []
         for p in groups:
             here, colors = p.here, p.colors
             if p.part.table is not None:
                 # Light is what colours of data have less than those of the bar.
                 here = dataclasses.replace(here, scene=display.for_colors(here.scene))
                 colors = readers.light_of(colors, p.part.table)
-            found.append(readers.read_normal(here, self.middle, colors, phase))
+            readings.append(readers.read_normal(here, self.middle, colors, phase))
         lengths = np.concatenate([p.structure(_normal) for p in groups])
-        common = self._common("shape", groups, found, lengths)
-        error = _errors(found)
+        common = self._common("shape", groups, readings, lengths)
+        error = _errors(readings)
         median = TURN / 2 if common["reason"] else float(np.median(error))
         return Shape(median=median, **common)
 
@@ -589,15 +577,15 @@ class _Reader:
                 return None
             values = np.asarray(p.here.values)
             # Places without light have the colour of what is not data.
-            known = np.isfinite(values) & p.here.valid
-            known &= ~_have_own_color(p.part.table, values)
-            if left := int(np.count_nonzero(~known)):
-                text = f"value: {left} of {len(known)} places have no value, left out"
+            has_value = np.isfinite(values) & p.here.valid
+            has_value &= ~_have_own_color(p.part.table, values)
+            if left := int(np.count_nonzero(~has_value)):
+                text = f"value: {left} of {len(values)} places have no value, left out"
                 self.notes.append(text)
-            if known.any():
-                groups.append(p.take(known))
+            if has_value.any():
+                groups.append(p.take(has_value))
                 # Values beyond the ends have the colours of the ends.
-                places.append(_shares(p.part.table, values[known]))
+                places.append(_shares(p.part.table, values[has_value]))
         if not groups:
             return None
         ways = []
@@ -609,10 +597,10 @@ class _Reader:
                 ]
             )
         # Whether there is light on the colours is seen by the whole picture.
-        found = max(ways, key=readers.told)
+        readings = max(ways, key=readers.bits_told)
         lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
-        common = self._common("value", groups, found, lengths)
-        error = _errors(found)
+        common = self._common("value", groups, readings, lengths)
+        error = _errors(readings)
         if common["reason"]:
             return Value(median=0.25, p95=0.475, largest=0.5, **common)
         p95, largest = float(np.quantile(error, 0.95)), float(error.max())
@@ -657,19 +645,19 @@ def _once(places: Places) -> Places:
 
 def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]:
     """Return the places that a rule keeps, of the meshes that have any."""
-    return [one for one in (p.take(rule(p)) for p in groups) if len(one.here)]
+    return [places for places in (p.take(rule(p)) for p in groups) if len(places.here)]
 
 
-def _angles(found: list[Reading], common: Keywords) -> Keywords:
+def _angles(readings: list[Reading], common: Keywords) -> Keywords:
     """Return the share of errors of 10 degrees at most, and their median."""
     if common["reason"]:
         return {"within_10": 1 / 9, "median": TURN / 2}
-    error = _errors(found)
+    error = _errors(readings)
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 
 
-def _errors(found: list[Reading]) -> Array:
-    return np.concatenate([one.error for one in found])
+def _errors(readings: list[Reading]) -> Array:
+    return np.concatenate([reading.error for reading in readings])
 
 
 def _beyond_chance(right: Bools, guessed: float) -> float:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkPoints
 
     from vizlight._types import Array, Bools, Indices
+    from vizlight.shading.display import Bytes
 
 #: Bits of the three channels.
 BITS = 24
@@ -156,7 +157,7 @@ def visible(
     renderer = vtkRenderer()
     renderer.SetActiveCamera(camera)
     window.AddRenderer(renderer)
-    number = np.zeros(width * height, dtype=np.int64)
+    number = np.zeros((height, width), dtype=np.int64)
     # A picture has 24 bits of a cell's number; more cells take more pictures.
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
         renderer.RemoveAllViewProps()
@@ -165,18 +166,25 @@ def visible(
         for occluder in occluders:
             renderer.AddActor(occluder)
         renderer.ResetCameraClippingRange()
-        window.Render()
-        pixels = vtkUnsignedCharArray()
-        window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
-        rgb = as_numpy(pixels).reshape(-1, 3).astype(np.int64)
-        number |= (rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]) << shift
+        rgb = frame_of(window).astype(np.int64)
+        number |= (rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]) << shift
     window.Finalize()
-    shown = np.flatnonzero((number > 0) & (number <= starts[-1]))
-    cell = number[shown] - 1
+    # From the lowest row up: places are drawn from them at random.
+    from_below, column = np.nonzero(((number > 0) & (number <= starts[-1]))[::-1])
+    row = height - 1 - from_below
+    cell = number[row, column] - 1
     which = np.searchsorted(starts, cell, side="right") - 1
-    row, column = np.divmod(shown, width)
+    return Pixels(row, column, which, cell - starts[which], size)
+
+
+def frame_of(window: vtkRenderWindow) -> Bytes:
+    """Draw a window and return its picture in bytes, shape (H, W, 3), the upper row first."""
+    window.Render()
+    width, height = window.GetSize()
+    pixels = vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
     # VTK's rows begin at the bottom.
-    return Pixels(height - 1 - row, column, which, cell - starts[which], size)
+    return as_numpy(pixels).reshape(height, width, 3)[::-1]
 
 
 def in_pixels(camera: pv.Camera, size: tuple[int, int], points: Array) -> Array:

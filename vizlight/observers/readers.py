@@ -26,18 +26,21 @@ from vizlight.observers.samples import dots
 from vizlight.shading import display
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     import pyvista as pv
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Indices, Rows
     from vizlight.observers.eye import SeenPicture
     from vizlight.observers.samples import Sample
+    from vizlight.shading.display import Bytes
 
 #: Number of candidates of a direction, one for each degree.
 ANGLES = 180
 #: Least length of a unit tangent in the picture whose direction there is read.
 SHORTEST = 0.35
-#: Logarithm of the likelihood of a course along a grain along which nothing changes, to that of an
-#: even grain: a posterior of 3.7 degrees, which the sharpness of a belief makes wider.
+#: Logarithm of the likelihood of a course along a perfect grain, over that without any grain: a
+#: posterior of 3.7 degrees, which a lower sharpness makes wider.
 BELIEF = 60.0
 #: Number of classes of a magnitude, largest number of classes of a signal, and least number of
 #: places in each of the latter. With 128 places in 32 classes noise alone would tell 1.8 bits.
@@ -50,8 +53,8 @@ COURSES, SLOPES = 90, 180
 SHARES = (1.0, 0.8, 0.65, 0.5, 0.4, 0.3)
 #: Number of colours of a bar, and of the amounts of light on each, for a reader of values.
 BAR, AMOUNTS = 128, 12
-#: Number of pairs of place and candidate that are matched at once.
-BLOCK = 1 << 22
+#: Number of pairs of place and candidate that are matched at once: what fits a processor's cache.
+BLOCK = 1 << 16
 #: Least share of a channel that a place itself has; below, its colour is its neighbours'.
 LEAST_COVER = 0.05
 #: Shares of answers that have nothing to do with the picture, and sharpnesses of what a reader
@@ -74,7 +77,7 @@ class Colors(NamedTuple):
     lab: Array
     deviation: Array
 
-    def take(self, rows: Bools | Indices) -> Colors:
+    def take(self, rows: Rows) -> Colors:
         """Return the colours of some places."""
         return Colors(self.lab[rows], self.deviation[rows])
 
@@ -90,19 +93,19 @@ def colors_at(
     much as colours differ in the picture, for all that is drawn but ``share``, its own share of
     each channel. Lines run beside others like them.
     """
-    found = seen.colors[row, column]
-    noisy = found + random.normal(0.0, noise, found.shape)
+    mixed = seen.colors_at(row, column)
+    noisy = mixed + random.normal(0.0, noise, mixed.shape)
     cover = np.maximum(seen.cover[row, column], LEAST_COVER)
     channels = xyz_of_lab(noisy) @ OPPONENT.T
     alone = (channels - (1 - cover) * seen.ground) / cover
-    own = lab_of_opponent(alone)
+    colors = lab_of_opponent(alone)
     # CIELAB is steeper in dark colours, by the power 2/3 of luminance that lightness is from.
-    steeper = np.maximum((found[:, :1] + 16) / (own[:, :1] + 16), 1.0) ** 2
+    steeper = np.maximum((mixed[:, :1] + 16) / (colors[:, :1] + 16), 1.0) ** 2
     deviation = math.hypot(noise, ROUNDING) / np.minimum(cover, 1.0) * steeper
     if share is not None:
         beside = np.clip(1 - share / cover, 0.0, 1.0)
-        deviation = np.hypot(deviation, beside * own.std(axis=0))
-    return Colors(own, deviation)
+        deviation = np.hypot(deviation, beside * colors.std(axis=0))
+    return Colors(colors, deviation)
 
 
 class Reading(NamedTuple):
@@ -113,12 +116,12 @@ class Reading(NamedTuple):
     error : ndarray, shape (M,)
         Error of each answer.
     truth : ndarray, shape (S, M)
-        Probability that the reader gives the right candidate, for each sharpness.
+        Probability that the reader gives to the right candidate, for each sharpness.
     candidates : int
         Number of candidates.
     other_error, other_truth : ndarray
-        The same for what is right at another place, at random: what guessing gives, since all data
-        may be alike.
+        The same, compared with the data of other places, at random: what guessing gives where data
+        are alike.
     """
 
     error: Array
@@ -139,63 +142,93 @@ def elsewhere(count: int) -> Indices:
     return np.random.default_rng(count).permutation(count)
 
 
-def likelihood(colors: Colors, table: Array) -> Array:
+def likelihood(colors: Colors, tables: Array) -> Array:
     """Return the logarithm of the likelihood of each candidate at each place, shape (M, A).
 
     Parameters
     ----------
     colors : Colors
         Colours of M places.
-    table : ndarray, shape (A, 3)
-        Colours of the candidates in CIELAB.
+    tables : ndarray, shape (L, A, 3)
+        Colours of the candidates in CIELAB, each in any of L lights, whose likelihoods are summed.
     """
+    logarithms = np.empty((len(colors.lab), tables.shape[1]))
+    for rows, each in _in_lights(colors, tables):
+        best = each.max(axis=1)
+        each -= best[:, np.newaxis]
+        np.exp(each, out=each)
+        logarithms[rows] = best + np.log(each.sum(axis=1))
+    return logarithms
+
+
+def _in_lights(colors: Colors, tables: Array) -> Iterator[tuple[Indices, Array]]:
+    """Yield rows of places, and the logarithms of likelihoods there, shape (rows, L, A)."""
+    lights, count, _ = tables.shape
     precision = 1 / colors.deviation**2
-    # (a - b)^2 = a^2 + b^2 - 2 a b: products of matrices in place of all differences.
-    square = (precision * colors.lab**2).sum(axis=1)[:, np.newaxis]
-    square = square + precision @ (table**2).T - 2 * (precision * colors.lab) @ table.T
-    return np.asarray(-square / 2)
+    square = (precision * colors.lab**2).sum(axis=1, keepdims=True)
+    # (a - b)^2 = a^2 + b^2 - 2 a b: one product of matrices in place of all differences.
+    places = np.hstack([precision, -2 * precision * colors.lab, square]) / -2
+    table = tables.reshape(-1, 3)
+    candidates = np.hstack([table**2, table, np.ones((len(table), 1))]).T
+    step = max(1, BLOCK // len(table))
+    for start in range(0, len(places), step):
+        rows = np.arange(start, min(start + step, len(places)))
+        yield rows, (places[rows] @ candidates).reshape(-1, lights, count)
 
 
-def posterior(logarithms: Array, sharpness: float = 1.0) -> Array:
-    """Return probabilities of equally likely candidates, with sum 1 in each row."""
-    found = np.exp(sharpness * (logarithms - logarithms.max(axis=1, keepdims=True)))
-    return np.asarray(found / found.sum(axis=1, keepdims=True))
+def of_truth(logarithms: Array, *truths: Indices) -> Array:
+    """Return the probability of right candidates for each sharpness, shape (T, S, M).
 
+    Candidates are equally likely before; their probabilities at a place have the sum 1.
 
-def of_truth(logarithms: Array, truth: Indices) -> Array:
-    """Return the probability of the right candidates for each sharpness, shape (S, M)."""
-    rows = np.arange(len(truth))
-    return np.stack([posterior(logarithms, sharp)[rows, truth] for sharp in SHARPNESS])
+    Parameters
+    ----------
+    logarithms : ndarray, shape (M, A)
+        Logarithms of the likelihoods of the candidates.
+    *truths : ndarray of int, shape (M,)
+        Right candidates of the places, in T ways.
+    """
+    below = logarithms - logarithms.max(axis=1, keepdims=True)
+    probabilities = np.empty((len(truths), len(SHARPNESS), len(below)))
+    rows, buffer = np.arange(len(below)), np.empty_like(below)
+    for i, sharpness in enumerate(SHARPNESS):
+        np.exp(np.multiply(below, sharpness, out=buffer), out=buffer)
+        total = buffer.sum(axis=1)
+        for truth, probability in zip(truths, probabilities[:, i], strict=True):
+            probability[:] = buffer[rows, truth] / total
+    return probabilities
 
 
 def _compared(
     error: Array, other_error: Array, logarithms: Array, right: Indices, other: Indices
 ) -> Reading:
     """Return answers compared with what is right at their places, and at the other places."""
-    truth, other_truth = (of_truth(logarithms, each) for each in (right, right[other]))
+    truth, other_truth = of_truth(logarithms, right, right[other])
     return Reading(error, truth, logarithms.shape[1], other_error, other_truth)
 
 
 def information(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of candidates that are equally likely before.
 
-    It is ``log2(A) + E[log2(q)]``, q the probability that the reader gives the right one of A
+    It is ``log2(A) + E[log2(q)]``, q the probability that the reader gives to the right one of A
     candidates: what a reader believes counts only as far as it is true (logarithmic score, Good
     1952). The reader knows how far the picture is to be trusted, so that the best sharpness and
     the best share of lapses are taken; with lapses alone the bits are 0.
     """
     best = 0.0
     for level in range(len(SHARPNESS)):
-        gains = [one.candidates * one.truth[level] for one in readings]
+        gains = [reading.candidates * reading.truth[level] for reading in readings]
         gain = np.concatenate(gains)
         for lapse in LAPSES:
             best = max(best, float(np.log2((1 - lapse) * gain + lapse).mean()))
     return best
 
 
-def told(readings: list[Reading]) -> float:
+def bits_told(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of its places, beyond what all places have in common."""
-    return max(0.0, information(readings) - information([one.elsewhere for one in readings]))
+    return max(
+        0.0, information(readings) - information([reading.elsewhere for reading in readings])
+    )
 
 
 def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) -> Reading:
@@ -268,8 +301,8 @@ def _drawn(logarithms: Array) -> Indices:
     """Return the likeliest candidate of each place; of those that are alike the middle one."""
     best = logarithms >= logarithms.max(axis=1, keepdims=True) - 1e-9
     rank = np.cumsum(best, axis=1)
-    found: Indices = np.argmax(rank >= (rank[:, -1:] + 1) // 2, axis=1)
-    return found
+    middle: Indices = np.argmax(rank >= (rank[:, -1:] + 1) // 2, axis=1)
+    return middle
 
 
 def course(sample: Sample) -> Array:
@@ -307,8 +340,10 @@ def shown(rgb: Array) -> Array:
     return display.displayable(np.maximum(rgb, 0.0))
 
 
-def read_heading(sample: Sample, middle: Array, colors: Colors, share: float = 1.0) -> Reading:
-    """Return the answers of a reader who knows the course of lines and a key of all directions.
+def read_heading(
+    sample: Sample, middle: Array, colors: Colors, shares: Sequence[float] = SHARES
+) -> list[Reading]:
+    """Return the answers of readers who know the course of lines and a key of all directions.
 
     Edges that are smoothed, and halos, leave less light of lines than the key has.
 
@@ -320,17 +355,18 @@ def read_heading(sample: Sample, middle: Array, colors: Colors, share: float = 1
         Place of the key.
     colors : Colors
         Colours of the places.
-    share : float, default: 1.0
-        Share of the light of the key that the reader expects of all lines.
+    shares : sequence of float
+        Share of the light of the key that each reader expects of all lines.
 
     Returns
     -------
-    Reading
-        Angles in degrees, from 0 to 90, between the tangents and the likeliest of 180 directions
-        in space that have their course in the picture.
+    list of Reading
+        For each share, angles in degrees, from 0 to 90, between the tangents and the likeliest of
+        180 directions in space that have their course in the picture.
     """
     light = linear(shown(_light_in_frame(sample, middle, _ways())))
-    return _along(sample, middle, colors, [lab_of_xyz(share * light @ XYZ.T)])
+    tables = [lab_of_xyz(share * light @ XYZ.T) for share in shares]
+    return [_along(sample, middle, colors, table[np.newaxis]) for table in tables]
 
 
 def read_axes(sample: Sample, middle: Array, colors: Colors) -> Reading:
@@ -355,7 +391,7 @@ def read_axes(sample: Sample, middle: Array, colors: Colors) -> Reading:
     amounts = np.linspace(0.0, 1.0, AMOUNTS, endpoint=False)
     tables = [lab(hues), *(lab(amount * hues) for amount in amounts[1:])]
     pale = [lab_of_xyz((amount + (1 - amount) * linear(hues)) @ XYZ.T) for amount in amounts[1:]]
-    return _along(sample, middle, colors, tables + pale)
+    return _along(sample, middle, colors, np.stack(tables + pale))
 
 
 def _ways() -> Array:
@@ -365,8 +401,11 @@ def _ways() -> Array:
     return np.stack([np.cos(slope) * np.cos(turn), np.cos(slope) * np.sin(turn), np.sin(slope)], 1)
 
 
-def _along(sample: Sample, middle: Array, colors: Colors, tables: list[Array]) -> Reading:
-    """Return the answers by the course of lines and by colours, in any of some lights."""
+def _along(sample: Sample, middle: Array, colors: Colors, tables: Array) -> Reading:
+    """Return the answers by the course of lines and by colours, in any of some lights.
+
+    Colours are of shape (L, COURSES SLOPES, 3) for L lights.
+    """
     # The key tells slopes toward the eye from its own place.
     eye = _nearest(sample, middle, 1).eye[0]
     angle, toward = course(sample), _single(sample) @ eye
@@ -375,12 +414,11 @@ def _along(sample: Sample, middle: Array, colors: Colors, tables: list[Array]) -
     steps = np.rint(angle % np.pi / np.pi * COURSES).astype(np.intp)
     down = (angle < 0) ^ (steps == COURSES)
     toward = np.degrees(np.arcsin(np.clip(np.where(down, -toward, toward), -1, 1)))
-    logarithms = np.full((len(sample), SLOPES), -np.inf)
+    logarithms = np.empty((len(sample), SLOPES))
+    of_courses = tables.reshape(-1, COURSES, SLOPES, 3)
     for step in np.unique(steps % COURSES):
         rows = steps % COURSES == step
-        for table in tables:
-            found = likelihood(colors.take(rows), table.reshape(COURSES, SLOPES, 3)[step])
-            logarithms[rows] = np.logaddexp(logarithms[rows], found)
+        logarithms[rows] = likelihood(colors.take(rows), of_courses[:, step])
     right = np.clip(np.floor(toward + 90), 0, SLOPES - 1).astype(np.intp)
     answer = _drawn(logarithms) - 90 + 0.5
     other = elsewhere(len(toward))
@@ -430,26 +468,16 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
     seen_side = np.where(dots(sample.normals, sample.eye) < 0, -1.0, 1.0)
     truth = seen_side[:, np.newaxis] * sample.normals @ axes.T
     other = elsewhere(len(sample))
-    errors, probabilities = [], []
-    step = max(1, BLOCK // len(disc))
-    for start in range(0, len(sample), step):
-        rows = slice(start, start + step)
-        logarithms = likelihood(Colors(colors.lab[rows], colors.deviation[rows]), table)
-        # The tangent is unknown: a normal is as likely as all of its tangents together.
-        likely = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
-        normal = likely.reshape(len(likely), turns, count).sum(axis=1)
-        best = unit_rows(normal @ disc[:count])
-        logarithms = np.log(np.maximum(normal, 1e-300))
-        for normals in (truth[rows], truth[other[rows]]):
-            cosine = np.einsum("ij,ij->i", best, normals)
-            errors.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
-            right = np.argmax(normals @ disc[:count].T, axis=1)
-            probabilities.append(of_truth(logarithms, right))
-    (error, other_error), (seen, other_seen) = (
-        (np.concatenate(each[::2], axis=-1), np.concatenate(each[1::2], axis=-1))
-        for each in (errors, probabilities)
+    # The tangent is unknown: a normal is as likely as all of its tangents together.
+    logarithms = likelihood(colors, table.reshape(turns, count, 3))
+    likely = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
+    mean = unit_rows(likely @ disc[:count])
+    error, other_error = (
+        np.degrees(np.arccos(np.clip(dots(mean, normals), -1.0, 1.0)))
+        for normals in (truth, truth[other])
     )
-    return Reading(error, seen, count, other_error, other_seen)
+    right = np.argmax(truth @ disc[:count].T, axis=1)
+    return _compared(error, other_error, logarithms, right, other)
 
 
 def candidates(count: int, turns: int, phase: float) -> tuple[Array, Array]:
@@ -503,10 +531,7 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     count = min(BAR, len(whole))
     bar = whole[((np.arange(count) + 0.5) / count * len(whole)).astype(np.intp)]
     amounts = np.linspace(display.LEAST, 1.0, AMOUNTS) if lit else np.ones(1)
-    logarithms = np.full((len(positions), count), -np.inf)
-    for amount in amounts:
-        lighted = display.on_colors(bar, np.full(count, amount)) / 255.0
-        logarithms = np.logaddexp(logarithms, likelihood(colors, lab(lighted)))
+    logarithms = likelihood(colors, lab(_in_amounts(bar, amounts)))
     right = np.minimum((positions * count).astype(np.intp), count - 1)
     other = elsewhere(len(positions))
     answer = (_drawn(logarithms) + 0.5) / count
@@ -519,12 +544,15 @@ def light_of(colors: Colors, table: pv.LookupTable) -> Colors:
     bar = np.asarray(table.values)[:, :3]
     bar = bar[((np.arange(BAR) + 0.5) / BAR * len(bar)).astype(np.intp)]
     amounts = np.linspace(display.LEAST, 1.0, 3 * AMOUNTS)
-    best, amount = np.full(len(colors.lab), -np.inf), np.ones(len(colors.lab))
-    for share in amounts:
-        lighted = display.on_colors(bar, np.full(BAR, share)) / 255.0
-        found = likelihood(colors, lab(lighted)).max(axis=1)
-        amount, best = np.where(found > best, share, amount), np.maximum(found, best)
-    return Colors(lab(np.repeat(amount[:, np.newaxis], 3, axis=1)), colors.deviation)
+    lighted = lab(_in_amounts(bar, amounts))
+    best = [each.max(axis=2).argmax(axis=1) for _, each in _in_lights(colors, lighted)]
+    grays = np.repeat(amounts[np.concatenate(best), np.newaxis], 3, axis=1)
+    return Colors(lab(grays), colors.deviation)
+
+
+def _in_amounts(bar: Bytes, amounts: Array) -> Array:
+    """Return the colours of a bar in amounts of light, shape (amounts, colours, 3)."""
+    return np.stack([display.on_colors(bar, np.full(len(bar), a)) / 255.0 for a in amounts])
 
 
 def steepness(sample: Sample) -> Array:
@@ -576,8 +604,8 @@ def ranked_error(magnitude: Array, signal: Array) -> Array:
     rank = (ranks(magnitude) - 0.5) / len(magnitude)
     count = min(SIGNALS, max(2, len(signal) // EACH))
     bounds = np.unique(np.quantile(signal, np.linspace(0, 1, count + 1)[1:-1]))
-    own = np.searchsorted(bounds, signal)
+    label = np.searchsorted(bounds, signal)
     answers = np.zeros(len(bounds) + 1)
-    for number in np.unique(own):
-        answers[number] = np.median(rank[own == number])
-    return np.abs(answers[own] - rank)
+    for number in np.unique(label):
+        answers[number] = np.median(rank[label == number])
+    return np.abs(answers[label] - rank)

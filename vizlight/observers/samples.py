@@ -83,20 +83,20 @@ class Sample:
 
     def take(self, rows: Rows) -> Sample:
         """Return some of the places."""
-        own: Keywords = {
+        rows_of_arrays: Keywords = {
             n: array[rows] for n, array in vars(self).items() if isinstance(array, np.ndarray)
         }
-        return dataclasses.replace(self, **own)
+        return dataclasses.replace(self, **rows_of_arrays)
 
     @property
     def has_one_tangent(self) -> bool:
         """Whether there is a single tangent at each place."""
         return self.tangents is not None and self.tangents.shape[1] == 1
 
-    def given(
+    def inputs(
         self, tangents: Array | None, normals: Array | None, repeat: int = 1
     ) -> ShadingInputs:
-        """Return inputs of the engine of other tangents and normals, ``repeat`` at each place."""
+        """Return inputs of the engine for other tangents and normals, ``repeat`` at each place."""
         # Normals beside tangents are what a reader sees as the shape; light has them where it is
         # conditioned.
         lit = self.options.conditioned is True or tangents is None
@@ -107,10 +107,10 @@ class Sample:
         """Return the light of other tangents and normals at the places, shape (M repeat, 3)."""
         # These runs are the observer's, and none of those that a report of the user counts.
         with engine.observed(None):
-            found = engine.run(self.given(tangents, normals, repeat), self.scene, self.options)
-        if found.rgb is not None:
-            return np.asarray(found.rgb, np.float64)
-        return np.repeat(found.luminance[:, np.newaxis].astype(np.float64), 3, axis=1)
+            result = engine.run(self.inputs(tangents, normals, repeat), self.scene, self.options)
+        if result.rgb is not None:
+            return np.asarray(result.rgb, np.float64)
+        return np.repeat(result.luminance[:, np.newaxis].astype(np.float64), 3, axis=1)
 
 
 def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
@@ -166,12 +166,12 @@ def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
         return None
     rows = rows_of(part.inputs.tangents, ids).astype(np.float64)
     frames: Array = rows.reshape(len(ids), -1, 3)
-    one = frames.shape[1] == 1
-    frames = unit_rows(frames[:, 0])[:, np.newaxis] if one else orthonormalize(frames)[0]
+    is_single = frames.shape[1] == 1
+    frames = unit_rows(frames[:, 0])[:, np.newaxis] if is_single else orthonormalize(frames)[0]
     if places.weights.shape[1] > 1:
-        unsigned = part.inputs.line_field or not one
+        unsigned = part.inputs.line_field or not is_single
         frames = (mean_spaces if unsigned else interpolated)(frames, places)
-    return unit_rows(frames[:, 0])[:, np.newaxis] if one else frames
+    return unit_rows(frames[:, 0])[:, np.newaxis] if is_single else frames
 
 
 def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array | None:
@@ -179,10 +179,10 @@ def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array |
     sides = part.inputs.sides
     if sides is None or part.inputs.normals is None:
         return None
-    own = sides()
-    normals = interpolated(unit_rows(own.normals[ids]), places)
-    facts = interpolated(own.facts[ids], places)
-    return own.turned(unit_rows(normals), facts, points)
+    sided = sides()
+    normals = interpolated(unit_rows(sided.normals[ids]), places)
+    facts = interpolated(sided.facts[ids], places)
+    return sided.turned(unit_rows(normals), facts, points)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,6 +242,11 @@ class Part:
     by_axes: bool = False
 
     @property
+    def by_form(self) -> bool:
+        """Whether marks tell directions by their form, since colours do not by their hue."""
+        return self.kind == "line" or not self.lit
+
+    @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
         if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):
@@ -286,12 +291,12 @@ def part_on(
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
     # Shares of light that reach a place are the picture's to show, and not of the key.
-    known = dataclasses.replace(options, occlusion=None, bundle=False)
+    of_key = dataclasses.replace(options, occlusion=None, bundle=False)
     if kind == "surface":
         # Normals are then read beside the tangents: they are the shape that a reader sees. Surfaces
         # without tangents have their attached shadow in any case.
-        known = dataclasses.replace(known, conditioned=options.tangents is not None)
-    inputs = part_of(mesh, path, scene, known).inputs.of_faces()
+        of_key = dataclasses.replace(of_key, conditioned=options.tangents is not None)
+    inputs = part_of(mesh, path, scene, of_key).inputs.of_faces()
     inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
@@ -435,8 +440,8 @@ def weights(corners: Array, origin: Array, way: Array) -> Array:
     area = uu * vv - uv**2
     second, third = _ratio(vv * pu - uv * pv_, area), _ratio(uu * pv_ - uv * pu, area)
     # At an edge a line of sight may pass the cell by a little.
-    found = np.maximum(np.stack([1 - second - third, second, third], axis=1), 0.0)
-    return np.asarray(found / found.sum(axis=1, keepdims=True))
+    shares = np.maximum(np.stack([1 - second - third, second, third], axis=1), 0.0)
+    return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
 def flattened(vectors: Array, way: Array) -> Array:

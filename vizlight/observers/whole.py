@@ -22,6 +22,7 @@ from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure, toward
+from vizlight.observers.pixels import frame_of
 from vizlight.observers.samples import GLYPH, of_glyphs, part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
@@ -92,10 +93,9 @@ def legibility_of(
     """
     if not plotter.camera_set:
         plotter.renderer.view_isometric(render=False)
-    # PyVista takes the frame that it has, even if the camera has moved since.
+    # PyVista's own picture may be older than the camera.
     assert plotter.render_window is not None
-    plotter.render_window.Render()
-    whole = np.asarray(plotter.screenshot(return_img=True))[..., :3] / 255.0
+    whole = frame_of(plotter.render_window) / 255.0
     renderer = plotter.renderer
     (left, low), (wide, high) = renderer.GetOrigin(), renderer.GetSize()
     top = len(whole) - low - high
@@ -159,8 +159,8 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
             part = _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
         else:
             # Strokes are as wide as their property says.
-            own = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
-            part = _lit(live, renderer, actor, own)
+            stroke_width = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
+            part = _lit(live, renderer, actor, stroke_width)
         if part is not None:
             if part.kind == "point":
                 part = dataclasses.replace(part, width=_point_width(style, pixel))
@@ -217,9 +217,9 @@ def moved(
     placed = mesh.transform(matrix, transform_all_input_vectors=False, inplace=False)
     turned: Keywords = {}
     for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
-        given = getattr(options, name)
-        if given is not None:
-            rows = np.asarray(mesh.point_data[given] if isinstance(given, str) else given)
+        array = getattr(options, name)
+        if array is not None:
+            rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
             turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
     return placed, dataclasses.replace(options, **turned)
 
@@ -301,8 +301,8 @@ def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
     else:
         values, flat = values_of(mesh, name), False
     if values.ndim == 1:
-        known = isinstance(table, pv.LookupTable)
-        return {"values": values, "table": table, "flat": flat} if known else {}
+        has_table = isinstance(table, pv.LookupTable)
+        return {"values": values, "table": table, "flat": flat} if has_table else {}
     return {"by_axes": True} if _by_axes(mesh, values) else {}
 
 
@@ -314,9 +314,11 @@ def _by_axes(mesh: pv.DataSet, colors: Raw) -> bool:
     """
     if not has_lines_only(mesh) or colors.shape[1] < 3:
         return False
-    found, own = (unit_rows(a[:, :3].astype(np.float64)) for a in (colors, direction_colors(mesh)))
-    seen = (found.any(axis=1)) & (own.any(axis=1))
-    cosine = np.einsum("ij,ij->i", found[seen], own[seen])
+    shown, of_axes = (
+        unit_rows(a[:, :3].astype(np.float64)) for a in (colors, direction_colors(mesh))
+    )
+    seen = (shown.any(axis=1)) & (of_axes.any(axis=1))
+    cosine = np.einsum("ij,ij->i", shown[seen], of_axes[seen])
     return len(cosine) > 0 and float(np.median(cosine)) > np.cos(1 / 30)
 
 
@@ -361,7 +363,7 @@ def read_picture(picture: object) -> Array:
         expected = "an array of shape (height, width, 3), of 8 pixels or more along each side"
         raise ValueError(_check.message("picture", expected, f"shape {array.shape}"))
     scale = 255.0 if array.dtype == np.uint8 else 1.0
-    found = np.asarray(array[..., :3], dtype=np.float64) / scale
-    if not np.isfinite(found).all() or found.min() < 0 or found.max() > 1:
+    rgb = np.asarray(array[..., :3], dtype=np.float64) / scale
+    if not np.isfinite(rgb).all() or rgb.min() < 0 or rgb.max() > 1:
         raise ValueError(_check.message("picture", "bytes, or numbers from 0 to 1", "others"))
-    return found
+    return rgb
