@@ -267,8 +267,7 @@ class Component:
         color : colour, optional
             Colour of the words. Default: black on a light background, white on a dark one.
         lying : bool, default: False
-            Whether a bar lies below the data, which suits wide maps, as long as there is no other
-            key.
+            Whether a bar lies below the data, which suits wide maps, as long as it is the only key.
         **options
             Keywords of :func:`vizlight.presets.key`: exponent, conditioned, cmap, clim, levels,
             title.

@@ -122,7 +122,7 @@ class Margin:
             self._below(renderer, min(width, height))
 
     def _below(self, renderer: vtkRenderer, short: int) -> None:
-        """Put a bar below the data, in the ground that a map leaves there too."""
+        """Put a bar below the data, right below a map."""
         left, low, right, _ = _box_of(renderer, data=False)
         wide, high = renderer.GetRenderWindow().GetSize()
         gap = MARGIN * short
@@ -237,7 +237,7 @@ class MarginKey:
     ink : (r, g, b)
         Colour of the words.
     lying : bool
-        Whether it is a bar that lies, where there is no other key.
+        Whether it is a bar that lies, as long as it is the only key.
     """
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
