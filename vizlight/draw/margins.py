@@ -118,6 +118,12 @@ class Margin:
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
+        _, bottom, end, upper = self._strip.GetViewport()
+        if _is_map(renderer) and upper > bottom and end > renderer.GetViewport()[2]:
+            # Keys stand right beside a map, however narrow that is.
+            columns = _box_of(renderer, data=False)[2] + 2 * MARGIN * min(width, height)
+            x = min(renderer.GetViewport()[2], left + columns / wide)
+            self._strip.SetViewport(x, bottom, end, upper)
         if self._keys[0].lies:
             self._below(renderer, min(width, height))
 
