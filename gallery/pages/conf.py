@@ -29,6 +29,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "numpydoc",
     "sphinx_design",
+    "_front",
     "_guide",
     "_light",
     "_mathml",

@@ -118,10 +118,10 @@ def test_every_shadow_of_every_light(name, monkeypatch):
     assert run.bytes == mesh["t"].nbytes
     assert run.sample > 30
     assert run.error < (4e-3 if make is terrain else 1e-9)
-    right = casters.FieldCaster.of if make is terrain else casters.SolidCaster.of
+    right = casters.FieldCaster.ratios if make is terrain else casters.SolidCaster.ratios
     worse = lambda self, light, show: right(self, light, show) * (0.9 if light.position else 1)  # noqa: E731
     caster = casters.FieldCaster if make is terrain else casters.SolidCaster
-    monkeypatch.setattr(caster, "of", worse)
+    monkeypatch.setattr(caster, "ratios", worse)
     with vizlight.report() as told:
         relief_shadow(make(), scene, depth=0.5 if make is terrain else 0.05, **options)
     assert told.error > 0.02
