@@ -122,7 +122,7 @@ class Margin:
             self._below(renderer, min(width, height))
 
     def _below(self, renderer: vtkRenderer, short: int) -> None:
-        """Put a bar below the data, in the ground that a map leaves there too."""
+        """Put a bar below the data, also in the ground that a map leaves below itself."""
         left, low, right, _ = _box_of(renderer, data=False)
         wide, high = renderer.GetRenderWindow().GetSize()
         gap = MARGIN * short
@@ -157,7 +157,7 @@ class Margin:
             text.SetPosition(gap, y)
 
     def _beside(self, room: tuple[float, float], short: int, rows: Array, *, alone: bool) -> None:
-        """Put a single bar beside the data, between their rows as far as there is room."""
+        """Put a single bar beside the data, between their rows as far as room allows."""
         (key,) = self._keys
         letters, gap = LETTERS * short, MARGIN * short
         wide = key.fit(short, letters, room[0] - gap, 0.0, alone)[0]
@@ -202,7 +202,7 @@ def _is_map(renderer: vtkRenderer) -> bool:
 
 
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
-    """Return left, low, right and top, in pixels of a renderer, of what it draws.
+    """Return left, low, right and top of the drawing of a renderer, in its pixels.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class MarginKey:
     ink : (r, g, b)
         Colour of the words.
     lying : bool
-        Whether it is a bar that lies, where there is no other key.
+        Whether it is a bar that lies, as the only key.
     """
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
@@ -290,7 +290,7 @@ class MarginKey:
         short : float
             Shorter side of the picture.
         letters, width : float
-            Height of letters, and width that there is.
+            Height of letters, and available width.
         tall : float
             Height of a bar; 0 for that of its own.
         alone : bool
@@ -394,7 +394,7 @@ def data_share(
     key : float
         Width of a key, as a share of the shorter side.
     titled : bool, default: True
-        Whether there is a title above the data.
+        Whether a title stands above the data.
     lying : bool, default: False
         Whether a single bar lies below the data.
     """
@@ -468,7 +468,7 @@ def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
 
 
 def _with_beyond(marks: list[tuple[float, str]], below: str, above: str) -> list[tuple[float, str]]:
-    """Return the words along a bar with those at ends beyond which there are values."""
+    """Return the words along a bar with those at ends that values lie beyond."""
     ends = [(share, word) for share, word in ((0.0, below), (1.0, above)) if word]
     near = [
         (share, word) for share, word in marks if all(abs(share - end) > CLOSE for end, _ in ends)
@@ -484,7 +484,7 @@ def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
     places : list of float
         Places, as shares of the length.
     zero : float
-        Place of zero, whose neighbours are counted from it.
+        Place of zero, from which its neighbours are counted.
     most : float
         Number of words that fit.
     """
@@ -501,11 +501,11 @@ def ink_on(background: pv.Color) -> Color:
 
 
 def _text(word: str, ink: Color) -> vtkTextActor:
-    made = vtkTextActor()
-    made.SetInput(word)
-    style = made.GetTextProperty()
+    actor = vtkTextActor()
+    actor.SetInput(word)
+    style = actor.GetTextProperty()
     style.SetColor(*ink)
     style.SetFontFamilyToArial()
     style.SetJustificationToCentered()
     style.SetVerticalJustificationToBottom()
-    return made
+    return actor
