@@ -323,15 +323,13 @@ class Kernel(Generic[P, R]):
         """Return numba's own function, kept in a folder; None keeps it in memory alone."""
         import numba
 
-        function = self.function
-        names = function.__globals__ | {
-            name: k._dispatcher() for name, k in self._helpers().items()
-        }
+        plain = self.function
+        names = plain.__globals__ | {name: k._dispatcher() for name, k in self._helpers().items()}
         # numba reads names from the globals of the function, where kernels are not yet compiled.
         copy = types.FunctionType(
-            function.__code__, names, function.__name__, function.__defaults__, function.__closure__
+            plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__
         )
-        copy.__module__, copy.__qualname__ = function.__module__, function.__qualname__
+        copy.__module__, copy.__qualname__ = plain.__module__, plain.__qualname__
         options = {
             # Threads run a kernel at the same time.
             "nogil": True,

@@ -338,11 +338,9 @@ def _made(
         seen, fixed, *shown, fur=plan.fur, tallest=tallest, data=scalars is not None
     )
     # What stands with the camera has its numbers in view coordinates already.
-    fixed_names = {"vizEye", "vizAxis", "vizFrom"}
-    fixed_names |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
-    uniforms = [
-        number._replace(space="") if number.name in fixed_names else number for number in uniforms
-    ]
+    names = {"vizEye", "vizAxis", "vizFrom"}
+    names |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
+    uniforms = [each._replace(space="") if each.name in names else each for each in uniforms]
     normal_array, tangent_array, dialect = normals, None, dialects.PARAVIEW
     if not plan.surface:
         # VTK 9.1 takes an array of any type as normals, but as tangents one of float32 alone.

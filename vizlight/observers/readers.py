@@ -1,8 +1,7 @@
 """Readers of a picture: the meaning of colours by a key, and how much they tell of the data.
 
 A reader matches the colour that the eye has of a place with the colours of a key, knows the noise
-of the eye, and answers with the likeliest candidate. It knows no normal, no lamp and no formula of
-light.
+of the eye, and gives the likeliest answer. It knows no normal, no lamp and no formula of light.
 """
 
 from __future__ import annotations

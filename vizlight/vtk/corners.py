@@ -299,15 +299,12 @@ def _neighbours(
         key, rows = key[order], rows[order]
         new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
         pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
-        this, other = rows[pair], rows[pair + 1]
-        ahead, onward = this < len(place), other < len(place)
-        this, other = (
-            np.where(ahead, this, this - len(place)),
-            np.where(onward, other, other - len(place)),
-        )
+        a, b = rows[pair], rows[pair + 1]
+        ahead, onward = a < len(place), b < len(place)
+        a, b = np.where(ahead, a, a - len(place)), np.where(onward, b, b - len(place))
         # Faces that are wound alike run along their common edge against each other.
         against = ahead != onward
-        yield place, this, other, face[this], face[other], against
+        yield place, a, b, face[a], face[b], against
 
 
 def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:

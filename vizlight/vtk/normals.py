@@ -708,14 +708,12 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     # A plane has no side: each takes the side of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
-    vectors = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
-    vectors[~np.isfinite(vectors).all(axis=1)] = 0
+    unit = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
+    unit[~np.isfinite(unit).all(axis=1)] = 0
     # Where an eye is known it decides, point by point: no side of a scan is the outer one for sure.
     if view is not None:
-        vectors = np.where(
-            _averted(vectors, places(mesh), view, None)[:, np.newaxis], -vectors, vectors
-        )
-    return Sided(vectors, open=True, computed=True)
+        unit = np.where(_averted(unit, places(mesh), view, None)[:, np.newaxis], -unit, unit)
+    return Sided(unit, open=True, computed=True)
 
 
 def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> Sided:
