@@ -94,7 +94,7 @@ def test_bands_have_a_step_at_each_level_and_black_lines_are_seen_on_them():
     table = maps.bands([1.0, 2.0], (0.0, 3.0))
     colors = np.asarray(table.values)[:, :3] / 255
     light = cielab(linear(colors))
-    assert light[:, 0].min() > 34
+    assert light[:, 0].min() > 40
     jumps = np.linalg.norm(np.diff(light, axis=0), axis=1)
     at = (np.sort(np.argsort(jumps)[-2:]) + 1) / len(colors) * 3
     np.testing.assert_allclose(at, [1, 2], atol=3 / len(colors))

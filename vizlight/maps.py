@@ -131,21 +131,21 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     return table
 
 
-#: Blue over pale yellow to dark red, with a longer way through CIELAB than most maps, and no darker
-#: than a lightness of 35, so that black lines are seen on all of it. It is the map of bands between
-#: isolines, named ``"vizlight.bands"``.
+#: Violet and blue over pale yellow to red and crimson, with a longer way through CIELAB than most
+#: maps, and no darker than a lightness of 40, so that black lines are seen on all of it. It is the
+#: map of bands between isolines, named ``"vizlight.bands"``.
 _BANDS = LinearSegmentedColormap.from_list(
     "vizlight.bands",
     [
-        "#4450b0",
-        "#3a66c4",
+        "#7e57b5",
+        "#4169cf",
         "#5fb5dd",
         "#b9e6cf",
         "#fdf9b0",
         "#fdc15c",
-        "#f2693c",
-        "#c8203a",
-        "#a3143f",
+        "#f4743e",
+        "#d63a3a",
+        "#b0226a",
     ],
 )
 colormaps.register(_BANDS, force=True)
@@ -169,7 +169,7 @@ def bands(
         Values at the ends of the colours, which are levels too. Where they are on both sides of 0,
         and the smaller is at least 0.6 of the larger, the middle of the map is at 0.
     cmap : str, default: "vizlight.bands"
-        Colour map; blue over pale yellow to red by default, on all of which black lines are seen.
+        Colour map; violet over pale yellow to crimson by default, on which black lines are seen.
 
     Returns
     -------

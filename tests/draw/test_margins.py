@@ -126,6 +126,18 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     assert red[:, 1].min() > size[0] * margins.data_share(size, 0.15)[0]
 
 
+def test_a_bar_stands_right_beside_a_narrow_map():
+    size, plotter = (600, 400), pv.Plotter(off_screen=True, window_size=(600, 400))
+    plotter.vizlight.add_mesh(pv.Plane(i_size=1, j_size=3), color="blue", lighting=False)
+    bar = {"question": "value", "cmap": "Reds", "clim": (0, 3)}
+    plotter.vizlight.add_key(presets.shape(), title="rise (m)", **bar)
+    plotter.camera = render.camera_on(plotter.meshes[0], (0, 0, 1), parallel=True, aspect=1.4)
+    seen = plotter.screenshot(return_img=True).astype(int)
+    blue = np.argwhere(seen[..., 2] - seen[..., 0] > 60)
+    red = np.argwhere(seen[..., 0] - seen[..., 2] > 40)
+    assert blue[:, 1].max() < red[:, 1].min() < blue[:, 1].max() + 0.1 * size[0]
+
+
 def test_a_disc_does_not_lie():
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     with pytest.raises(ValueError, match="lying: expected False for a key that is a disc"):

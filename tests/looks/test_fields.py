@@ -92,14 +92,44 @@ def volume(noise):
     return grid
 
 
+def test_a_volume_has_a_floor_where_it_is_seen_from_above():
+    grid = pv.ImageData(dimensions=(6, 6, 6))
+    grid["v"] = np.column_stack([1 + grid.points[:, 2], 0 * grid.points[:, :2]])
+    for view, count in ((None, 1), ((1, -1, 0.5), 1), ((1, -1, -0.5), 0)):
+        layers = vizlight.look(grid, view=view, size=(300, 200)).drawing.layers
+        floors = [layer.mesh.run() for layer in layers if layer.mesh.name == "floor"]
+        assert len(floors) == count
+        for floor in floors:
+            np.testing.assert_allclose(floor.bounds[:4], (0, 5, 0, 5), atol=1e-6)
+            assert -0.05 < floor.bounds[5] < 0
+
+
+def test_flow_runs_across_the_picture_to_the_right():
+    grid = pv.ImageData(dimensions=(9, 9, 9))
+    grid["v"] = np.column_stack([0 * grid.points[:, :2], 0 * grid.points[:, 0]])
+    grid["v"][:, 1] = 1 + grid.points[:, 2]
+    look = vizlight.look(grid, size=(300, 200))
+    right = np.cross(look.view.direction, look.view.up)
+    assert right[1] > 0.75
+
+
+def test_flow_that_is_asked_for_has_the_colours_of_its_speed_and_its_light_in_files():
+    grid = pv.ImageData(dimensions=(6, 6, 6))
+    grid["v"] = np.column_stack([1 + grid.points[:, 2], 0 * grid.points[:, :2]])
+    look = vizlight.look(grid, "flow", size=(300, 200))
+    assert look.drawing.keys[0]["question"] == "value"
+    assert "speed" in look.drawing.words
+    assert np.max(look.mesh["luminance"]) < 0.95
+
+
 def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
     noisy = vizlight.look(volume(0), "flow", seeds=60)
-    assert noisy.drawing.words == "streamlines of V"
+    assert noisy.drawing.words == "streamlines of V in the colours of their speed"
     lines = noisy.drawing.lit.run()
     assert lines.field_data["left_out"][0] > 5
-    assert noisy.notes[0].endswith(f"are left out: {lines.field_data['left_out'][0]}")
+    assert noisy.notes[-1].endswith(f"are left out: {lines.field_data['left_out'][0]}")
     short = vizlight.look(volume(-9), "flow", seeds=20, max_length=1.0)
-    assert not short.notes
+    assert not any("left out" in note for note in short.notes)
     assert short.drawing.lit.run().n_lines > 0
 
 

@@ -18,7 +18,7 @@ def test_values_without_outliers_take_all_of_the_bar(values, lengths):
     shown = range_shown(values, lengths=lengths)
     assert shown.low <= values.min() <= values.max() <= shown.high
     # Round ends waste little of the bar.
-    assert shown.high - shown.low <= 1.08 * np.ptp(values)
+    assert shown.high - shown.low <= 1.1 * np.ptp(values)
     assert shown == Range(shown.low, shown.high)
 
 

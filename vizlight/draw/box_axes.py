@@ -219,6 +219,6 @@ def _word(
 
 
 def _facing(place: Array, pixels: Array, eye: _Eye) -> Array:
-    """Return places in the plane through a place that faces the eye, by their pixels from it."""
+    """Return places by their pixels from one place, in the plane through it that faces the eye."""
     step = eye.pixel(place) * pixels
     return np.asarray(place + step[:, :1] * eye.right + step[:, 1:] * eye.up)

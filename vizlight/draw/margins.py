@@ -118,11 +118,17 @@ class Margin:
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
+        _, bottom, end, upper = self._strip.GetViewport()
+        if _is_map(renderer) and upper > bottom and end > renderer.GetViewport()[2]:
+            # Keys stand right beside a map, however narrow that is.
+            columns = _box_of(renderer, data=False)[2] + 2 * MARGIN * min(width, height)
+            x = min(renderer.GetViewport()[2], left + columns / wide)
+            self._strip.SetViewport(x, bottom, end, upper)
         if self._keys[0].lies:
             self._below(renderer, min(width, height))
 
     def _below(self, renderer: vtkRenderer, short: int) -> None:
-        """Put a bar below the data, also in the ground that a map leaves below itself."""
+        """Put a bar below the data, right below a map."""
         left, low, right, _ = _box_of(renderer, data=False)
         wide, high = renderer.GetRenderWindow().GetSize()
         gap = MARGIN * short
@@ -237,7 +243,7 @@ class MarginKey:
     ink : (r, g, b)
         Colour of the words.
     lying : bool
-        Whether it is a bar that lies, as the only key.
+        Whether it is a bar that lies, as long as it is the only key.
     """
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 FEW = 5
 #: Most numbers along a bar that has some at its ends, and length of such a bar at most, in that of
 #: its values.
-MOST, WASTE = 10, 1.08
+MOST, WASTE = 10, 1.1
 
 
 def even_levels(low: float, high: float, most: int = 5) -> list[float]:

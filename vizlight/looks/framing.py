@@ -82,7 +82,7 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Vi
 
 
 def _vectors(mesh: pv.DataSet, shown: str | None) -> Array | None:
-    """Return some finite vectors of the points of a mesh, None without any."""
+    """Return some finite vectors of the points of a mesh, None if it has none."""
     if shown is None or shown not in mesh.point_data or mesh.point_data[shown].ndim != 2:
         return None
     rows = _some(np.asarray(mesh.point_data[shown], dtype=np.float64))

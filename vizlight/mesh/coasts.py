@@ -41,7 +41,7 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
     Returns
     -------
     pyvista.PolyData
-        Lines in the coordinates of the map; empty where there is no coast.
+        Lines in the coordinates of the map; empty where no coast is.
 
     Raises
     ------

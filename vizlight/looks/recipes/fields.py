@@ -17,6 +17,7 @@ from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
+    BESIDE,
     Doubt,
     Drawing,
     Layer,
@@ -51,6 +52,9 @@ LONG = 3.5
 #: widths of lines: on surfaces, where wider ones darken what is beside them for the eye, and in
 #: volumes.
 HEAD_WIDTH, WIDTHS, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (4.0, 5.5)
+#: Length below which lines on surfaces are left out, in distances between strokes: loops so small
+#: are blots.
+SHORTEST_ON_SURFACE = 2.0
 #: Colour map of lengths of vectors, on which black is seen everywhere.
 SPEED = "vizlight.speed"
 #: Distances between streamlines of a volume as shares of its size: the second where more of the
@@ -61,6 +65,8 @@ SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
 LONG_IN_VOLUME, SHORTEST = 5.0, 4
 #: Largest width of those without a sense, and the halo of all.
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
+#: Colours of the floor of a volume, and how far it is below the box as a share of its size.
+FLOOR, BELOW = {"paper": "#eeeeee", "dark": "#2c2c2c"}, 2e-3
 #: Words of the key for the sense of strokes.
 SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
@@ -225,7 +231,7 @@ def turn_of(mesh: pv.DataSet, name: str) -> float:
 def flow(case: Case) -> Drawing:
     """Draw streamlines of the vectors in a volume as strokes, in the colours of their speed.
 
-    Where a question or an isosurface is asked for, they are lit by their heading.
+    Where a scene, another question or an isosurface is asked for, they are lit.
     """
     array = case.needed_array
     mesh = case.wishes.joined(case.data, array)
@@ -237,10 +243,15 @@ def flow(case: Case) -> Drawing:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(on if keywords.get("confined") else mesh), boxed=True)
-    by_speed = case.wishes.question == "auto" and "surface" not in keywords
+    without_light = case.wishes.question == "auto" or (
+        case.wishes.question == "flow" and case.wishes.make_scene is None
+    )
+    by_speed = without_light and "surface" not in keywords
     by_speed = by_speed and not _is_even(mesh.run(), array.name)
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
-    lit = _streamlines(case, mesh, scene, keywords)
+    # Lines that are asked for have their light in files.
+    light = scene if case.wishes.question == "auto" else case.scene(camera)
+    lit = _streamlines(case, mesh, light, keywords)
     keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
     wide = round(WIDE_IN_VOLUME * case.width, 1)
     if not keywords.get("line_field"):
@@ -266,7 +277,7 @@ def flow(case: Case) -> Drawing:
         notes += [
             f"lines shorter than {least}, four times their distance, are left out: {left_out}"
         ]
-    layers = [lines, *_hull(mesh), *case.boxed(box, camera)]
+    layers = [lines, *_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
@@ -347,6 +358,20 @@ def _hull(mesh: Step) -> list[Layer]:
     return [Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)]
 
 
+def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
+    """Return the layer of the floor of a box that is seen from above, by which heights are told."""
+    low = np.array(box.run().bounds).reshape(3, 2)
+    if camera.run().position[2] <= low[2, 1]:
+        return []
+    sizes = np.ptp(low, axis=1)
+    # Lines on the floor are seen.
+    middle = (*low.mean(axis=1)[:2].tolist(), float(low[2, 0] - BELOW * sizes.max()))
+    wide, deep = sizes[:2].tolist()
+    floor = Step("floor", "pyvista.Plane", center=middle, i_size=wide, j_size=deep)
+    drawn = {"color": FLOOR[case.wishes.style], "lighting": False, **BESIDE}
+    return [Layer(floor, drawn, live=False)]
+
+
 def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | None:
     """Return the step that lays evenly spaced strokes on a surface, None if none can be laid."""
     surface = mesh.run()
@@ -354,6 +379,7 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
         return None
     spacing = float(f"{spacing:.3g}")
     keywords: Keywords = {"tangents": array.name, "spacing": spacing, "confined": True}
+    keywords["min_length"] = float(f"{SHORTEST_ON_SURFACE * spacing:.3g}")
     keywords |= {"stroke_length": LONG * spacing, "feature_angle": "auto"}
     triangles = Step("triangles", ".triangulate", mesh)
     strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)

@@ -33,7 +33,7 @@ UNDER_STROKES = "#9a4f1f"
 GRATICULE = "#555555"
 #: Colour of isolines and their numbers, which is seen on all colours of bands, and on those of the
 #: ground, where lines are brown on maps.
-INK, INK_ON_RELIEF = "#1a1a1a", "#6f4f2f"
+INK, INK_ON_RELIEF = "#1a1a1a", "#553a1c"
 #: Least distance between isolines of heights, in heights of their letters.
 SPARSE_ON_RELIEF = 0.5
 #: Most isolines between which colours change too.
