@@ -1,4 +1,4 @@
-"""The user's folder for what is found out once: compiled code, and what draws on this machine."""
+"""The user's folder for results found once: compiled code, and backends that draw here."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from pathlib import Path
 
 
 def folder(*parts: str) -> Path | None:
-    """Return a folder for what is kept, made if it was not there, or None where none can be.
+    """Return a folder for kept results, made if needed, or None where none can be.
 
     It is in ``vizlight`` in ``$XDG_CACHE_HOME``, or in the system's folder for caches.
     """
     home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA", "")
     if not home:
-        own = "Library/Caches" if sys.platform == "darwin" else ".cache"
-        home = str(Path.home() / own)
+        place = "Library/Caches" if sys.platform == "darwin" else ".cache"
+        home = str(Path.home() / place)
     return _writable(Path(home, "vizlight", *parts))
 
 
 @lru_cache(maxsize=512)
 def _writable(path: Path) -> Path | None:
-    """Return a folder, made if it was not there; None if no file can be written to it."""
+    """Return a folder, made if needed; None if no file can be written to it."""
     # By the specification of XDG a relative path is invalid.
     if not path.is_absolute():
         return None

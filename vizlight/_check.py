@@ -1,4 +1,4 @@
-"""Validators, whose messages have the name, the expectation, the actual value and a remedy.
+"""Validators: their messages have the name, the expectation, the actual value and a remedy.
 
 They raise TypeError for a value of the wrong type, ValueError for a wrong shape or value.
 """
@@ -57,17 +57,17 @@ _OTHERS = {
 
 
 class held:  # noqa: N801 - used as a function
-    """Hold the warnings of a thread until a block ends well; an error says what is wrong alone."""
+    """Hold the warnings of a thread until a block ends well; an error comes without them."""
 
     _texts = threading.local()
 
     def __enter__(self) -> None:
-        """Begin to hold; what an outer block holds it keeps."""
+        """Begin to hold; an outer block keeps its warnings."""
         self._outer: list[str] | None = getattr(self._texts, "held", None)
         self._texts.held = []
 
     def __exit__(self, kind: object, *_: object) -> None:
-        """Issue what was held, if there was no error."""
+        """Issue the held warnings, if no error came."""
         texts, self._texts.held = self._texts.held, self._outer
         for text in texts if kind is None else ():
             warn(text)
@@ -109,13 +109,13 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
 def flags(frozen: Foreign) -> None:
     """Check the fields of a frozen dataclass that are annotated ``bool``; see :func:`boolean`."""
     # Annotations are texts in modules that postpone them.
-    fields(frozen, boolean, *[one.name for one in dataclasses.fields(frozen) if one.type == "bool"])
+    fields(frozen, boolean, *[f.name for f in dataclasses.fields(frozen) if f.type == "bool"])
 
 
 def fields(
     frozen: object, check: Function, *names: str, optional: bool = False, **limits: float
 ) -> None:
-    """Set fields of a frozen dataclass to what a validator makes of them.
+    """Set fields of a frozen dataclass to their values from a validator.
 
     With ``optional=True`` None stays. ``limits`` are keywords of the validator.
     """
@@ -166,7 +166,7 @@ def floats(name: str, value: object) -> Array:
 def floats_in(name: str, value: object, low: float, high: float, what: str = "numbers") -> Array:
     """Return ``value`` as a floating-point array of finite numbers in the range [low, high].
 
-    An end that is rounded up to a narrower type passes. ``what`` says what the numbers are.
+    An end that is rounded up to a narrower type passes. ``what`` names the numbers.
     """
     array = floats(name, value)
     slack = 8 * float(np.finfo(array.dtype).eps)
@@ -179,7 +179,7 @@ def floats_in(name: str, value: object, low: float, high: float, what: str = "nu
 
 
 def coordinates(name: str, value: object) -> Array:
-    """Return ``value`` as float64 coordinates, whose products float64 holds."""
+    """Return ``value`` as float64 coordinates with products that float64 holds."""
     return floats_in(name, value, -FARTHEST, FARTHEST, "finite values").astype(np.float64)
 
 
@@ -315,19 +315,19 @@ def text(name: str, value: object, *, expected: str = "text") -> str:
 def path(name: str, value: object) -> Path:
     """Return a path of valid characters that is not empty."""
     expected = "the path of a file"
-    given = os.fspath(value) if isinstance(value, str | os.PathLike) else value
-    if not isinstance(given, str):
+    file = os.fspath(value) if isinstance(value, str | os.PathLike) else value
+    if not isinstance(file, str):
         raise TypeError(message(name, expected, describe(value)))
     try:
         # Bytes that are no characters of the locale name files all the same.
-        valid = "\0" not in os.fsencode(given).decode("latin-1")
+        valid = "\0" not in os.fsencode(file).decode("latin-1")
     except UnicodeEncodeError:
         valid = False
     if not valid:
         raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
-    if not given:
+    if not file:
         raise ValueError(message(name, expected, "an empty text"))
-    return Path(given)
+    return Path(file)
 
 
 def iterable(name: str, value: object, expected: str) -> None:
@@ -377,10 +377,10 @@ def limits(name: str, value: object) -> tuple[float, float]:
 
 def unit(name: str, value: object) -> Array:
     """Return a direction of 3 components, of any length but 0, with length 1."""
-    found = np.array(vector(name, value, direction=True, n=3))
+    direction = np.array(vector(name, value, direction=True, n=3))
     # By a power of 2, which rounds nothing: squares of the components might overflow.
-    found = np.ldexp(found, -np.frexp(np.abs(found).max())[1])
-    return np.asarray(found / np.linalg.norm(found))
+    direction = np.ldexp(direction, -np.frexp(np.abs(direction).max())[1])
+    return np.asarray(direction / np.linalg.norm(direction))
 
 
 def optional_vector(name: str, value: object, *, direction: bool = False) -> Vector | None:
@@ -401,12 +401,12 @@ def color(name: str, value: object) -> Color | None:
         except ValueError as error:
             expected = "a colour's name, '#rrggbb' or (r, g, b)"
             raise ValueError(message(name, expected, describe(value))) from error
-    given = getattr(value, "float_rgb", value)
-    array = floats(name, given)
+    channels = getattr(value, "float_rgb", value)
+    array = floats(name, channels)
     if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
         remedy = "divide bytes by 255; brighten a light with intensity="
         expected = "three channels (r, g, b) from 0 to 1"
-        raise ValueError(message(name, expected, describe(given), remedy))
+        raise ValueError(message(name, expected, describe(channels), remedy))
     r, g, b = (float(x) for x in array)
     return r, g, b
 

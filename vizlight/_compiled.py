@@ -162,14 +162,14 @@ def _unusable() -> str:
 
 @cache
 def _missing() -> str:
-    """Return what is wrong with the installation of numba; an empty text if nothing is."""
+    """Return the fault of the installation of numba; an empty text without one."""
     remedy = "pip install 'vizlight[fast]'"
-    found = release_of("numba")
-    if not found:
+    release_text = release_of("numba")
+    if not release_text:
         return f"numba is not installed (try: {remedy})"
-    release = tuple(int(part) for part in found.split(".")[:2] if part.isdigit())
+    release = tuple(int(part) for part in release_text.split(".")[:2] if part.isdigit())
     if release < OLDEST:
-        return f"numba {found} is older than {OLDEST[0]}.{OLDEST[1]} (try: {remedy})"
+        return f"numba {release_text} is older than {OLDEST[0]}.{OLDEST[1]} (try: {remedy})"
     return ""
 
 
@@ -184,7 +184,7 @@ def release_of(package: str) -> str:
 class Kernel(Generic[P, R]):
     """A function of numbers and arrays that numba compiles at its first call.
 
-    Other kernels whose names it uses are compiled with it; mark small ones by ``inline=True``.
+    Other kernels that it uses by name are compiled with it; mark small ones by ``inline=True``.
 
     Parameters
     ----------
@@ -231,11 +231,11 @@ class Kernel(Generic[P, R]):
         Returns
         -------
         bool
-            True once the seconds saved by this call and missed by earlier ones exceed what is left
-            of the start-up: reading or compiling the function, which this kernel must win back,
-            and before the first kernel of a process the import of numba and its preparation, for
-            which the calls of all kernels count. What is missed before is then at most what the
-            start-up costs.
+            True once the seconds saved by this call and missed by earlier ones exceed the rest of
+            the start-up: reading or compiling the function, which this kernel must win back, and
+            before the first kernel of a process the import of numba and its preparation, for which
+            the calls of all kernels count. Time missed before is then at most the cost of the
+            start-up.
         """
         if not active():
             return False
@@ -243,8 +243,8 @@ class Kernel(Generic[P, R]):
             _Account.missed += saved
         if not self._proven and wanted() != "1":
             self.missed += saved
-            own = self.start_up()
-            if self.missed < own or _Account.missed < preparation() + own:
+            start = self.start_up()
+            if self.missed < start or _Account.missed < preparation() + start:
                 return False
         try:
             self._dispatcher()
@@ -323,13 +323,13 @@ class Kernel(Generic[P, R]):
         """Return numba's own function, kept in a folder; None keeps it in memory alone."""
         import numba
 
-        own = self.function
-        names = own.__globals__ | {name: k._dispatcher() for name, k in self._helpers().items()}
+        plain = self.function
+        names = plain.__globals__ | {name: k._dispatcher() for name, k in self._helpers().items()}
         # numba reads names from the globals of the function, where kernels are not yet compiled.
         copy = types.FunctionType(
-            own.__code__, names, own.__name__, own.__defaults__, own.__closure__
+            plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__
         )
-        copy.__module__, copy.__qualname__ = own.__module__, own.__qualname__
+        copy.__module__, copy.__qualname__ = plain.__module__, plain.__qualname__
         options = {
             # Threads run a kernel at the same time.
             "nogil": True,
@@ -354,9 +354,9 @@ class Kernel(Generic[P, R]):
 
     def _helpers(self) -> dict[str, Kernel[..., object]]:
         """Return the kernels that the function calls, by name."""
-        own = self.function
-        found = {name: own.__globals__.get(name) for name in own.__code__.co_names}
-        return {name: k for name, k in found.items() if isinstance(k, Kernel)}
+        function = self.function
+        values = {name: function.__globals__.get(name) for name in function.__code__.co_names}
+        return {name: k for name, k in values.items() if isinstance(k, Kernel)}
 
     def _folder(self) -> Path | None:
         """Return the folder of this function's code as it stands, or None where none is kept."""
@@ -398,12 +398,12 @@ def _apart() -> type:
 def kernel(
     *, inline: bool = False, rounding: frozenset[str] = frozenset(), seconds: float = COMPILE
 ) -> Callable[[Callable[P, R]], Kernel[P, R]]:
-    """Return a decorator that makes a :class:`Kernel` of a function; see there."""
+    """Return a decorator that makes a :class:`Kernel` of a function; see that class."""
     return lambda function: Kernel(function, inline=inline, rounding=rounding, seconds=seconds)
 
 
 def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, object]:
-    """Return what a text of Python defines, as if it stood in a file of the cache.
+    """Return the definitions of a text of Python, as if it stood in a file of the cache.
 
     Parameters
     ----------

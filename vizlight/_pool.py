@@ -26,7 +26,7 @@ _SETTING: contextvars.ContextVar[str] = contextvars.ContextVar("threads", defaul
 
 @cache
 def _keep_memory() -> None:
-    """Make the C library of Linux keep what blocks free, rather than ask the system for it again.
+    """Make the C library of Linux keep memory that blocks free, rather than ask for it again.
 
     It does so for twice the size of the largest piece that a program has freed. Before that the
     system takes more processor time for a process's first blocks than their arithmetic.
@@ -49,12 +49,12 @@ def workers() -> int:
     ValueError
         If the variable is no integer above 0.
     """
-    asked = _SETTING.get() or os.environ.get("VIZLIGHT_THREADS", "")
-    if asked:
-        if not asked.isdecimal() or not int(asked):
+    setting = _SETTING.get() or os.environ.get("VIZLIGHT_THREADS", "")
+    if setting:
+        if not setting.isdecimal() or not int(setting):
             expected = "an integer of at least 1, or nothing (all processors)"
-            raise ValueError(_check.message("VIZLIGHT_THREADS", expected, repr(asked)))
-        return int(asked)
+            raise ValueError(_check.message("VIZLIGHT_THREADS", expected, repr(setting)))
+        return int(setting)
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # macOS and Windows lack this function

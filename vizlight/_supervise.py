@@ -1,8 +1,8 @@
 """The command line in a child process: a crash in a library becomes one line and an exit code.
 
 A damaged file can end the process inside a reader, a full disk inside a writer, a missing driver
-inside the drawing library. The child says which of these it is doing; the parent waits, removes
-the temporary files of a child that was killed, and says what happened.
+inside the drawing library. The child says which of these it is doing; the parent waits, removes the
+temporary files of a child that was killed, and reports the cause.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ def read_limit(size: int) -> float:
     Returns
     -------
     float
-        Time in seconds: 60, or what the environment variable ``VIZLIGHT_READ_SECONDS`` says, and
-        one for each megabyte.
+        Time in seconds: 60, or the environment variable ``VIZLIGHT_READ_SECONDS``, and one for each
+        megabyte.
     """
     try:
         base = float(os.environ.get(READ_VARIABLE, ""))
@@ -78,12 +78,12 @@ def stage(
     temporary: str = "",
     seconds: float = 0.0,
 ) -> Iterator[None]:
-    """Say what the process does while this context is entered; without a parent do nothing.
+    """Report the work of the process while this context is entered; without a parent do nothing.
 
     Parameters
     ----------
     doing : {"read", "write", "draw"}
-        What may crash.
+        Work that may crash.
     path : path
         File that is read or written.
     temporary : str, optional
@@ -167,7 +167,7 @@ def _interrupt_once(number: int, frame: FrameType | None) -> None:
 
 
 def _open_standard_streams() -> None:
-    """Open the null device in place of closed standard streams, whose numbers files would take."""
+    """Open the null device in place of closed standard streams: files would take their numbers."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -201,12 +201,12 @@ def _limit_memory() -> None:
     # Linux promises more memory than there is, and kills a process only when it uses that.
     total = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    given = [total, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
-    resource.setrlimit(resource.RLIMIT_DATA, (min(given), hard))
+    limits = [total, *(limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY)]
+    resource.setrlimit(resource.RLIMIT_DATA, (min(limits), hard))
 
 
 def _wait(child: int, reader: int) -> int:
-    """Wait for a child and return the exit code; after a kill clean up and say what happened."""
+    """Wait for a child and return the exit code; after a kill clean up and report the cause."""
     ended_by: list[signal.Signals] = []
 
     def on_signal(number: int, _frame: FrameType | None) -> None:
@@ -238,9 +238,9 @@ def _wait(child: int, reader: int) -> int:
     if os.WIFEXITED(status):
         return os.WEXITSTATUS(status)
     # A child that was killed could not remove its temporary folders.
-    for one in stages:
-        if one["temporary"]:
-            shutil.rmtree(one["temporary"], ignore_errors=True)
+    for step in stages:
+        if step["temporary"]:
+            shutil.rmtree(step["temporary"], ignore_errors=True)
     text, code = _what_happened(signal.Signals(os.WTERMSIG(status)), stages, ended_by)
     sys.stderr.write(f"vizlight: {text}\n")
     return code
@@ -274,7 +274,7 @@ def _lines(reader: int) -> Iterator[bytes]:
 def _what_happened(
     by: signal.Signals, stages: list[Keywords], ended_by: list[signal.Signals]
 ) -> tuple[str, int]:
-    """Return what happened to a child that was killed, and the exit code."""
+    """Return the report on a child that was killed, and the exit code."""
     if ended_by:
         ended = "interrupted" if ended_by[-1] == signal.SIGINT else "ended"
         return f"{ended} by {ended_by[-1].name}; no partial file is left", BAD_INPUT

@@ -37,7 +37,7 @@ def describe(value: object) -> str:
 
 
 def _is_array(value: object) -> bool:
-    """Return whether a value is an array; there is none before NumPy is loaded."""
+    """Return whether a value is an array; none exists before NumPy is loaded."""
     numpy = sys.modules.get("numpy")
     return numpy is not None and isinstance(value, numpy.ndarray)
 
@@ -49,9 +49,9 @@ def parameters(docstring: str | None) -> dict[str, str]:
     """
     text = inspect.cleandoc(docstring or "")
     section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n[A-Z]|\Z)", text, re.S | re.M)
-    found: dict[str, str] = {}
+    entries: dict[str, str] = {}
     for entry in re.split(r"\n(?=[\w*])", section[1]) if section else ():
         first, *others = entry.partition("\n")[0].partition(" :")[0].split(", ")
-        found.setdefault(first, entry.rstrip())
-        found.update(dict.fromkeys(others, ""))
-    return found
+        entries.setdefault(first, entry.rstrip())
+        entries.update(dict.fromkeys(others, ""))
+    return entries

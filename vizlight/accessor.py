@@ -49,10 +49,10 @@ class _Method(Generic[Options, Result]):
 
         # The filter takes the place of this loader, so that it is found without it from then on.
         setattr(owner, self._name, method)
-        made: Callable[Options, Result] = getattr(
+        result: Callable[Options, Result] = getattr(
             owner if accessor is None else accessor, self._name
         )
-        return made
+        return result
 
 
 def _plot() -> Function:

@@ -1,4 +1,4 @@
-"""What a map has beside its data, each as a mesh that can be drawn with it.
+"""Parts of a map beside its data, each as a mesh that can be drawn with it.
 
 ==========================  ===============================================================
 ``cartography.chart``       map in the plane of a projection, in metres

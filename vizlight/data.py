@@ -35,7 +35,7 @@ def example_path(name: str = "rotating_disk.vtu") -> Path:
     Raises
     ------
     ValueError
-        If there is no data set of that name.
+        If no data set has that name.
     """
     names = sorted(p.name for p in _folder().glob("*.vt?"))
     if not (isinstance(name, str) and name in names):
@@ -60,7 +60,7 @@ def load_example(name: str = "rotating_disk.vtu") -> pv.DataSet:
     Raises
     ------
     ValueError
-        If there is no data set of that name.
+        If no data set has that name.
     """
     import pyvista as pv
 

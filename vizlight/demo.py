@@ -34,7 +34,7 @@ ABOVE = 1.004
 
 @dataclass(frozen=True)
 class Demo:
-    """What the demonstration makes.
+    """Results of the demonstration.
 
     Attributes
     ----------
@@ -47,9 +47,9 @@ class Demo:
     camera : pyvista.Camera
     rows : list of tuple
         For a white light, and for the light by direction: name, terms, cost in milliseconds,
-        largest error against the second implementation, and what a reader reads in it.
+        largest error against the second implementation, and how much a reader reads in it.
     plan : str
-        What was computed, in words.
+        Terms that were computed, in words.
     """
 
     globe: pv.PolyData
@@ -61,7 +61,7 @@ class Demo:
 
 
 def light_winds() -> Demo:
-    """Light the mean wind of July by its direction, and measure what can be read of it."""
+    """Light the mean wind of July by its direction, and measure how much can be read of it."""
     globe = load_example("winds_of_july.vtp").compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
     )

@@ -1,4 +1,4 @@
-"""What is installed, what draws here, and what a missing package is needed for."""
+"""Report on the installation: packages, backends that draw here, and uses of missing packages."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ OPTIONAL = (
 
 
 def findings() -> list[tuple[str, str]]:
-    """Return pairs of a part and what was found of it.
+    """Return pairs of a part and its state.
 
     Returns
     -------
     list of tuple of str
-        Version of Python; version of each package, or what it is needed for and the command that
-        installs it; whether code is compiled; path of the embedded data; what draws.
+        Version of Python; version of each package, or its use and the command that installs it;
+        whether code is compiled; path of the embedded data; backends that draw.
     """
     rows = [("python", f"{platform.python_version()}, {platform.platform()}")]
     rows += [

@@ -165,11 +165,11 @@ def read(
         (up) its attributes say, else its names, else the order. Lengths of axes and heights are in
         metres, pressures in hPa and negative, depths below 0. Longitudes go on across the meridian
         where they begin anew, and around the earth they close. A raster is an image
-        with a point at the centre of each pixel; what is missing is NaN. The field array ``unit``
-        of a map in degrees is ``degree``. glTF and VRML, whose standards say that y is up, are
-        turned so that z is; others are as they stand. Points of a .stl, .ply, .obj or .off file at
-        one place with equal arrays are one. The field array ``TimeValue`` is the time of
-        a step, ``TimeSteps`` are those of all steps.
+        with a point at the centre of each pixel; missing values are NaN. The field array ``unit``
+        of a map in degrees is ``degree``. glTF and VRML, where y is up by the standard, are turned
+        so that z is; others are as they stand. Points of a .stl, .ply, .obj or .off file at one
+        place with equal arrays are one. The field array ``TimeValue`` is the time of a step,
+        ``TimeSteps`` are those of all steps.
 
     Raises
     ------
@@ -182,16 +182,16 @@ def read(
     Warns
     -----
     UserWarning
-        If a field of an OpenFOAM case is left out, whose directives VTK does not read, or the file
-        takes others from outside of its folder.
+        If a field of an OpenFOAM case is left out because VTK does not read its directives, or the
+        file takes others from outside of its folder.
 
     Notes
     -----
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
-    states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same
-    time: what VTK says is told apart by thread, and no stream is redirected. Libraries other than
-    VTK may print.
+    states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same time:
+    messages of VTK are told apart by thread, and no stream is redirected. Libraries other than VTK
+    may print.
     """
     _check.instance("at", at, dict, optional=True)
     if cf_grids.is_grid(path):
@@ -242,10 +242,10 @@ def _read(
     *,
     whole: bool,
 ) -> list[pv.DataSet]:
-    """Return the meshes of a file, or the one whose cells have the highest dimension."""
+    """Return the meshes of a file, or the one with cells of the highest dimension."""
     path = _path("file", path)
-    given = overlay if isinstance(overlay, list | tuple) else [overlay]
-    overlays = [_path("overlay", one) for one in given]
+    overlay_list = overlay if isinstance(overlay, list | tuple) else [overlay]
+    overlays = [_path("overlay", name) for name in overlay_list]
     _check_there(path, overlays)
     inner = Path(path.stem).suffix.lower()
     if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
@@ -260,12 +260,12 @@ def _read(
     # Damaged numbers overflow in readers, which say what is wrong beside that.
     with reading, captured_errors() as errors, np.errstate(all="ignore"):
         try:
-            found: Foreign = _found(path, time, at, nodata)
-            for block in blocks.all_blocks(found):
+            data: Foreign = _found(path, time, at, nodata)
+            for block in blocks.all_blocks(data):
                 # Before blocks are joined, since joining reads their cells.
                 _check_block(block, path)
-            several = isinstance(found, pv.MultiBlock) and not whole
-            for part in blocks.by_dimension(found) if several else [found]:
+            several = isinstance(data, pv.MultiBlock) and not whole
+            for part in blocks.by_dimension(data) if several else [data]:
                 meshes.append(_whole(part, path.suffix.lower(), overlays, time, notes))
                 overlays = []
         except series.NoStepError:
@@ -288,8 +288,8 @@ def _read(
     if errors:
         raise _damaged(path, errors[0])
     _warn_of_unread(path, unread)
-    if isinstance(found, pv.MultiBlock):
-        notes += _left_out(found, meshes)
+    if isinstance(data, pv.MultiBlock):
+        notes += _left_out(data, meshes)
     if path.is_file() and (elsewhere := references.outside(path)):
         notes.append(f"it takes files from outside of its folder: {', '.join(elsewhere)}")
     if notes:
@@ -298,14 +298,14 @@ def _read(
 
 
 def _check_there(path: Path, overlays: Sequence[Path]) -> None:
-    """Check that a file and those over it are there and can be opened."""
-    for name, one in (("file", path), *(("overlay", one) for one in overlays)):
-        if what := no_file(one):
+    """Check that a file and those over it exist and can be opened."""
+    for name, checked in (("file", path), *(("overlay", checked) for checked in overlays)):
+        if what := no_file(checked):
             remedy = ""
-            if (one / "constant").is_dir():
-                case = one / f"{one.resolve().name}.foam"
+            if (checked / "constant").is_dir():
+                case = checked / f"{checked.resolve().name}.foam"
                 remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
-            raise FileError(_check.message(name, "a file", f"'{one}' ({what})", remedy))
+            raise FileError(_check.message(name, "a file", f"'{checked}' ({what})", remedy))
     if not os.access(path, os.R_OK):
         raise FileError(_check.message("file", "a readable file", f"'{path}'"))
     # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
@@ -326,7 +326,7 @@ def no_file(path: Path) -> str:
 
 
 def _check_block(mesh: pv.DataSet, path: Path) -> None:
-    """Raise ValueError for what VTK's reader makes of a file that lacks something."""
+    """Raise ValueError for a block that VTK's reader makes of an incomplete file."""
     size = getattr(mesh, "dimensions", (1,))
     if min(size) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {tuple(size)}")
@@ -351,15 +351,15 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
 
 
 def _whole(
-    found: Foreign, suffix: str, overlays: Sequence[Path], time: object, notes: list[str]
+    data: Foreign, suffix: str, overlays: Sequence[Path], time: object, notes: list[str]
 ) -> Foreign:
-    """Return one upright mesh of what a file of a suffix holds, with the values over it.
+    """Return one upright mesh of the contents of a file with a suffix, with the values over it.
 
-    What its reader should know is appended to ``notes``.
+    Notes for its reader are appended to ``notes``.
     """
-    mesh = found
-    if isinstance(found, pv.MultiBlock):
-        joined = blocks.highest(found)
+    mesh = data
+    if isinstance(data, pv.MultiBlock):
+        joined = blocks.highest(data)
         mesh = joined.grid
         notes += [note] if (note := joined.note()) else []
     if isinstance(mesh, pv.DataSet):
@@ -423,7 +423,7 @@ _MESHERS = (".mesh", ".meshb", ".msh")
 
 
 def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:
-    """Return the meshes of a packed file, from a temporary file of what is in it."""
+    """Return the meshes of a packed file, from a temporary file of its contents."""
     with tempfile.TemporaryDirectory() as folder:
         inner = Path(folder) / path.stem
         try:
@@ -447,38 +447,38 @@ def _found(
     at: Mapping[str, object] | None = None,
     nodata: float | None = None,
 ) -> pv.DataObject:
-    """Return what the first reader that knows a file makes of it."""
-    found: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
-    found = series.read(path, time) if found is None else found
-    found = _by_vtk(path) if found is None else found
+    """Return the data of the first reader that knows a file."""
+    contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
+    contents = series.read(path, time) if contents is None else contents
+    contents = _by_vtk(path) if contents is None else contents
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
-        found = pv.MultiBlock({"cells of lower dimension": found})
-    if isinstance(found, pv.MultiBlock) and EXODUS[0] in _names(found):
-        found = _without_sets(found)
-    if isinstance(found, pv.PartitionedDataSet):
-        data, found = found.field_data, pv.MultiBlock(list(found))
-        found.field_data.update(data)
-    return found
+        contents = pv.MultiBlock({"cells of lower dimension": contents})
+    if isinstance(contents, pv.MultiBlock) and EXODUS[0] in _names(contents):
+        contents = _without_sets(contents)
+    if isinstance(contents, pv.PartitionedDataSet):
+        data, contents = contents.field_data, pv.MultiBlock(list(contents))
+        contents.field_data.update(data)
+    return contents
 
 
-def _names(found: pv.MultiBlock) -> list[str]:
-    return [str(name) for name in found.keys()]  # noqa: SIM118 - its own loop gives blocks
+def _names(data: pv.MultiBlock) -> list[str]:
+    return [str(name) for name in data.keys()]  # noqa: SIM118 - its own loop gives blocks
 
 
-def _without_sets(found: pv.MultiBlock) -> pv.MultiBlock:
+def _without_sets(data: pv.MultiBlock) -> pv.MultiBlock:
     """Return the elements of a file of Exodus, without the sets of sides and nodes of them."""
-    if not any(block.n_cells for block in blocks.all_blocks(found[EXODUS[0]])):
-        return found
-    kept = pv.MultiBlock({name: found[name] for name in _names(found) if name not in EXODUS[1:]})
-    for name in found.field_data:
-        kept.field_data[name] = found.field_data[name]
+    if not any(block.n_cells for block in blocks.all_blocks(data[EXODUS[0]])):
+        return data
+    kept = pv.MultiBlock({name: data[name] for name in _names(data) if name not in EXODUS[1:]})
+    for name in data.field_data:
+        kept.field_data[name] = data.field_data[name]
     return kept
 
 
 def _path(name: str, value: object) -> Path:
-    """Return a path that the system takes, whether or not there is a file."""
+    """Return a path that the system takes, whether or not the file exists."""
     path = _check.path(name, value)
     try:
         path.stat()
@@ -509,11 +509,11 @@ def _first_line(error: Exception | str) -> str:
 
 
 def _by_vtk(path: Path) -> pv.DataObject:
-    """Return what PyVista's reader finds in a file; ``pyvista.read`` would log what VTK says."""
+    """Return the data of PyVista's reader; ``pyvista.read`` would log messages of VTK."""
     reader = series.reader_of(path)
     if reader is not None:
-        found: pv.DataObject = series.unchecked(reader)
-        return found
+        data: pv.DataObject = series.unchecked(reader)
+        return data
     try:
         return pv.read(path, validate=False)
     except OSError as error:
@@ -526,11 +526,11 @@ def _by_vtk(path: Path) -> pv.DataObject:
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
-def _left_out(found: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
+def _left_out(data: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
     """Return a note on blocks that are not in the meshes, or on the arrays that only they have."""
     grid = meshes[0]
     kept = {kind for mesh in meshes for kind in mesh.distinct_cell_types}
-    lower = [pair for pair in blocks.named_blocks(found) if pair[0].distinct_cell_types - kept]
+    lower = [pair for pair in blocks.named_blocks(data) if pair[0].distinct_cell_types - kept]
     # A block whose points are all the grid's is a side set, which bounds cells of the grid.
     there = place_numbers(np.asarray(grid.points)) if lower else ()
     names = ", ".join(
@@ -548,10 +548,10 @@ def _left_out(found: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
 
 
 class _Messages:
-    """What VTK says while files are read and written, by the thread in which it says so.
+    """Messages of VTK while files are read and written, by thread.
 
     VTK has one window for the messages of a process. It is replaced while any thread listens;
-    messages of other threads go on to the window that was there. No stream is redirected.
+    messages of other threads go on to the earlier window. No stream is redirected.
     """
 
     def __init__(self) -> None:
@@ -585,9 +585,9 @@ class _Messages:
             yield errors
         finally:
             with self._lock:
-                own = self._heard[thread]
-                own.pop()
-                if not own:
+                open_lists = self._heard[thread]
+                open_lists.pop()
+                if not open_lists:
                     del self._heard[thread]
                 if not self._heard and self._replaced is not None:
                     window, verbosity = self._replaced
@@ -598,9 +598,9 @@ class _Messages:
     @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
     def _note(self, _window: object, event: str, text: str | None) -> None:
         text = text or "words that are no text"
-        own, replaced = self._heard.get(threading.get_ident()), self._replaced
-        if own:
-            own[-1].append(_first_line(_ORIGIN.sub("", text)))
+        open_lists, replaced = self._heard.get(threading.get_ident()), self._replaced
+        if open_lists:
+            open_lists[-1].append(_first_line(_ORIGIN.sub("", text)))
         elif replaced is not None:
             sys.stderr.write(text)
             replaced[0].InvokeEvent(event, text)
@@ -616,7 +616,7 @@ def surface_of(
     level: float | None = None,
     labels: str | None = None,
 ) -> pv.PolyData:
-    """Return an isosurface of a mesh, what is outside of labels, or its outer surface.
+    """Return an isosurface of a mesh, the boundary of labels, or its outer surface.
 
     Parameters
     ----------
@@ -630,7 +630,7 @@ def surface_of(
         Name of an array of labels, which are then those of the cells. In an image that fills space,
         such as an atlas of a brain, they are whole numbers of which 0 is the ground: the surface of
         all others is smoothed within the size of a voxel. Elsewhere each point of the surface
-        labels what is nearest to it, so that nothing has a label between two.
+        labels the cells nearest to it, so that no cell has a label between two.
 
     Returns
     -------
@@ -657,17 +657,17 @@ def surface_of(
         raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
     low, high = float(finite.min()), float(finite.max())
     level = (low + high) / 2 if level is None else _check.number("level", level)
-    found = blocks.isosurface(mesh, contour, level)
-    if not found.n_points:
+    surface = blocks.isosurface(mesh, contour, level)
+    if not surface.n_points:
         expected = f"a value between {low:g} and {high:g}"
         raise ValueError(_check.message("level", expected, f"{level:g}"))
     # Beside a hole VTK makes faces with corners that are nowhere.
-    there: Foreign = np.isfinite(np.asarray(found.points)).all(axis=1)
-    return found if there.all() else _kept_points(found, there)
+    there: Foreign = np.isfinite(np.asarray(surface.points)).all(axis=1)
+    return surface if there.all() else _kept_points(surface, there)
 
 
 def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
-    """Return the surface of what has a label, with labels of its cells."""
+    """Return the surface of labelled cells, with labels of its own cells."""
     if not isinstance(mesh, pv.ImageData) or min(mesh.dimensions) == 1:
         surface = surface_of(mesh)
         _scalars(surface, "labels", name)
@@ -679,15 +679,15 @@ def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
     if values.dtype.kind not in "iu" or not values.any():
         got = f"{name!r} of {values.dtype}"
         raise ValueError(_check.message("labels", "whole numbers that are not all 0", got))
-    found: pv.PolyData = mesh.contour_labels(scalars=name, output_mesh_type="triangles")
-    rows = np.asarray(found.cell_data["boundary_labels"])
-    found.clear_data()
-    found.cell_data[name] = rows
-    return found
+    boundary: pv.PolyData = mesh.contour_labels(scalars=name, output_mesh_type="triangles")
+    rows = np.asarray(boundary.cell_data["boundary_labels"])
+    boundary.clear_data()
+    boundary.cell_data[name] = rows
+    return boundary
 
 
 def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
-    """Return the cells of a mesh whose points are all kept, with their arrays."""
+    """Return the cells of a mesh with all their points kept, and their arrays."""
     cells = mesh.extract_points(
         kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
     )
@@ -718,7 +718,7 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     Raises
     ------
     TypeError, ValueError
-        If an array does not exist, or there are not two or three.
+        If an array does not exist, or their number is not two or three.
     """
     _dataset(mesh)
     if isinstance(names, list | tuple):
@@ -730,15 +730,15 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     if len(every) not in (2, 3):
         raise ValueError(_check.message("names", "two or three names", repr(names)))
     # The array is attached to a shallow copy, so that the caller's mesh does not get it.
-    found = records.averaged(mesh, *every).copy(deep=False)
+    out = records.averaged(mesh, *every).copy(deep=False)
     for name in every:
-        _scalars(found, "names", name)
-    found.point_data[names] = meaning.vectors(found, every)
-    return found
+        _scalars(out, "names", name)
+    out.point_data[names] = meaning.vectors(out, every)
+    return out
 
 
 def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
-    """Return a mesh whose points are raised by heights, or displaced by vectors.
+    """Return a mesh with points raised by heights, or displaced by vectors.
 
     Parameters
     ----------
@@ -782,9 +782,9 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         moved.SetPoints(pv.vtk_points(points))
     else:
         moved = mesh.warp_by_scalar(name, factor=factor)
-    found: pv.DataSet = moved
+    out: pv.DataSet = moved
     # Cells at a hole go, whatever their other points are.
-    return found.extract_points(~holes, adjacent_cells=False) if holes.any() else found
+    return out.extract_points(~holes, adjacent_cells=False) if holes.any() else out
 
 
 def layers(mesh: pv.DataSet, /) -> int:
@@ -801,7 +801,7 @@ def layers(mesh: pv.DataSet, /) -> int:
 
 
 def _levels(mesh: pv.DataSet) -> Array:
-    """Return the heights of the levels between which all cells are, empty where there are none."""
+    """Return the heights of the levels between which all cells are, empty without any."""
     prisms = isinstance(mesh, pv.UnstructuredGrid) and {*mesh.distinct_cell_types} <= PRISMS
     if not prisms or not mesh.n_cells:
         return np.empty(0)
@@ -842,24 +842,24 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
         raise TypeError(_check.message("mesh", "an image or a grid", got))
     nx, ny, nz = mesh.dimensions
     at = _check.integer("at", at, low=0, high=nz - 1)
-    found: pv.RectilinearGrid | pv.StructuredGrid
+    layer: pv.RectilinearGrid | pv.StructuredGrid
     if isinstance(mesh, pv.RectilinearGrid):
-        found = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
+        layer = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
     else:
-        found = pv.StructuredGrid()
-        found.points = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
-        found.dimensions = (nx, ny, 1)
+        layer = pv.StructuredGrid()
+        layer.points = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
+        layer.dimensions = (nx, ny, 1)
     cells = max(nx - 1, 1) * max(ny - 1, 1)
     places = (
-        (mesh.point_data, found.point_data, at, nx * ny),
-        (mesh.cell_data, found.cell_data, min(at, max(nz - 2, 0)), cells),
+        (mesh.point_data, layer.point_data, at, nx * ny),
+        (mesh.cell_data, layer.cell_data, min(at, max(nz - 2, 0)), cells),
     )
     for data, into, number, count in places:
         for name in data:
             into[name] = np.array(data[name][number * count : (number + 1) * count])
     for name in mesh.field_data:
-        found.field_data[name] = mesh.field_data[name]
-    return found
+        layer.field_data[name] = mesh.field_data[name]
+    return layer
 
 
 def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:
@@ -909,8 +909,8 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> Raw:
     got = repr(name)
     if name in data:
         got = f"{name!r} with {data[name].shape[1]} components"
-    known = [key for key in (*data, *mesh.cell_data) if mesh[key].ndim == 1]
-    expected = f"an array of one component, {_check.one_of(known)}"
+    names = [key for key in (*data, *mesh.cell_data) if mesh[key].ndim == 1]
+    expected = f"an array of one component, {_check.one_of(names)}"
     raise ValueError(_check.message(argument, expected, got))
 
 
@@ -1014,9 +1014,9 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
 
     def save(draft: str) -> None:
         _reserve(Path(draft), blocks.all_blocks(mesh))
-        own = blocks.like(mesh, map(_to_save, blocks.all_blocks(mesh)))
+        copies = blocks.like(mesh, map(_to_save, blocks.all_blocks(mesh)))
         with captured_errors() as errors:
-            own.save(draft)
+            copies.save(draft)
         # VTK writes the files of the blocks to a folder that has the name of the draft.
         files = sorted(Path(draft).with_suffix("").glob("*"))
         _check_drafts([Path(draft), *files], errors)
@@ -1069,16 +1069,16 @@ def _solid(field: pv.ImageData) -> pv.PolyData:
 
 
 def _to_save(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a copy, because PyVista notes the types of arrays in what it saves."""
-    own = mesh.copy(deep=False)
-    if isinstance(own, pv.UnstructuredGrid) and own.GetCells() is None:
-        own.SetCells(vtkUnsignedCharArray(), pv.CellArray())  # VTK's writer ends the process
-    for data in (own.GetPointData(), own.GetCellData()):
+    """Return a copy, because PyVista notes the types of arrays in the mesh that it saves."""
+    copy = mesh.copy(deep=False)
+    if isinstance(copy, pv.UnstructuredGrid) and copy.GetCells() is None:
+        copy.SetCells(vtkUnsignedCharArray(), pv.CellArray())  # VTK's writer ends the process
+    for data in (copy.GetPointData(), copy.GetCellData()):
         for kind in range(data.NUM_ATTRIBUTES):
             # VTK ends the process where the active normals or vectors are text.
             if data.GetAbstractAttribute(kind) is not None and data.GetAttribute(kind) is None:
                 data.SetActiveAttribute(-1, kind)
-    return own
+    return copy
 
 
 def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
@@ -1125,8 +1125,8 @@ def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
 
 
 def _check_drafts(drafts: Iterable[Path], errors: list[str]) -> None:
-    """Check that files that were written are whole, by what the writer said and by their ends."""
-    reasons = [short_files.missing_part(one) if one.is_file() else "none" for one in drafts]
+    """Check that written files are whole, by the messages of the writer and by their ends."""
+    reasons = [short_files.missing_part(draft) if draft.is_file() else "none" for draft in drafts]
     for reason in (*errors, *filter(None, reasons)):
         raise FileError(_check.message("output", "a file that can be written", reason))
 
@@ -1193,7 +1193,7 @@ def replace_file(
     write : callable
         Function that writes the file to a path given as a string.
     doing : {"write", "draw"}
-        What the function does, for the message if it ends the process.
+        Work of the function, for the message if it ends the process.
 
     Returns
     -------

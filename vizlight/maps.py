@@ -174,7 +174,7 @@ def bands(
     Returns
     -------
     pyvista.LookupTable
-        1024 colours; what is missing is light grey.
+        1024 colours; missing values are light grey.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     Raises
     ------
     ValueError
-        If there is none, one is no whole number, or they are more than 65536 apart.
+        If none is given, one is no whole number, or they are more than 65536 apart.
 
     Examples
     --------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @xarray.register_dataset_accessor("vizlight")
 @xarray.register_dataarray_accessor("vizlight")
 class GridAccessor:
-    """Methods of datasets and arrays of xarray: what they hold as a mesh, and its picture.
+    """Methods of datasets and arrays of xarray: their data as a mesh, and its picture.
 
     Parameters
     ----------

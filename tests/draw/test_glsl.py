@@ -182,7 +182,7 @@ def test_numbers_are_float32(value, text):
 
 
 def test_a_term_may_name_a_vector_of_its_own():
-    w = glsl.Shader(plan(Scene(), n=3, normals=True))
+    w = glsl.FragmentShader(plan(Scene(), n=3, normals=True))
     own = w.vector((0.5, 1.0, 2.0))
     assert (own.text, own.kind) == ("vec3(0.5, 1.0, 2.0)", "vec3")
     assert (own * w.number(0.5)).kind == "vec3"

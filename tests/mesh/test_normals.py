@@ -88,12 +88,12 @@ def test_normals_do_not_depend_on_the_size_of_parts(name, monkeypatch):
 def test_a_surface_without_creases_is_surveyed_once(monkeypatch):
     made = []
 
-    class Counted(orientation.Shape):
+    class Counted(orientation.SurfaceShape):
         def __init__(self, *given, **options):
             made.append(self)
             super().__init__(*given, **options)
 
-    monkeypatch.setattr(normals, "Shape", Counted)
+    monkeypatch.setattr(normals, "SurfaceShape", Counted)
     ball = plain(pv.Sphere())
     scene = vizlight.Scene(lights=vizlight.Light(direction=(1, 1, 1)))
     lit = vizlight.illuminate(ball, scene, feature_angle="auto")

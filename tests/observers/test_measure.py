@@ -211,7 +211,7 @@ def places(turns_right, turns_up, apart):
         for a, sign in zip(angles, (1, 1, -1), strict=True)
     )
     beside = dict.fromkeys(("part", "colors", "unit", "grain", "course", "thing", "length"))
-    return measure.Places(here=here, right=right, up=up, apart=np.array(apart), **beside)
+    return measure.SeenPlaces(here=here, right=right, up=up, apart=np.array(apart), **beside)
 
 
 def test_structure_is_the_length_of_a_quarter_turn():
@@ -376,7 +376,7 @@ def test_the_reason_is_what_keeps_a_picture_from_being_read(change, words):
         part=SimpleNamespace(values=how["values"], by_form=how["by_form"]),
         colors=readers.Colors(colors, np.full((101, 3), how["deviation"])),
     )  # fmt: skip
-    reader = measure._Reader([place], 0, Eye(how["pixels"]), [])
+    reader = measure._PictureReader([place], 0, Eye(how["pixels"]), [])
     assert words in reader._reason("direction", [place], np.array(how["lengths"], float))
 
 
@@ -393,7 +393,7 @@ def test_a_figure_is_unread_below_its_floor_or_near_the_error_of_chance():
         reading = readers.Reading(
             np.full(64, float(error)), truth, 4, np.full(64, 90.0), np.full((4, 64), 0.25)
         )
-        reader = measure._Reader([place], 0, Eye(100.0), [])
+        reader = measure._PictureReader([place], 0, Eye(100.0), [])
         found = reader._common("direction", [place], [reading], np.full(64, 50.0))
         assert found["bits"] == pytest.approx(np.log2(0.98 * 2**bits + 0.02), abs=1e-9)
         assert bool(found["reason"]) == bool(unread)

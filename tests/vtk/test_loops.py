@@ -6,7 +6,7 @@ import pyvista as pv
 
 from vizlight import _compiled
 from vizlight.vtk.corners import corner_normals
-from vizlight.vtk.orientation import Shape
+from vizlight.vtk.orientation import SurfaceShape
 from vizlight.vtk.topology import coincident, sorted_edges
 
 pytestmark = pytest.mark.skipif(bool(_compiled.why_not()), reason="numba is missing")
@@ -84,7 +84,7 @@ def test_shapes_and_their_survey(dtype, random):
     for one in (mesh, finite):
         normals = random.normal(size=points.shape).astype(np.float32)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        shapes = both(lambda one=one: Shape(one))
+        shapes = both(lambda one=one: SurfaceShape(one))
         np.testing.assert_array_equal(shapes[0].edges, shapes[1].edges)
         np.testing.assert_array_equal(shapes[0]._full, shapes[1]._full)
         np.testing.assert_allclose(shapes[0]._unit, shapes[1]._unit, atol=1e-6)
@@ -103,5 +103,5 @@ def test_shapes_and_their_survey(dtype, random):
 
 def test_surfaces_without_slivers_have_none(random):
     mesh = pv.Sphere(theta_resolution=20, phi_resolution=20)
-    for shape in both(lambda: Shape(mesh)):
+    for shape in both(lambda: SurfaceShape(mesh)):
         assert sum(len(part.lower) for part in shape.slivers) == 0

@@ -15,12 +15,12 @@ def shapes(monkeypatch):
     """Surfaces whose shape was found, one after the other."""
     found = []
 
-    class Counted(normals.Shape):
+    class Counted(normals.SurfaceShape):
         def __init__(self, surface, side=None, block=None):
             found.append(surface.GetNumberOfPoints())
             super().__init__(surface, side, block)
 
-    monkeypatch.setattr(normals, "Shape", Counted)
+    monkeypatch.setattr(normals, "SurfaceShape", Counted)
     monkeypatch.setattr(memory, "_KEPT", {})
     return found
 

@@ -1,1 +1,1 @@
-"""Pictures: plotters whose light follows the camera, offscreen, movies, pages, glTF, ParaView."""
+"""Pictures: plotters with light that follows the camera, movies, pages, glTF, ParaView."""

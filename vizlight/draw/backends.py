@@ -86,15 +86,15 @@ def probe(backend: Backend) -> Probe:
     """
     _check.choice("backend", backend, get_args(Backend))
     remedy = f"try: {_INSTALL[backend]}"
-    found = _probe_window(backend, _WINDOWS[backend], remedy)
+    result = _probe_window(backend, _WINDOWS[backend], remedy)
     # VTK may have drawn with another class, which tells nothing of the one that was asked for.
-    if found.works and _class_of(found) != _WINDOWS[backend]:
+    if result.works and _class_of(result) != _WINDOWS[backend]:
         return Probe(backend, works=False, detail=f"not available ({remedy})")
-    return found
+    return result
 
 
 def _drew_before(backend: Backend) -> bool:
-    """Return whether a backend is known to draw, or does so now; what draws is kept in a file."""
+    """Return whether a backend is known to draw, or does so now; a file keeps the answer."""
     folder = _cache.folder("windows")
     kept = None if folder is None else folder / _setting(backend)
     # A probe starts a Python that loads VTK: what has drawn once is taken to do so again.
@@ -110,7 +110,7 @@ def _drew_before(backend: Backend) -> bool:
 
 
 def _setting(backend: str) -> str:
-    """Return a name for all on which it depends whether a backend draws."""
+    """Return a name for all facts on which it depends whether a backend draws."""
     from vtkmodules.vtkCommonCore import vtkVersion
 
     facts = [
@@ -120,14 +120,14 @@ def _setting(backend: str) -> str:
     facts += [f"{k}={v}" for k, v in sorted(os.environ.items()) if k.startswith(_VARIABLES)]
     for path in _PLACES:
         with contextlib.suppress(OSError):
-            found = Path(path).stat()
-            facts.append(f"{path} {found.st_mtime_ns} {found.st_size}")
+            status = Path(path).stat()
+            facts.append(f"{path} {status.st_mtime_ns} {status.st_size}")
     return hashlib.sha256("\0".join(facts).encode()).hexdigest()[:32]
 
 
-def _class_of(found: Probe) -> str:
+def _class_of(probed: Probe) -> str:
     """Return the window class that draws: VTK takes another one for a class that cannot."""
-    return found.detail.partition(",")[0]
+    return probed.detail.partition(",")[0]
 
 
 @functools.cache
@@ -154,11 +154,11 @@ def _named(window: str) -> Backend | None:
 
     Named itself it draws without VTK's warnings about the class that cannot.
     """
-    found = _probe_window(_VARIABLE, window, f"try: unset {_VARIABLE}")
-    if not found.works:
-        raise BackendError(f"no picture: {_VARIABLE}={window} is {found.detail}")
-    taken = _class_of(found)
-    others = (name for name, own in _WINDOWS.items() if own == taken != window)
+    probed = _probe_window(_VARIABLE, window, f"try: unset {_VARIABLE}")
+    if not probed.works:
+        raise BackendError(f"no picture: {_VARIABLE}={window} is {probed.detail}")
+    taken = _class_of(probed)
+    others = (name for name, drawn in _WINDOWS.items() if drawn == taken != window)
     return cast("Backend | None", next(others, None))
 
 

@@ -1,4 +1,4 @@
-"""Numbers along three edges of a box, as a mesh whose letters face the eye."""
+"""Numbers along three edges of a box, as a mesh with letters that face the eye."""
 
 from __future__ import annotations
 
@@ -211,7 +211,7 @@ def _extent(word: str, out: Array) -> float:
 def _word(
     place: Array, out: Array, away: float, word: str, eye: _Eye, size: float
 ) -> tuple[Array, Indices]:  # fmt: skip
-    """Return a word whose nearest side is at a distance from a place, in heights of letters."""
+    """Return a word with its nearest side at a distance from a place, in heights of letters."""
     flat, ids = letters.triangles(word)
     middle = out * (away + _extent(word, out) / 2)
     flat = flat - (letters.width(word) / 2, DIGIT / 2) + middle

@@ -88,8 +88,8 @@ def camera_on(
     aspect = _check.number("aspect", aspect, low=1e-3)
     toward, upward = _directions(direction, up)
     zoom = _check.number("zoom", zoom, low=1e-6)
-    given = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
-    box = _check.coordinates("bounds", given)
+    box_bounds = common_bounds("bounds", [bounds]) if isinstance(bounds, Mesh) else bounds
+    box = _check.coordinates("bounds", box_bounds)
     if box.shape != (6,):
         expected = "a mesh or six finite numbers"
         raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
@@ -153,19 +153,19 @@ def outermost(
         If a value does not fit.
     """
     view = _axes(*_directions(direction, up)), _check.number("aspect", aspect, low=1e-3)
-    found = [_outermost(some, *view) for some in _coordinates(mesh)]
-    return np.concatenate([np.empty((0, 3)), *found])
+    extremes = [_outermost(some, *view) for some in _coordinates(mesh)]
+    return np.concatenate([np.empty((0, 3)), *extremes])
 
 
 def _outermost(points: Array, axes: Array, aspect: float) -> Array:
     """Return the points that bound the box, and those at the margins of a view."""
-    found = points[np.all(np.isfinite(points), axis=1)]
-    if not len(found):
-        return found
+    finite = points[np.all(np.isfinite(points), axis=1)]
+    if not len(finite):
+        return finite
     along, (z, sides) = np.concatenate([np.eye(3), axes]), (axes[2], _sides(axes, aspect))
     # A camera is made of maxima along these rows, and a single point attains each.
     rows = np.concatenate([along, -along, z + sides, z - sides])
-    return found[[int(np.argmax(found @ row)) for row in rows]]
+    return finite[[int(np.argmax(finite @ row)) for row in rows]]
 
 
 def _sides(axes: Array, aspect: float) -> Array:

@@ -1,4 +1,4 @@
-"""The plotter component ``plotter.vizlight``: meshes whose light follows the camera."""
+"""The plotter component ``plotter.vizlight``: meshes with light that follows the camera."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonCore import vtkWeakReference
 from vizlight import _check
 from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
-from vizlight.draw.html import Shown, write_page
+from vizlight.draw.html import PageMesh, write_page
 from vizlight.draw.live import Fragments, LightAt, Live, draws_light, items, unfit
 from vizlight.draw.margins import Margin, ink_on
 from vizlight.draw.notebook import guard, guard_exports
@@ -55,7 +55,7 @@ UNLIT_PASSES = {"vtkShadowMapPass": "the shadows", "vtkSSAOPass": "the ambient o
 
 
 class Component:
-    """Meshes of one plotter whose light follows the camera.
+    """Meshes of one plotter with light that follows the camera.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Component:
         width: str | None = None,
         **options: Given,
     ) -> pv.Actor | list[pv.Actor]:
-        """Add a mesh whose light follows the camera.
+        """Add a mesh with light that follows the camera.
 
         Parameters
         ----------
@@ -105,9 +105,9 @@ class Component:
             ``"fragments"`` warns where it does not.
         scalars : str or array_like, optional
             Array that gives the colours, by its name or with one row per point or cell. Light keeps
-            them readable, as in :func:`vizlight.tint`: there is no highlight, and values that are
-            missing are grey. With ``rgb=True`` the array holds colours. Blocks without the array
-            have no colours of data. Default: the array of :func:`vizlight.tint` for a mesh that it
+            them readable, as in :func:`vizlight.tint`: without a highlight, and grey for missing
+            values. With ``rgb=True`` the array holds colours. Blocks without the array have no
+            colours of data. Default: the array of :func:`vizlight.tint` for a mesh that it
             returned; as in PyVista, the active scalars, where no ``color``, no ``tangents`` and no
             ``scene`` say that the light itself is looked at; otherwise none.
         line_diameter : float, optional
@@ -122,19 +122,19 @@ class Component:
             drawn nearer to the eye by their own width, so that a surface on which they lie does not
             hide them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
         width : str, optional
-            Name of a point array of lines, one number per point: the width of the line there, as a
+            Name of a point array of lines, one number per point: the local width of the line, as a
             share from 0 to 1 of ``line_width`` or ``line_diameter``, such as ``"width"`` of the
             strokes of :func:`vizlight.streamlines`. NaN is 0. Halos keep their width.
         **options
             Options of :func:`vizlight.illuminate`, such as ``tangents=`` and ``conditioned=``,
             except ``name`` and ``components``, with ``feature_angle="auto"`` by default: where
-            edges are creases a copy is drawn whose points are split there, which does not follow
-            later changes of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such
-            as ``clim``, ``name``, ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is
-            ``vizlight.maps.even`` unless the theme's was changed. ``smooth_shading=False`` splits
-            the points at every edge, so that faces are flat, ``split_sharp_edges`` at edges of the
-            theme's angle. PyVista draws the mesh with its own light if ``lighting=False``,
-            ``pbr=True`` or ``style="points_gaussian"``, and points that have no vectors. With
+            edges are creases a copy with split points is drawn, which does not follow later changes
+            of the mesh; and keywords of ``pyvista.Plotter.add_mesh``, such as ``clim``, ``name``,
+            ``opacity``, ``line_width``, ``pickable``, and ``cmap``, which is ``vizlight.maps.even``
+            unless the theme's was changed. ``smooth_shading=False`` splits the points at every
+            edge, so that faces are flat, ``split_sharp_edges`` at edges of the theme's angle.
+            PyVista draws the mesh with its own light if ``lighting=False``, ``pbr=True`` or
+            ``style="points_gaussian"``, and points that have no vectors. With
             ``render_lines_as_tubes=True`` lines wider than a pixel have, where light is in
             fragments, the light of the cylinder that they stand for across their width: its mean is
             the light of ``model="cylinder"``.
@@ -161,8 +161,8 @@ class Component:
         Notes
         -----
         Scenes that PyVista exports cannot hold live light: ``plotter.export_html``,
-        ``export_gltf`` and the like raise a ValueError with the remedy while there is any.
-        :meth:`export_html` of this component can.
+        ``export_gltf`` and the like raise a ValueError with the remedy as long as the plotter has
+        any. :meth:`export_html` of this component can.
 
         Shadows and ambient occlusion (SSAO) of PyVista do not show on meshes with live light, and
         the light of a copy of an actor stays as it is.
@@ -179,7 +179,7 @@ class Component:
         blocks.check(mesh)
         scene = optional_scene(scene)
         _check.choice("light", light, get_args(LightAt))
-        own, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
+        light_options, drawing = keywords.sorted_out("plotter.vizlight.add_mesh", options, scene)
         width_of_lines = _check_lines(mesh, line_diameter, halo, width)
         if _check.boolean("copy_mesh", drawing.pop("copy_mesh", False)):
             mesh = mesh.copy(deep=False)
@@ -189,24 +189,24 @@ class Component:
         if why is not None:
             if why:
                 _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
-            given: Foreign = scalars
-            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=given, **drawing)
+            color_rows: Foreign = scalars
+            unlit: pv.Actor = plotter.add_mesh(mesh, scalars=color_rows, **drawing)
             return unlit
-        if scalars is None and scene is None and not (own or relight.is_lit(mesh)):
+        if scalars is None and scene is None and not (light_options or relight.is_lit(mesh)):
             others = any(drawing.get(name) for name in ("color", "multi_colors", "texture"))
             scalars = None if others else keywords.active_scalars(mesh)
         mesh, chosen = keywords.colored(mesh, scalars, drawing)
         angle = keywords.shading_of(drawing)
         several, named = isinstance(mesh, pv.MultiBlock), list(blocks.named_blocks(mesh))
         # Points without vectors have no side that light could fall on.
-        clouds = [keywords.is_cloud(block, own) for block, _ in named]
+        clouds = [keywords.is_cloud(block, light_options) for block, _ in named]
         if any(clouds):
             mesh = pv.MultiBlock()
             for (block, path), is_cloud in zip(named, clouds, strict=True):
                 if not is_cloud:
                     mesh.append(block, path.lstrip("/"))
         # All blocks are read before one is drawn: an error leaves the plotter as it was.
-        sources, used = sources_of(mesh, scene, own, angle)
+        sources, used = sources_of(mesh, scene, light_options, angle)
         if getattr(plotter, "notebook", False):
             guard()
         lit, colors = iter(sources), keywords.block_colors(drawing)
@@ -256,11 +256,11 @@ class Component:
         Parameters
         ----------
         scene : Scene or str, optional
-            Scene whose light the key explains. Default: the scene of the first mesh of
+            Scene with the light that the key explains. Default: the scene of the first mesh of
             :meth:`add_mesh`, with the exponent of its light, and its colour map where it is
             coloured by values.
         question : {"direction", "slope", "heading", "shape", "value"}, optional
-            What the key tells. Default: the question of the preset, see
+            Content of the key. Default: the question of the preset, see
             :func:`vizlight.presets.key`.
         size : float, default: 0.15
             Width of the key, as a share of the shorter side of the picture, from 0.02 to 1.
@@ -280,7 +280,7 @@ class Component:
         Raises
         ------
         TypeError, ValueError
-            If an argument does not fit; if there is neither a scene nor a mesh with live light.
+            If an argument does not fit; without a scene and without a mesh with live light.
         RuntimeError
             If the plotter is closed.
 
@@ -292,12 +292,12 @@ class Component:
         plotter = self._open_plotter()
         scene = optional_scene(scene)
         if scene is None:
-            scene, own = self._first_light(plotter, question)
-            options = own | options
-        asked: Keywords = {"question": question}
-        made = key(scene, **(asked | options))
-        self.show_key(made, size=size, color=color, lying=lying)
-        return made
+            scene, light_of_data = self._first_light(plotter, question)
+            options = light_of_data | options
+        of_question: Keywords = {"question": question}
+        mesh = key(scene, **(of_question | options))
+        self.show_key(mesh, size=size, color=color, lying=lying)
+        return mesh
 
     def show_key(
         self,
@@ -376,7 +376,7 @@ class Component:
         key: bool = True,
         source: Sequence[str] = (),
     ) -> Path:
-        """Write one HTML file that shows the meshes, whose light follows the eye of the reader.
+        """Write one HTML file that shows the meshes in light that follows the eye of the reader.
 
         The page has the meshes of :meth:`add_mesh` that are visible, and the camera, the
         background and the scalar bars of the plotter; see :func:`vizlight.live_html`.
@@ -412,8 +412,7 @@ class Component:
         Warns
         -----
         UserWarning
-            If the light of a mesh does not follow the eye, or what is drawn beside the meshes is
-            left out.
+            If the light of a mesh does not follow the eye, or other actors are left out.
         """
         return write_page(
             path, self.shown(), self._open_plotter(), title=title, panel=panel, key=key,
@@ -421,12 +420,12 @@ class Component:
         )  # fmt: skip
 
     def save_graphic(self, path: str | Path, /, *, error: float | None = None) -> Path:
-        """Write what the plotter shows as vector graphics: filled paths, strokes and text.
+        """Write the picture of the plotter as vector graphics: filled paths, strokes and text.
 
         Light is drawn as areas of one colour each, which are painted from dark to light and reach
-        a little beneath those that follow, so that no seams show at any scale. What is hidden has
-        no path. Lines are strokes of their widths, with halos; words of texts, keys and scalar
-        bars stay text.
+        a little beneath those that follow, so that no seams show at any scale. Hidden surfaces have
+        no path. Lines are strokes of their widths, with halos; words of texts, keys and scalar bars
+        stay text.
 
         Parameters
         ----------
@@ -461,7 +460,7 @@ class Component:
         Notes
         -----
         The light is read back from the plotter's own drawing in 24 bits, at 2 to 4 samples along
-        the side of a pixel; what shines through has 8 bits. Edges are within half a sample. Paths
+        the side of a pixel; translucent surfaces have 8 bits. Edges are within half a sample. Paths
         are within 0.1 pixels of the borders between samples. The source is the rendering by filled
         polygons in the painter's order of Conway and Cottingham, The Isoluminance Contour Model.
         """
@@ -470,42 +469,43 @@ class Component:
 
         return save_graphic(self._open_plotter(), path, self._live_of, error=error)
 
-    def shown(self) -> list[Shown]:
-        """Return the visible meshes with live light, for a page whose camera is set.
+    def shown(self) -> list[PageMesh]:
+        """Return the visible meshes with live light, for a page with its camera set.
 
         Returns
         -------
-        list of Shown
+        list of PageMesh
 
         Raises
         ------
         ValueError
-            If there is none.
+            If the plotter has none.
 
         Warns
         -----
         UserWarning
-            If there are actors without live light, which a page leaves out.
+            If actors without live light are left out of the page.
         """
         plotter = self._open_plotter()
         visible = [actor for actor in items(plotter.renderer.GetActors()) if actor.GetVisibility()]
         lit = [(live, actor) for actor in visible if (live := self._live_of(actor)) is not None]
-        found = [
-            Shown(own.name or f"mesh {i}", own, actor) for i, (own, actor) in enumerate(lit, 1)
+        visible_meshes = [
+            PageMesh(light.name or f"mesh {i}", light, actor)
+            for i, (light, actor) in enumerate(lit, 1)
         ]
-        if not found:
+        if not visible_meshes:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
             raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
-        if others := len(visible) - len(found):
+        if others := len(visible) - len(visible_meshes):
             _check.warn(f"{others} actors without light of vizlight are not in the page")
         # Until its first picture a plotter of PyVista has no view of its data, and a page takes
         # none.
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
-        return found
+        return visible_meshes
 
     def moving(self) -> list[pv.PolyData]:
-        """Return the lines whose strokes move: those of ``streamlines(travel=)`` with widths."""
+        """Return the lines with moving strokes: those of ``streamlines(travel=)`` with widths."""
         lives = [self._live_of(actor) for actor in items(self._open_plotter().renderer.GetActors())]
         strokes = [
             live.source.mesh for live in lives if live is not None and live.stroke.width == WIDTH
@@ -515,7 +515,7 @@ class Component:
         ]
 
     def explain(self, actor: vtkActor, /) -> str:
-        """Return where the light of an actor is computed and why, and what of it.
+        """Return where the light of an actor is computed and why, and which terms.
 
         Parameters
         ----------
@@ -554,12 +554,12 @@ class Component:
 
     @property
     def has_live_light(self) -> bool:
-        """Whether the plotter shows a mesh whose light follows the camera."""
+        """Whether the plotter shows a mesh with light that follows the camera."""
         self._forget()
         return bool(self._lives)
 
     def legibility(self, **options: Given) -> Foreign:
-        """Measure what a reader can read back from the picture of the plotter, all that it shows.
+        """Measure how much a reader can read back from the whole picture of the plotter.
 
         Parameters
         ----------
@@ -621,7 +621,7 @@ class Component:
             _check.text("name", drawing["name"], expected="a name for the actor")
         # The first frame comes at the end, when the mesh has its light.
         rendered = drawing.pop("render", True)
-        asked = drawing.get("scalar_bar_args") or {}
+        bar_options = drawing.get("scalar_bar_args") or {}
         if scalars is not None:
             live.color_by(scalars, drawing.pop("component", None))
             drawing["scalars"] = live.scalars
@@ -632,7 +632,7 @@ class Component:
                 values = live.drawn[drawing["scalars"]]
                 if drawing.get("clim") is None and not np.isfinite(values).any():
                     drawing["clim"] = (0.0, 1.0)  # of no value at all
-                drawing["scalar_bar_args"] = {"title": scalars} | asked
+                drawing["scalar_bar_args"] = {"title": scalars} | bar_options
         live.attach()
         drawing = live.drawing(drawing)
         actor: pv.Actor = plotter.add_mesh(
@@ -644,12 +644,12 @@ class Component:
             **drawing,
         )
         if live.scene is None and not drawing.keys() & keywords.MATERIAL:
-            own, default = actor.prop, Material()
+            prop, default = actor.prop, Material()
             # PyVista's own defaults are nobody's choice: the material of this package stands in
             # for them.
-            if (own.ambient, own.diffuse, own.specular) == UNTOUCHED:
-                own.ambient, own.diffuse = default.ambient, default.diffuse
-                own.specular = default.specular
+            if (prop.ambient, prop.diffuse, prop.specular) == UNTOUCHED:
+                prop.ambient, prop.diffuse = default.ambient, default.diffuse
+                prop.specular = default.specular
         try:
             live.start(actor)
             live.paint(plotter.renderer, actor)
@@ -661,7 +661,7 @@ class Component:
             _check.warn(unlit(invalid, live.source.inputs.count))
         for bar in plotter.scalar_bars.values() if scalars is not None else ():
             if bar.GetLookupTable() is actor.mapper.lookup_table:
-                settle(plotter, bar, asked)
+                settle(plotter, bar, bar_options)
                 if invalid or live.lacks_values():
                     name_no_data(bar)
         self._keep(plotter, live, actor)
@@ -690,7 +690,7 @@ class Component:
                 self._observed.append((renderer, renderer.AddObserver("StartEvent", update)))
 
     def _update(self, renderer: vtkRenderer) -> None:
-        """Light what a renderer is about to draw, and say once what does not show."""
+        """Light the meshes before a renderer draws them; warn once of those that do not show."""
         lost, any_live = set(), False
         self._forget()
         for actor in items(renderer.GetActors()):
@@ -747,7 +747,7 @@ def _address(thing: vtkObject) -> str:
 
 
 def _map_of(drawing: Keywords) -> Keywords:
-    """Return the colours of values, and of what is no data, that keywords ask for."""
+    """Return the colours of values, and of missing values, by keywords."""
     ends = drawing.get("clim")
     return {
         "cmap": default_map(drawing.get("cmap")),
@@ -813,12 +813,12 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
-    given: tuple[object, object] = plotter, mesh
-    if not isinstance(given[0], pv.BasePlotter):
-        got = _check.describe(given[0])
+    arguments: tuple[object, object] = plotter, mesh
+    if not isinstance(arguments[0], pv.BasePlotter):
+        got = _check.describe(arguments[0])
         raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
     blocks.check(mesh)
-    if isinstance(given[1], pv.MultiBlock):
+    if isinstance(arguments[1], pv.MultiBlock):
         remedy = "add its blocks one after the other"
         raise TypeError(_check.message("mesh", "one dataset", "a MultiBlock", remedy))
     _check.text("name", name, expected="the name of the light")
@@ -837,12 +837,12 @@ def add_recorded(
         return None
     # The array of the light has no colours, whatever those of the lamps: it is drawn in grey.
     live = Fragments(source, scene if name == RGB else _colorless(scene), stroke, follow=False)
-    own: Component = plotter.vizlight
-    return own._add(plotter, live, scalars, colors | drawing)
+    component: Component = plotter.vizlight
+    return component._add(plotter, live, scalars, colors | drawing)
 
 
 def _colorless(scene: Scene) -> Scene:
-    """Return a scene without colours, whose light is luminance alone."""
+    """Return a scene without colours: its light is luminance alone."""
     cue, material = scene.depth_cue, scene.material
     return scene.replace(
         lights=tuple(dataclasses.replace(light, color=None) for light in scene.lights),

@@ -1,4 +1,4 @@
-"""How the shaders of a renderer declare what a program of light reads."""
+"""Declarations, in the shaders of a renderer, of the inputs of a program of light."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Replacement(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Dialect:
-    """Words of a renderer whose shaders have the marks of VTK.
+    """Words of a renderer that has the marks of VTK in its shaders.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Dialect:
         Names of the attributes of a vertex.
     web : bool, default: False
         Whether the renderer is vtk.js, with the GLSL of WebGL 1: the text declares its uniforms,
-        which VTK does itself, and there is no geometry shader between the two others. Actors are
+        which VTK does itself, and no geometry shader stands between the two others. Actors are
         not moved, so that tangents turn by the matrix of the normals. (``mat3(MCVCMatrix)`` has
         the scale of vtk.js's buffers in it.)
     constant : bool, default: False
@@ -51,7 +51,7 @@ class Dialect:
     constant: bool = False
 
     def passing(self, varyings: Iterable[Varying]) -> list[Replacement]:
-        """Return what passes values from the vertices to the fragments."""
+        """Return the replacements that pass values from the vertices to the fragments."""
         varyings = tuple(varyings)
         attribute, output = ("attribute", "varying") if self.web else ("in", "out")
         clip = "MCPCMatrix" if self.web else "MCDCMatrix"
@@ -79,7 +79,7 @@ class Dialect:
         matrices = f"uniform mat4 {clip};\nuniform mat4 MCVCMatrix;\n"
         if WORLD in read:
             matrices += f"uniform mat4 {WORLD};\n"
-        found = [
+        parts = [
             Replacement("Vertex", "//VTK::Camera::Dec", matrices),
             Replacement(
                 "Vertex",
@@ -96,35 +96,35 @@ class Dialect:
         # on.
         if not self.web:
             passed = [(kind, name, name.replace("VSOutput", "GSOutput")) for kind, name in names]
-            declared = "".join(f"in {k} {name}[];\nout {k} {own};\n" for k, name, own in passed)
-            copied = "".join(f"  {own} = {name}[i];\n" for _, name, own in passed)
-            found.append(Replacement("Geometry", "//VTK::Normal::Dec", declared))
-            found.append(Replacement("Geometry", "//VTK::Normal::Impl", copied))
-        return found
+            declared = "".join(f"in {k} {name}[];\nout {k} {to};\n" for k, name, to in passed)
+            copied = "".join(f"  {to} = {name}[i];\n" for _, name, to in passed)
+            parts.append(Replacement("Geometry", "//VTK::Normal::Dec", declared))
+            parts.append(Replacement("Geometry", "//VTK::Normal::Impl", copied))
+        return parts
 
     def replacements(self, program: Program, numbers: Iterable[Uniform]) -> list[Replacement]:
-        """Return what a renderer puts in place of its own light.
+        """Return the replacements that a renderer puts in place of its own light.
 
         Parameters
         ----------
         program : Program
         numbers : iterable of Uniform
-            What the program is given.
+            Numbers of the program.
 
         Returns
         -------
         list of Replacement
         """
-        given, varyings = list(numbers), list(program.varyings)
+        uniforms_in, varyings = list(numbers), list(program.varyings)
         constants = ""
         # ParaView 5.11 has no uniforms of our own: numbers stand in the text, and what turns with
         # the camera is turned in the vertex shader by VTK's matrices.
         if self.constant:
-            varyings += [_turned(uniform) for uniform in given if uniform.space]
-            constants = "".join(map(_constant, given))
+            varyings += [_turned(uniform) for uniform in uniforms_in if uniform.space]
+            constants = "".join(map(_constant, uniforms_in))
         word = "varying" if self.web else "in"
         into = "".join(f"{word} {v.kind} {suffixed(v.name)};\n" for v in varyings)
-        declared = given if self.web else []
+        declared = uniforms_in if self.web else []
         uniforms = "".join(f"uniform {u.kind} {u.name};\n" for u in declared)
         written = f"{constants}{program.body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n"
         return [

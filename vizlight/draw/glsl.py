@@ -1,8 +1,8 @@
 """The light of a plan as a program of a graphics card, and the numbers that it is given.
 
 The terms of a plan write the GLSL of one fragment. The numbers of a scene are uniforms by name,
-so that a lamp or a camera can move and the text stays. One text serves all renderers; what differs
-between them is a dialect (:mod:`vizlight.draw.dialects`).
+so that a lamp or a camera can move and the text stays. One text serves all renderers; the
+differences between them are a dialect (:mod:`vizlight.draw.dialects`).
 """
 
 from __future__ import annotations
@@ -95,13 +95,13 @@ def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[s
         uniforms.
     """
     # The terms write themselves: each operation on a symbol appends a line to the shader.
-    w = Shader(plan, data=data)
+    w = FragmentShader(plan, data=data)
     light(w, w.plan)
     body = _EYE + (_TURN if turned else "") + w.body()
     return (_POWER if "viz_power(" in body else ""), body
 
 
-class Shader(Writer):
+class FragmentShader(Writer):
     """Writes the light of a fragment; kinds are "float", "vec3" and "bool"."""
 
     prefix = "viz"
@@ -230,7 +230,7 @@ class Shader(Writer):
         return self.named(text, "float"), self._parts("vizCueEnds", "xyzw")
 
     def cue_color(self) -> Value:
-        """Return what the depth cue fades to."""
+        """Return the colour to which the depth cue fades."""
         return Symbol(self, "vizCue", "vec3")
 
     def fur_rate(self) -> Value:
@@ -309,10 +309,10 @@ class Shader(Writer):
         # Light is a factor on the data's colour, as in `display.py`: hue and order of values stay.
         if self.data:
             luma = self.named(f"dot({color.text}, {vector(formulas.LUMA)})", "float")
-            own = self.named("vizColorGain * (ambientColor + diffuseColor)", "vec3")
+            base = self.named("vizColorGain * (ambientColor + diffuseColor)", "vec3")
             if self.plan.scene.exposure is not None:
                 luma = luma * formulas.exposed(luma, self.number(self.plan.scene.exposure))
-            shown = own * formulas.color_factor(luma, display.LEAST)
+            shown = base * formulas.color_factor(luma, display.LEAST)
         else:
             shown = formulas.in_range(color, self.largest(color))
         # Points that could not be lit have the colour of missing data. Lines that nothing needs
@@ -335,7 +335,7 @@ class Uniform(NamedTuple):
         Type of GLSL.
     value : tuple of float
     space : {"", "direction", "position"}
-        What the first three numbers are. The program takes directions (of unit length) and
+        Kind of the first three numbers. The program takes directions (of unit length) and
         positions in view coordinates.
     """
 
@@ -409,7 +409,7 @@ CYLINDER_NORMAL = """  vec3 vizLast = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], M
 
 
 class Program(NamedTuple):
-    """Text of a fragment shader, and what it reads.
+    """Text of a fragment shader, and its inputs.
 
     Attributes
     ----------
@@ -459,8 +459,8 @@ def write(
     plan : Plan
         Plan of a surface or of one tangent per point in 3-space, in its exact form.
     turned : bool
-        Whether the normal is turned to the eye, unless it leans away by what its length says: from
-        1 for a lean of -1 to 2 for one of 1.
+        Whether the normal is turned to the eye, unless it leans away by the sine in its length:
+        from 1 for a lean of -1 to 2 for one of 1.
     toward : {"", "eye", "face"}
         Where normals have no such length: whether they are turned to the eye, or to the side of
         the face that is seen, which may lean away between the corners. A line has no face.
@@ -531,7 +531,7 @@ def numbers(
     tallest: float,
     data: bool = False,
 ) -> list[Uniform]:
-    """Return what the program of a scene is given.
+    """Return the numbers of the program of a scene.
 
     Parameters
     ----------
@@ -546,7 +546,7 @@ def numbers(
     fur : float
         Density of the fur, 0 for none.
     tallest : float
-        Height of the fur whose normal has the length 2.
+        Height of fur with a normal of length 2.
     data : bool, default: False
         Whether the renderer's colours come from data.
 
@@ -557,14 +557,14 @@ def numbers(
     Raises
     ------
     ValueError
-        If there are more than 16 lights.
+        If the scene has more than 16 lights.
     """
     if len(lights) > MOST_LIGHTS:
         got = str(len(lights))
         raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
     # Light on colours of data is a factor, which the colours of a renderer must not hold already.
     held = (1.0, 1.0, WHITE) if data else (ambient, diffuse, specular_color)
-    found = [
+    uniforms = [
         *_of_lights(lights),
         *_of_material(scene, *held),
         *_of_view(scene.depth_cue, scene.view),
@@ -572,42 +572,42 @@ def numbers(
     if data:
         least = scene.ambient_intensity * display.LEAST
         around = tuple(least * c for c in scene.ambient_color or WHITE)
-        found.append(Uniform("vizLeastGain", "vec3", around))
+        uniforms.append(Uniform("vizLeastGain", "vec3", around))
         # VTK multiplies a scalar colour by ambient and diffuse before the light sees it.
         gain = _ratio(1.0, ambient + diffuse)
-        found.append(Uniform("vizColorGain", "float", (gain,)))
+        uniforms.append(Uniform("vizColorGain", "float", (gain,)))
     if fur:
         # Fur of density 1 lets through what is less than any float.
         # log(1 - density): density 1 would be -inf, which GLSL has not.
         rate = float(np.log1p(-min(fur, 1 - 1e-12)))
-        found.append(Uniform("vizFurRate", "float", (rate,)))
-        found.append(Uniform("vizTallest", "float", (tallest,)))
-    return found
+        uniforms.append(Uniform("vizFurRate", "float", (rate,)))
+        uniforms.append(Uniform("vizTallest", "float", (tallest,)))
+    return uniforms
 
 
 def _unit(name: str) -> str:
     """Return statements that read a varying as a unit vector."""
-    given = suffixed(name)
+    varying = suffixed(name)
     return (
-        f"  float {name}Size = length({given});\n"
+        f"  float {name}Size = length({varying});\n"
         f"  vizGood = vizGood && {name}Size > 1e-6;\n"
-        f"  vec3 {name} = {given} / max({name}Size, 1e-6);\n"
+        f"  vec3 {name} = {varying} / max({name}Size, 1e-6);\n"
     )
 
 
 def _of_lights(lights: Sequence[Light]) -> list[Uniform]:
-    found = []
+    uniforms = []
     for i, lamp in enumerate(lights):
         if lamp.position is not None:
-            found.append(Uniform(f"vizLight{i}", "vec3", lamp.position, "position"))
+            uniforms.append(Uniform(f"vizLight{i}", "vec3", lamp.position, "position"))
             # Only a lamp at a place fades with distance.
-            found.append(Uniform(f"vizFade{i}", "vec3", lamp.attenuation))
+            uniforms.append(Uniform(f"vizFade{i}", "vec3", lamp.attenuation))
         elif lamp.direction is not None:
-            found.append(Uniform(f"vizLight{i}", "vec3", lamp.direction, "direction"))
+            uniforms.append(Uniform(f"vizLight{i}", "vec3", lamp.direction, "direction"))
         # Intensity and colour are one vector; a lamp without a colour is white.
         color = tuple(lamp.intensity * c for c in lamp.color or WHITE)
-        found.append(Uniform(f"vizColor{i}", "vec3", color))
-    return found
+        uniforms.append(Uniform(f"vizColor{i}", "vec3", color))
+    return uniforms
 
 
 def _of_material(
@@ -626,7 +626,7 @@ def _of_material(
 
 
 def _ratio(wanted: float, shown: float) -> float:
-    """Return what a coefficient of a renderer must be multiplied by."""
+    """Return the factor by which a coefficient of a renderer must be multiplied."""
     return wanted / shown if shown > 0 else 0.0
 
 

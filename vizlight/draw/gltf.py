@@ -65,8 +65,8 @@ def save_gltf(
     path : path
         Path of the file, which ends in .glb. An existing file is replaced.
     scene : Scene or str, optional
-        Lights and material. Default: the record of a lit mesh. The view counts only for what needs
-        one, such as a headlight, which is then fixed, with a warning.
+        Lights and material. Default: the record of a lit mesh. The view counts only for parts that
+        need one, such as a headlight, which is then fixed, with a warning.
     scalars : str, optional
         Name of the array that gives the colours; each cell has one colour where the values are
         the cells'. Default: the material's, or the array of :func:`vizlight.tint` for a mesh that
@@ -95,9 +95,9 @@ def save_gltf(
 
     Notes
     -----
-    ``COLOR_0`` with ``KHR_materials_unlit``: colours are linear by the standard, so that what a
-    picture of PyVista shows is decoded from sRGB, to 16 bits. Positions are float32 from the centre
-    of the mesh, which is the translation of the node.
+    ``COLOR_0`` with ``KHR_materials_unlit``: colours are linear by the standard, so that the
+    colours of a picture of PyVista are decoded from sRGB, to 16 bits. Positions are float32 from
+    the centre of the mesh, which is the translation of the node.
     """
     path = files.check_output(path, (".glb",))
     for name in options.keys() - LIGHT:
@@ -108,14 +108,14 @@ def save_gltf(
     file, fixed = _File(), set()
     drawn = [_drawn(source.mesh, scalars) for source in sources]
     colors = _colors(sources, drawn, scalars, cmap, clim)
-    for source, name, (surface, ids), own in zip(sources, names, drawn, colors, strict=True):
+    for source, name, (surface, ids), color in zip(sources, names, drawn, colors, strict=True):
         if not source.mesh.n_points:
             continue
         n = int(source.inputs.points.shape[1])
         here = lifted(used, n)
         if here.view is None:
             here = here.replace(view=View.isometric(n))
-        lit, seen = fixed_colors(source, here, own, ids)
+        lit, seen = fixed_colors(source, here, color, ids)
         file.add(name or "mesh", surface, lit)
         fixed |= {seen} - {""}
     if not file.nodes:
@@ -129,7 +129,7 @@ def save_gltf(
 
 
 def _drawn(mesh: pv.DataSet, scalars: str | None) -> tuple[pv.PolyData, Indices]:
-    """Return what is drawn of a mesh, and the point of the mesh that each of its points is.
+    """Return the drawn surface of a mesh, and the point of the mesh of each of its points.
 
     Points are split where cells of different values meet.
     """
@@ -155,14 +155,14 @@ def _colors(
     else:
         named = [tinted(source.mesh) for source in sources]
         values += [
-            None if name is None else values_of(surface, name, own.get("component"))
-            for (name, own), (surface, _) in zip(named, drawn, strict=True)
+            None if name is None else values_of(surface, name, options.get("component"))
+            for (name, options), (surface, _) in zip(named, drawn, strict=True)
         ]
-    known = [value for value in values if value is not None]
-    table = color_table(known, cmap=cmap, clim=clim)
+    rows = [value for value in values if value is not None]
+    table = color_table(rows, cmap=cmap, clim=clim)
     return [
-        None if value is None else map_colors(own.get("cmap", table), value)
-        for (_, own), value in zip(named, values, strict=True)
+        None if value is None else map_colors(options.get("cmap", table), value)
+        for (_, options), value in zip(named, values, strict=True)
     ]
 
 
@@ -280,5 +280,5 @@ def _linear(colors: NDArray[np.uint8]) -> Array:
     rgb = shown[:, :3]
     # The curve of sRGB (IEC 61966-2-1), back to linear light.
     decoded = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    found: Array = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
-    return found
+    linear: Array = np.rint(65535 * np.column_stack([decoded, shown[:, 3]]))
+    return linear

@@ -86,7 +86,7 @@ _CELLS = {"verts": "verts", "lines": "lines", "polys": "faces", "strips": "strip
 _CONSTANT = ("vizFurRate", "vizTallest", "vizCue", "vizLeastGain", "vizColorGain")
 
 
-class Shown(NamedTuple):
+class PageMesh(NamedTuple):
     """A drawn mesh with live light, its name in the panel, and its frame if it has one."""
 
     name: str
@@ -96,7 +96,7 @@ class Shown(NamedTuple):
 
 
 class Page:
-    """What the page holds, as JSON has it."""
+    """Content of the page, as JSON."""
 
     def __init__(self, renderer: vtkRenderer) -> None:
         self.renderer, self.camera = renderer, renderer.GetActiveCamera()
@@ -147,10 +147,10 @@ class Page:
 
     def moved(self, point: Sequence[float]) -> list[float]:
         """Return a point as measured from the origin of the page."""
-        found: list[float] = (np.asarray(point, dtype=np.float64) - self.origin).tolist()
-        return found
+        place: list[float] = (np.asarray(point, dtype=np.float64) - self.origin).tolist()
+        return place
 
-    def add(self, shown: Shown) -> None:
+    def add(self, shown: PageMesh) -> None:
         """Add a mesh with its light."""
         live, actor = shown.live, shown.actor
         # A page has surfaces, lines and points; of a volume its outer surface.
@@ -158,7 +158,7 @@ class Page:
         if not isinstance(surface, pv.PolyData):
             surface, ids = blocks.outer_surface(surface)
         prop = actor.GetProperty()
-        made: dict[str, object] = {
+        entry: dict[str, object] = {
             "name": shown.name,
             "color": list(prop.GetDiffuseColor()),
             "opacity": prop.GetOpacity(),
@@ -167,55 +167,55 @@ class Page:
             "representation": prop.GetRepresentation(),
         }
         if live.stroke.halo:
-            made |= {"halo": live.stroke.halo, "depth": DEPTH}
+            entry |= {"halo": live.stroke.halo, "depth": DEPTH}
         if live.stroke.width is not None:
             shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
-            made["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
+            entry["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
             if strokes.PHASE in live.source.mesh.point_data:
-                made["moving"] = _moving(live)
+                entry["moving"] = _moving(live)
         if shown.frame is not None:
-            made["frame"] = shown.frame
+            entry["frame"] = shown.frame
         if prop.GetEdgeVisibility():
-            made["edgeColor"] = list(prop.GetEdgeColor())
+            entry["edgeColor"] = list(prop.GetEdgeColor())
         matrix = matrix_of(actor.GetMatrix())
         with np.errstate(invalid="ignore", over="ignore"):  # points that are not finite
             # Actors are not moved in the page: their matrix is taken into the points.
             points = np.asarray(surface.points, dtype=np.float64) @ matrix[:3, :3].T
-            made["points"] = _places(points + matrix[:3, 3] - self.origin)
+            entry["points"] = _places(points + matrix[:3, 3] - self.origin)
         for key, name in _CELLS.items():
             cells = np.asarray(getattr(surface, name))
             if len(cells):
-                made[key] = _packed(cells, "u4")
+                entry[key] = _packed(cells, "u4")
         scene = live.scene_of(self.renderer, actor)
         if live.scalars is not None:
             # The actor's own colour is PyVista's, which no one sees.
-            made["color"] = list(scene.material.color or WHITE)
+            entry["color"] = list(scene.material.color or WHITE)
         if isinstance(live, Fragments):
-            made |= self._followed(live, scene, actor, matrix)
+            entry |= self._followed(live, scene, actor, matrix)
         else:
-            made |= self._fixed(shown, scene, ids)
-        self.meshes.append(made)
+            entry |= self._fixed(shown, scene, ids)
+        self.meshes.append(entry)
 
-    def add_values(self, every: Sequence[Shown]) -> None:
+    def add_values(self, every: Sequence[PageMesh]) -> None:
         """Add the arrays by which the page can colour its meshes."""
         rows = [
-            _numbers_of(one.live) if mesh["live"] else {}
-            for one, mesh in zip(every, self.meshes, strict=True)
+            _numbers_of(each.live) if mesh["live"] else {}
+            for each, mesh in zip(every, self.meshes, strict=True)
         ]
-        names = dict.fromkeys(name for found in rows for name in found)
+        names = dict.fromkeys(name for of_mesh in rows for name in of_mesh)
         # All arrays of all meshes share one limit, as the page holds them all.
         left = MOST_VALUES
         for name in [*names][:MOST_ARRAYS]:
-            there = [found[name] for found in rows if name in found]
+            there = [of_mesh[name] for of_mesh in rows if name in of_mesh]
             left -= sum(map(len, there))
             ends = _ends(there)
             if left < 0 or ends is None:
                 continue
             self.arrays[name] = list(ends)
-            for mesh, found in zip(self.meshes, rows, strict=True):
-                if name in found:
+            for mesh, of_mesh in zip(self.meshes, rows, strict=True):
+                if name in of_mesh:
                     values = cast("dict[str, object]", mesh.setdefault("values", {}))
-                    values[name] = _codes(found[name], ends)
+                    values[name] = _codes(of_mesh[name], ends)
 
     def _followed(
         self, live: Fragments, scene: Scene, actor: vtkActor, matrix: Array
@@ -226,7 +226,7 @@ class Page:
         texts, constants, plan = self._written(live, scene, rows)
         self._lines |= not plan.surface
         self._remember(live)
-        made: dict[str, object] = {
+        entry: dict[str, object] = {
             "live": True,
             "lights": _number_of(rows, self.lights),
             "texts": texts,
@@ -239,24 +239,24 @@ class Page:
             "specularColor": list(prop.GetSpecularColor()),
         }
         if scene.exposure is not None:
-            made["exposure"] = scene.exposure
+            entry["exposure"] = scene.exposure
         cue = scene.depth_cue
         if cue is not None:
-            made["cue"] = {
+            entry["cue"] = {
                 "front": cue.front, "back": cue.back, "scales": [cue.front_scale, cue.back_scale]
             }  # fmt: skip
         arrays, linear = live.drawn.point_data, matrix[:3, :3]
         mixed = plan.line_exponent is not None
         if TANGENTS in arrays and (plan.occluded or mixed or not plan.surface):
-            made["tangents"] = _directions(arrays[TANGENTS], linear.T)
+            entry["tangents"] = _directions(arrays[TANGENTS], linear.T)
         if NORMALS in arrays and (plan.surface or plan.conditioned or plan.fur):
             # Rows on the left of the inverse turn as normals do, by its transpose.
-            made["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))
+            entry["normals"] = _directions(arrays[NORMALS], np.linalg.inv(linear))
         if live.scalars is not None:
             of_cells = live.scalars not in arrays
-            made |= {"colors": _packed(live.mapped(actor), "u1"), "ofCells": of_cells}
-            made["colored"] = True
-        return made
+            entry |= {"colors": _packed(live.mapped(actor), "u1"), "ofCells": of_cells}
+            entry["colored"] = True
+        return entry
 
     def _written(
         self, live: Fragments, scene: Scene, rows: Sequence[dict[str, object]]
@@ -279,23 +279,23 @@ class Page:
         if live.source.options.conditioned and inputs.normals is not None and not furry:
             sources["free "] = _unconditioned(live.source)
         constants: dict[str, list[float]] = {}
-        found: dict[str, int] = {}
+        places: dict[str, int] = {}
         yes_no, counts = (False, True), (range(near + 1), range(far + 1))
         for data, free, ended, i, j in itertools.product(yes_no, sources, yes_no, *counts):
             lamps = [_NEAR] * i + [_FAR] * j
             lit = scene.replace(lights=lamps, material=whole, depth_cue=cue if ended else None)
             plan, source = _plan(lit, sources[free]), sources[free]
-            given = glsl.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
+            uniforms = glsl.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
             if plan.occluded:
-                given.append(glsl.Uniform("vizSky", "float", (1.0,)))
-            constants |= {n.name: list(n.value) for n in given if n.name in _CONSTANT}
+                uniforms.append(glsl.Uniform("vizSky", "float", (1.0,)))
+            constants |= {n.name: list(n.value) for n in uniforms if n.name in _CONSTANT}
             key = f"{'data ' if data else ''}{free}{i} {j}{' cue' if ended else ''}"
             turned = source.sided is not None
             written = glsl.write(plan, turned=turned, data=data, sky=plan.occluded)
-            text = [list(each) for each in dialects.VTK_JS.replacements(written, given)]
-            found[key] = _number_of(text, self._texts)
+            text = [list(each) for each in dialects.VTK_JS.replacements(written, uniforms)]
+            places[key] = _number_of(text, self._texts)
         plan = _plan(scene.replace(depth_cue=None), live.source)
-        return found, constants, plan
+        return places, constants, plan
 
     def _remember(self, live: Live) -> None:
         """Keep how the first mesh was lit, for the texts that the page copies."""
@@ -309,7 +309,7 @@ class Page:
         if live.given is not None:
             self.recipe["color"] = f", scalars={live.given!a}"
 
-    def _fixed(self, shown: Shown, scene: Scene, ids: Indices) -> dict[str, object]:
+    def _fixed(self, shown: PageMesh, scene: Scene, ids: Indices) -> dict[str, object]:
         """Return colours with the light that does not depend on the eye."""
         live, actor = shown.live, shown.actor
         placed = live.source._replace(inputs=live.placed(actor))
@@ -331,9 +331,9 @@ class Page:
         pairs = [(light, light.follows_view) for light in scene.lights]
         if live.scene is None:
             pairs = [
-                (light, light.follows_view or bool(own.LightTypeIsCameraLight()))
-                for own in items(self.renderer.GetLights())
-                for light in lights_of([own], self.camera)
+                (light, light.follows_view or bool(lamp.LightTypeIsCameraLight()))
+                for lamp in items(self.renderer.GetLights())
+                for light in lights_of([lamp], self.camera)
             ]
         matrix = matrix_of(self.camera.GetViewTransformMatrix())
         rows = []
@@ -351,13 +351,13 @@ class Page:
             rows.append(_lamp(light, value.tolist(), at=at, follows=follows))
         return rows
 
-    def add_bars(self, plotter: pv.BasePlotter, shown: Sequence[Shown]) -> None:
+    def add_bars(self, plotter: pv.BasePlotter, shown: Sequence[PageMesh]) -> None:
         """Add the scalar bars that the plotter shows."""
-        colored = [one.actor for one in shown if one.live.scalars is not None]
+        colored = [mesh.actor for mesh in shown if mesh.live.scalars is not None]
         tables = [actor.GetMapper().GetLookupTable() for actor in colored]
         for title, bar in plotter.scalar_bars.items():
             table = bar.GetLookupTable()
-            if any(table is own for own in tables):
+            if any(table is own_table for own_table in tables):
                 self.bars.append(_bar(title, table))
                 if bar.GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
@@ -379,11 +379,11 @@ def _moving(live: Live) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _number_of(item: Foreign, known: list[Foreign]) -> int:
+def _number_of(item: Foreign, items_stored: list[Foreign]) -> int:
     """Return the number by which equal items, which are stored once, are named."""
-    if item not in known:
-        known.append(item)
-    return known.index(item)
+    if item not in items_stored:
+        items_stored.append(item)
+    return items_stored.index(item)
 
 
 def _plan(scene: Scene, source: Source) -> Plan:
@@ -408,7 +408,7 @@ def _lamp(light: Light, value: list[float], *, at: bool, follows: bool) -> dict[
 
 def _looks(*, lines: bool) -> dict[str, object]:
     """Return light by question: lamps of the eye, material, and the words of the key."""
-    found: dict[str, object] = {}
+    by_name: dict[str, object] = {}
     for name, (title, says) in LOOKS.items():
         if not (lines or name in _OF_SURFACES):
             continue
@@ -419,11 +419,11 @@ def _looks(*, lines: bool) -> dict[str, object]:
         ]
         material = {key: getattr(scene.material, key) for key in _COEFFICIENTS}
         words = [] if name == "value" else list(TEXTS[name])
-        found[name] = {
+        by_name[name] = {
             "title": title, "says": says, "lamps": lamps, "material": material, "key": words,
             "colored": name == "value", "free": name not in ("shape", "value"),
         }  # fmt: skip
-    return found
+    return by_name
 
 
 def _words(renderer: vtkRenderer) -> list[list[str]]:
@@ -446,22 +446,22 @@ def _numbers_of(live: Live) -> dict[str, Raw]:
     """Return the arrays of a drawn mesh that can be coloured, one number per point or cell."""
     of_cells = live.scalars is not None and live.scalars not in live.drawn.point_data
     data = live.drawn.cell_data if of_cells else live.drawn.point_data
-    made = records.all_made(live.source.mesh)
-    found: dict[str, Raw] = {}
+    outputs = records.all_made(live.source.mesh)
+    numbers: dict[str, Raw] = {}
     for name in data:
         array = np.asarray(data[name])
-        own = name.startswith("vizlight ") or name in made or name == "Normals"
-        if own or array.dtype.kind not in "iufb" or not len(array):
+        is_made = name.startswith("vizlight ") or name in outputs or name == "Normals"
+        if is_made or array.dtype.kind not in "iufb" or not len(array):
             continue
         if array.ndim == 1:
-            found[name] = array
+            numbers[name] = array
         elif array.shape[1] == 3 and array.dtype.kind == "f":
-            found[f"|{name}|"] = np.linalg.norm(array.astype(np.float64), axis=1)
-    return found
+            numbers[f"|{name}|"] = np.linalg.norm(array.astype(np.float64), axis=1)
+    return numbers
 
 
 def _ends(rows: Sequence[Raw]) -> tuple[float, float] | None:
-    """Return the least and the largest finite value, None if there are not two."""
+    """Return the least and the largest finite value, None if they do not differ."""
     values = np.concatenate(rows, dtype=np.float64)
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
@@ -471,12 +471,12 @@ def _ends(rows: Sequence[Raw]) -> tuple[float, float] | None:
 def _codes(values: Raw, ends: tuple[float, float]) -> dict[str, object]:
     """Return values in 16 bits between the ends of a range."""
     rows = np.asarray(values, dtype=np.float64)
-    known = np.isfinite(rows)
+    finite = np.isfinite(rows)
     # The largest code stands for places without a value.
     codes = np.rint(
-        (NO_VALUE - 1) * (np.where(known, rows, ends[0]) - ends[0]) / (ends[1] - ends[0])
+        (NO_VALUE - 1) * (np.where(finite, rows, ends[0]) - ends[0]) / (ends[1] - ends[0])
     )
-    return _packed(np.where(known, codes, NO_VALUE), "u2")
+    return _packed(np.where(finite, codes, NO_VALUE), "u2")
 
 
 def _packed(values: Raw, kind: str) -> dict[str, object]:
@@ -487,7 +487,7 @@ def _packed(values: Raw, kind: str) -> dict[str, object]:
     compresses to about half.
     """
     rows = np.ascontiguousarray(values, f"<{kind}")
-    made: dict[str, object] = {"kind": kind}
+    packed: dict[str, object] = {"kind": kind}
     data = rows.tobytes()
     if rows.itemsize > 1:
         columns, order = 1 if rows.ndim == 1 else rows.shape[1], 2 if rows.dtype.kind == "i" else 1
@@ -498,8 +498,8 @@ def _packed(values: Raw, kind: str) -> dict[str, object]:
         # Small differences of either sign then have high bytes of 0, which compress to little.
         folded = np.ascontiguousarray(((steps << 1) ^ (steps >> (8 * rows.itemsize - 1))).T)
         data = folded.view(np.uint8).reshape(-1, rows.itemsize).T.tobytes()
-        made |= {"columns": columns, "order": order}
-    return made | {"data": base64.b64encode(zlib.compress(data, 9)).decode()}
+        packed |= {"columns": columns, "order": order}
+    return packed | {"data": base64.b64encode(zlib.compress(data, 9)).decode()}
 
 
 def _places(points: Array) -> dict[str, object]:
@@ -516,8 +516,8 @@ def _places(points: Array) -> dict[str, object]:
 
 def _directions(rows: Array, linear: Array) -> dict[str, object]:
     """Return vectors turned by a matrix and of the length that they had, in 16 bits."""
-    given = np.asarray(rows, dtype=np.float64)
-    sizes, turned = np.linalg.norm(given, axis=1), given @ linear
+    vectors = np.asarray(rows, dtype=np.float64)
+    sizes, turned = np.linalg.norm(vectors, axis=1), vectors @ linear
     new = np.linalg.norm(turned, axis=1)
     # Lengths carry shares, heights and leans, which the scale of an actor must not change.
     turned *= (sizes / np.where(new > 0, new, 1.0))[:, np.newaxis]
@@ -567,7 +567,7 @@ def live_html(
     source: Sequence[str] = (),
     **options: Given,
 ) -> Path:
-    """Write one HTML file that shows a mesh, whose light follows the eye of the reader.
+    """Write one HTML file that shows a mesh in light that follows the eye of the reader.
 
     The file opens from disk and makes no network request. The light of each fragment is computed
     in the browser, by the same text as in a plotter. A panel drags lamps over a lit ball, takes
@@ -604,9 +604,9 @@ def live_html(
     key : bool, default: True
         Whether the key is shown where the light comes from a preset; scalar bars are shown always.
     frames : str, default: "frame"
-        What the numbers of a mapping are, such as ``"time in s"``.
+        Name of the numbers of a mapping, such as ``"time in s"``.
     files : {1, 2}
-        2 writes the script to ``viewer.js`` beside the page, for servers whose policy is
+        2 writes the script to ``viewer.js`` beside the page, for servers with the policy
         ``script-src 'self'``.
     source : sequence of str, optional
         File that the mesh was read from and options of ``vizlight light`` that light it as here,
@@ -640,16 +640,16 @@ def live_html(
     Notes
     -----
     The page is 80 kB and, before compression, 40 bytes for each point with position, normal,
-    tangent and colour: positions in 24 bits from the centre of the scene, whose rounding is 6e-8 of
-    their largest coordinate, directions in 16 bits, whose rounding is 3e-5, and up to six arrays in
-    16 bits of their range. Differences from point to point are compressed, to about a third. In
-    Chromium the picture is within a mean of 1 of 255 of the light of the engine, 99 % of it within
-    4. Where something draws, the page has a picture for browsers without WebGL 2.
+    tangent and colour: positions in 24 bits from the centre of the scene, with a rounding of 6e-8
+    of their largest coordinate, directions in 16 bits, with a rounding of 3e-5, and up to six
+    arrays in 16 bits of their range. Differences from point to point are compressed, to about a
+    third. In Chromium the picture is within a mean of 1 of 255 of the light of the engine, 99 % of
+    it within 4. Where something draws, the page has a picture for browsers without WebGL 2.
     """
     path = check_output(path, SUFFIXES)
-    given: object = camera
-    if given is not None and not isinstance(given, pv.Camera):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(given)))
+    eye: object = camera
+    if eye is not None and not isinstance(eye, pv.Camera):
+        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(eye)))
     _check.integer("files", files, low=1, high=2)
     _check.text("frames", frames)
     steps: dict[float, Foreign] = dict(mesh) if isinstance(mesh, Mapping) else {0.0: mesh}
@@ -661,11 +661,11 @@ def live_html(
         chosen = _check.color("background", background)
         owners: list[int | None] = []
         for number, step in enumerate(steps.values()):
-            made = plotter.vizlight.add_mesh(
+            actors = plotter.vizlight.add_mesh(
                 step, scene=scene, light=light, scalars=scalars, render=False,
                 **_lit_points(step) | options,
             )  # fmt: skip
-            count = len(made) if isinstance(made, list) else 1
+            count = len(actors) if isinstance(actors, list) else 1
             owners += [number if len(steps) > 1 else None] * count
         every = [block for step in steps.values() for block in blocks.all_blocks(step)]
         plotter.background_color = chosen or backdrop(every)
@@ -675,7 +675,7 @@ def live_html(
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
         shown = plotter.vizlight.shown()
         if len(owners) == len(shown):
-            shown = [one._replace(frame=frame) for one, frame in zip(shown, owners, strict=True)]
+            shown = [item._replace(frame=frame) for item, frame in zip(shown, owners, strict=True)]
         label = (frames, values) if len(steps) > 1 else None
         return write_page(
             path, shown, plotter, title=title, panel=panel, key=key, frames=label, files=files,
@@ -713,7 +713,7 @@ def _look(plotter: Foreign, mesh: pv.DataSet | pv.MultiBlock, scene: AnyScene | 
 
 def write_page(
     path: str | Path,
-    shown: Sequence[Shown],
+    shown: Sequence[PageMesh],
     plotter: pv.BasePlotter,
     *,
     files: Literal[1, 2] = 1,
@@ -739,7 +739,7 @@ def write_page(
 
 
 def page_text(
-    shown: Sequence[Shown],
+    shown: Sequence[PageMesh],
     plotter: pv.BasePlotter,
     *,
     stem: str = "scene",
@@ -755,7 +755,7 @@ def page_text(
 
     Parameters
     ----------
-    shown : sequence of Shown
+    shown : sequence of PageMesh
     plotter : pyvista.Plotter
         Plotter with the camera and the lights.
     stem : str
@@ -765,7 +765,7 @@ def page_text(
     panel, key : bool
         Whether the panel is open at first, and whether the key of a preset's light is shown.
     frames : (str, sequence of float), optional
-        What the numbers of the frames are, and the numbers.
+        Name of the numbers of the frames, and the numbers.
     source : sequence of str
         File, and options of the command that lights it alike.
     auto : bool
@@ -783,15 +783,15 @@ def page_text(
         got = _check.describe(source)
         raise TypeError(_check.message("source", "a list of the words of a command", got))
     page = Page(plotter.renderer)
-    for one in shown:
-        page.add(one)
+    for each in shown:
+        page.add(each)
     page.add_values(shown)
     page.add_bars(plotter, shown)
     if source:
         file, *words = [str(word) for word in source]
         # The vectors that a file has are not lit where the page lights a surface.
         tangents = any(word.startswith("--tangents") for word in words)
-        meshes = [one.live.drawn for one in shown]
+        meshes = [each.live.drawn for each in shown]
         faces = all(mesh.n_cells and mesh.max_cell_dimensionality > 1 for mesh in meshes)
         plain = faces and not tangents
         page.recipe |= {"file": file, "command": words, "plain": plain}

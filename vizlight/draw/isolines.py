@@ -67,7 +67,7 @@ def isolines(
 
     Each line that has room has one number, in a gap of the line; its top is toward larger y. It is
     where no other line is near, and where its own is straightest. Highs and lows, if they are asked
-    for, are points within a closed line whose value is the largest or the least as far as a tenth
+    for, are points within a closed line with the largest or the least value as far as a tenth
     of the larger side of the map.
 
     Parameters
@@ -83,7 +83,7 @@ def isolines(
     words : sequence of str, optional
         Numbers of the levels, such as those in another unit. Default: the levels.
     clear_of : pyvista.PolyData, optional
-        Lines of which numbers keep clear, as far as there is room, such as coasts.
+        Lines of which numbers keep clear, as far as room allows, such as coasts.
     extremes : float, optional
         Unit in which the values of highs and lows are written below their letters, H and L, in that
         of the array: 100 for hPa of an array in Pa. Default: none are marked.
@@ -228,12 +228,12 @@ def _extremes(
 def _peaks(tree: cKDTree, rows: Array, reach: float) -> list[int]:
     """Return the points with the largest value within a distance, one of those with equal ones."""
     _, near = tree.query(tree.data, AROUND)
-    found: list[int] = []
+    peaks: list[int] = []
     for at in np.flatnonzero(rows >= rows[near].max(axis=1)).tolist():
         around = tree.query_ball_point(tree.data[at], reach)
-        if rows[at] >= rows[around].max() and not {*found} & {*around}:
-            found.append(at)
-    return found
+        if rows[at] >= rows[around].max() and not {*peaks} & {*around}:
+            peaks.append(at)
+    return peaks
 
 
 def _mark(place: Array, letter: str, number: str, value: float, letters: float) -> Mark:

@@ -1,4 +1,4 @@
-"""Keywords of PyVista for what is lit: which are its own, which are the light's, and colours."""
+"""Keywords of PyVista for a lit mesh: its own, those of the light, and colours."""
 
 from __future__ import annotations
 
@@ -48,21 +48,21 @@ def sorted_out(
     TypeError
         If neither knows a name; the nearest one is named.
     ValueError
-        If there is both a scene and a coefficient of a material.
+        If both a scene and a coefficient of a material are given.
     """
     drawn = {*inspect.signature(pv.Plotter.add_mesh).parameters, *ALIASES, *_MORE}
     drawn -= {"self", "mesh", "kwargs"}
     for name, value in options.items():
         if name not in drawn | LIGHT:
-            known = [*sorted(LIGHT), *sorted({*drawn, *more} - LIGHT)]
-            raise TypeError(unknown_option(function, name, known))
+            names = [*sorted(LIGHT), *sorted({*drawn, *more} - LIGHT)]
+            raise TypeError(unknown_option(function, name, names))
         if name in MATERIAL and scene is not None and value is not None:
             remedy = "pass Scene(material=Material(...))"
             expected = "the material of the scene, or no scene"
             raise ValueError(_check.message(name, expected, f"both ({value})", remedy))
-    own = {name: value for name, value in options.items() if name in LIGHT}
+    light = {name: value for name, value in options.items() if name in LIGHT}
     drawing = {ALIASES.get(name, name): options[name] for name in options if name not in LIGHT}
-    return own, drawing
+    return light, drawing
 
 
 def shading_of(drawing: Keywords) -> FeatureAngle:
@@ -86,10 +86,10 @@ def left_to_pyvista(drawing: Keywords) -> str | None:
     return None
 
 
-def is_cloud(mesh: pv.DataSet, own: Keywords) -> bool:
+def is_cloud(mesh: pv.DataSet, options: Keywords) -> bool:
     """Return whether a mesh is points alone, for which no light is asked and that have none."""
-    asked = own.keys() & {"tangents", "normals", "facing"}
-    if asked or mesh.point_data.active_normals is not None or relight.is_lit(mesh):
+    light_names = options.keys() & {"tangents", "normals", "facing"}
+    if light_names or mesh.point_data.active_normals is not None or relight.is_lit(mesh):
         return False
     kinds = pv.PolyData | pv.PointSet | pv.UnstructuredGrid
     return isinstance(mesh, kinds) and mesh.n_points > 0 and mesh.max_cell_dimensionality == 0
@@ -121,7 +121,7 @@ def active_scalars(mesh: pv.DataSet | pv.MultiBlock) -> str | None:
 def colored(
     mesh: pv.DataSet | pv.MultiBlock, scalars: str | ArrayLike | None, drawing: Keywords
 ) -> tuple[pv.DataSet | pv.MultiBlock, str | None]:
-    """Return a mesh whose colours are an array by name, and the name.
+    """Return a mesh with its colours as an array by name, and the name.
 
     Colours that are given as an array, or as numbers of ``rgb=True``, or as cell data beside point
     data of the same name, are attached to a shallow copy.
@@ -148,11 +148,11 @@ def colored(
     if not (rgb or (both and of_cells)):
         return mesh, scalars
     name = BYTES if rgb else GIVEN
-    made = (
+    result = (
         block if values is None else _attached(block, name, values, rgb=rgb, of_cells=of_cells)
         for block, values in zip(every, at, strict=True)
     )
-    return blocks.like(mesh, made), name
+    return blocks.like(mesh, result), name
 
 
 def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywords:
@@ -169,10 +169,10 @@ def whole_range(mesh: pv.DataSet, name: str | None, drawing: Keywords) -> Keywor
     real = values.dtype.kind == "f"
     if isinstance(mesh, pv.PolyData) and not (real and np.isinf(values).any()):
         return {}
-    known = values[np.isfinite(values)] if real else values
-    if drawing.get("log_scale") or values.dtype.kind not in "iuf" or not known.size:
+    finite = values[np.isfinite(values)] if real else values
+    if drawing.get("log_scale") or values.dtype.kind not in "iuf" or not finite.size:
         return {}
-    return {"clim": (float(known.min()), float(known.max()))}
+    return {"clim": (float(finite.min()), float(finite.max()))}
 
 
 def array_of(mesh: pv.DataSet, name: str, *, of_cells: bool = False) -> Raw | None:

@@ -1,4 +1,4 @@
-"""A drawn mesh whose light follows the camera: at its points, or in each fragment.
+"""A drawn mesh with light that follows the camera: at its points, or in each fragment.
 
 In fragments it is GLSL on an actor, from tangents and normals that VTK interpolates.
 """
@@ -58,7 +58,7 @@ AS_IT_IS = dialects.Replacement(
 
 
 class Live:
-    """A drawn mesh whose light follows the camera, the lights and the mesh.
+    """A drawn mesh with light that follows the camera, the lights and the mesh.
 
     The light is an array of the points, the same numbers as a filter attaches;
     :class:`Fragments` computes it in each fragment. An observer of the
@@ -67,7 +67,7 @@ class Live:
     Parameters
     ----------
     source : Source
-        What is lit. Its mesh is the caller's.
+        Source of the light. Its mesh is the caller's.
     scene : Scene or None
         Scene; None for the lights and the material of the plotter.
     stroke : Stroke
@@ -141,7 +141,7 @@ class Live:
         Raises
         ------
         TypeError, ValueError
-            If there is no such array.
+            If the mesh has no such array.
         """
         self.given, self._component = scalars, component
         self.scalars = scalars
@@ -211,8 +211,8 @@ class Live:
         if self.scene is not None and not self.scene.colored:
             gray = {"scalars": LUMINANCE, "cmap": "gray", "clim": (0.0, 1.0)}
             return drawing | plain | gray
-        own = True if color is None else color
-        return drawing | plain | {"scalars": COLORS, "rgb": True, "color": own}
+        base = True if color is None else color
+        return drawing | plain | {"scalars": COLORS, "rgb": True, "color": base}
 
     def start(self, actor: vtkActor) -> None:
         """Let an actor draw lit colours as they are, in place of the data's."""
@@ -253,7 +253,7 @@ class Live:
         return self.source.inputs.layout, self.source.options
 
     def explain(self, scene: Scene) -> str:
-        """Return where the light is computed, what is computed, and what is skipped and why."""
+        """Return where the light is computed, and which terms are computed or skipped and why."""
         seen = scene if self.scalars is None else for_colors(scene)
         plan = decide(lighting.fit_depth_cue(seen, [self.source.inputs.points]), *self.lit_as())
         where = f"light at the points: {self.reason}" if self.reason else "light in each fragment"
@@ -265,7 +265,7 @@ class Live:
         self.start(actor)
 
     def invalid(self) -> int:
-        """Return the number of points whose vectors have no direction."""
+        """Return the number of points with vectors that have no direction."""
         # Points inside a volume, which are not drawn, have no normal.
         seen = self._shown
         good: Bools = np.ones(1, dtype=np.bool_)
@@ -282,7 +282,7 @@ class Live:
     def update(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         """Light the mesh anew if anything has changed since; called before a frame is drawn.
 
-        What cannot be lit keeps the light it has, with one warning.
+        Data that cannot be lit keep the light they have, with one warning.
         """
         state = self._state_of(renderer, actor)
         if state == self._state:
@@ -315,7 +315,7 @@ class Live:
             strokes.adapt(actor, renderer, of_data=self.scalars is not None)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
-        """Return what the light depends on, in a form that can be compared."""
+        """Return the state on which the light depends, in a form that can be compared."""
         camera, mapper = renderer.GetActiveCamera(), actor.GetMapper()
         # The address is there because another camera may have the same time of change.
         state: list[object] = [camera.GetAddressAsString(""), camera.GetMTime()]
@@ -388,8 +388,8 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
     camera = renderer.GetActiveCamera()
     view = View.from_camera(camera)
     # PyVista's default lights are a kit for plain shading; ours stand in for it.
-    given = list(items(renderer.GetLights()))
-    lights = default_lights(view) if is_light_kit(given) else tuple(lights_of(given, camera))
+    lamps = list(items(renderer.GetLights()))
+    lights = default_lights(view) if is_light_kit(lamps) else tuple(lights_of(lamps, camera))
     kind = "phong" if model == "phong" else "blinn"
     prop = actor.GetProperty()
     material = Material.from_property(prop, lights=lights, view=view, model=kind)
@@ -397,7 +397,7 @@ def scene_of(renderer: vtkRenderer, actor: vtkActor, model: str) -> Scene:
 
 
 def on_screen(shading: Shading) -> Array:
-    """Return light as colours of a screen, and the colour of what is no data where it has none."""
+    """Return light as colours of a screen, and the colour of missing values where it has none."""
     rgb = shading.luminance[:, np.newaxis] if shading.rgb is None else shading.rgb
     # VTK wraps around above 1, so a bright highlight would turn black.
     shown = displayable(np.broadcast_to(rgb, (len(rgb), 3)))
@@ -417,13 +417,13 @@ def _write(mesh: pv.DataSet, name: str, values: Raw) -> None:
 
 
 def items(collection: vtkCollection) -> Iterator[Foreign]:
-    """Yield what a collection of VTK holds."""
+    """Yield the items of a collection of VTK."""
     for i in range(collection.GetNumberOfItems()):
         yield collection.GetItemAsObject(i)
 
 
 def draws_light(actor: vtkActor) -> bool:
-    """Return whether an actor draws what was made for a live light."""
+    """Return whether an actor draws the mesh that was made for a live light."""
     mapper: Foreign = actor.GetMapper()
     data: Foreign = None if mapper is None else mapper.GetInputDataObject(0, 0)
     arrays = data.GetPointData() if hasattr(data, "GetPointData") else None
@@ -480,11 +480,11 @@ def _lifted_view(view: View, n: int) -> View:
 
 def _padded(thing: object, names: tuple[str, ...], n: int) -> Keywords:
     """Return vectors of a light or a view by name, with zeros along the further axes."""
-    found: Keywords = {}
+    padded: Keywords = {}
     for name in names:
         vector = getattr(thing, name)
-        found[name] = None if vector is None else (*vector, *([0.0] * (n - len(vector))))
-    return found
+        padded[name] = None if vector is None else (*vector, *([0.0] * (n - len(vector))))
+    return padded
 
 
 def _elements(actor: vtkActor) -> tuple[float, ...]:
@@ -593,7 +593,7 @@ def _edges(mesh: pv.DataSet) -> tuple[Indices, Indices]:
 
 
 class Fragments(Live):
-    """A drawn mesh whose light is computed in each fragment, from interpolated vectors.
+    """A drawn mesh with light computed in each fragment, from interpolated vectors.
 
     They are the active tangents and normals of the drawn mesh, so that PyVista's own mapper is
     kept, with its colours and its scalar bar.
@@ -646,7 +646,7 @@ class Fragments(Live):
         return _unit(self.source.inputs, rows, self.picked)
 
     def _lengths(self) -> Array:
-        """Return what lengths of normals, which light does not need, carry: fur, or a lean.
+        """Return the values in the lengths of normals, which light does not need: fur, or a lean.
 
         A lean from -1 to 1, by which a normal may point away from the eye that sees its side, is
         carried as 1 to 2; 2 stands for points that no eye turns.
@@ -672,12 +672,12 @@ class Fragments(Live):
         """Return the keywords of ``plotter.add_mesh``."""
         drawing = drawing | {"lighting": True}
         if self.scalars is None:
-            own = None if self.scene is None else (self.scene.material.color or WHITE)
-            given = drawing.get("color")
-            self._colored = given is None
+            of_scene = None if self.scene is None else (self.scene.material.color or WHITE)
+            color = drawing.get("color")
+            self._colored = color is None
             # A texture multiplies the actor's colour: white leaves it as it is.
             usual = WHITE if drawing.get("texture") is not None else True
-            drawing["color"] = (usual if own is None else own) if given is None else given
+            drawing["color"] = (usual if of_scene is None else of_scene) if color is None else color
         return drawing
 
     def start(self, actor: vtkActor) -> None:
@@ -713,16 +713,16 @@ class Fragments(Live):
             plan = decide(scene, *self.lit_as())
         # VTK has a specular colour only where it has lights of its own.
         shown = prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor()
-        given = glsl.numbers(scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data)
+        numbers = glsl.numbers(scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data)
         if renew:
             turned = self.source.sided is not None
             written = glsl.write(plan, turned=turned, stroke=self.stroke, data=data)
-            texts = dialects.VTK.replacements(written, given)
+            texts = dialects.VTK.replacements(written, numbers)
             if self.stroke != Stroke():
                 texts = strokes.widened(actor, texts, self.stroke)
             dialects.replace(actor, texts)
             self._key, self._plan = key, plan
-        _set_uniforms(given, renderer, actor)
+        _set_uniforms(numbers, renderer, actor)
 
     def see(self, placed: ShadingInputs, view: View | None) -> None:
         """Attach normals that tell which side of height fields an eye sees, if it is another."""
@@ -745,7 +745,7 @@ class Fragments(Live):
 
 
 def _structure(scene: Scene, lights: Sequence[Light], source: Source) -> tuple[object, ...]:
-    """Return what a shader holds as constants, in a form that can be compared."""
+    """Return the constants of a shader, in a form that can be compared."""
     material, cue = scene.material, scene.depth_cue
     return (
         [(light.position is None, light.attenuation == NO_ATTENUATION) for light in lights],
@@ -769,13 +769,13 @@ def _unit(
     return unit
 
 
-def _set_uniforms(given: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:
-    """Set what a program is given, in the coordinates of the camera."""
+def _set_uniforms(inputs: Iterable[Uniform], renderer: vtkRenderer, actor: vtkActor) -> None:
+    """Set the numbers of a program, in the coordinates of the camera."""
     # VTK lights in view coordinates, where the eye is at the origin: float32 holds these well even
     # if the mesh is far from the origin of the world.
     view = matrix_of(renderer.GetActiveCamera().GetViewTransformMatrix())
     uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-    for name, kind, value, space in given:
+    for name, kind, value, space in inputs:
         numbers = list(value)
         if space:
             moved = view[:3, :3] @ np.asarray(value[:3], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""What tells the places of a map: a frame of degrees, or a bar of lengths, as a flat mesh.
+"""The frame of a map: degrees, or a bar of lengths, as a flat mesh.
 
 It is a mesh and not part of a window, so that it is in pictures, movies and pages alike.
 """
@@ -49,18 +49,18 @@ Part = tuple["Array", "Indices"]
 
 
 def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.0)) -> pv.PolyData:
-    """Return what stands around a map: degrees with ticks, or a bar of a round length.
+    """Return the frame of a map: degrees with ticks, or a bar of a round length.
 
-    A map in degrees, and one in lengths whose projection is known, has a thin frame with round
+    A map in degrees, and one in lengths with a known projection, has a thin frame with round
     degrees along its left and its lower side. One in lengths has a bar of a round length below it,
     as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
-    toward the north is below a map in lengths whose north is not straight up. Nothing is on the
+    toward the north is below a map in lengths if its north is not straight up. Nothing is on the
     data but the words of parallels around a pole.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Map, x east and y north, whose field array ``unit`` says ``degree`` or a unit of length, and
+        Map, x east and y north. Its field array ``unit`` says ``degree`` or a unit of length, and
         ``projection`` or ``crs`` the projection.
     letters : float
         Height of letters in the unit of x and y.
@@ -115,14 +115,14 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
 def graticule(
     mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.0)
 ) -> pv.PolyData:
-    """Return the meridians and parallels of a map in lengths whose projection is known, as lines.
+    """Return the meridians and parallels of a map in lengths with a known projection, as lines.
 
     They are those that have a word in :func:`frame` of the same letters.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Map, whose field array ``projection`` or ``crs`` tells its projection.
+        Map with a field array ``projection`` or ``crs`` of its projection.
     letters : float
         Height of letters in the unit of x and y.
     up : (float, float), default: (0.0, 1.0)
@@ -268,8 +268,8 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
         ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
         if not is_around:
             # One word for each line, at the end that is farthest to its side.
-            ends = sorted(ends, key=lambda one: -float(one[2] @ toward))
-            ends = [one for one in ends if one[0] >= ASIDE][:1]
+            ends = sorted(ends, key=lambda crossing: -float(crossing[2] @ toward))
+            ends = [crossing for crossing in ends if crossing[0] >= ASIDE][:1]
         for score, way, end in ends:
             if score < -1:
                 continue
@@ -287,7 +287,7 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
 def _away(end: Array, outline: Array, near: float, toward: Array) -> tuple[float, Array]:
     """Return how well the direction away from a map is that to its word, and this direction.
 
-    The share is that of the best of the sides near the end of a line, -inf where there is none.
+    The share is that of the best of the sides near the end of a line, -inf without any.
     """
     sides = np.roll(outline, -1, axis=0) - outline
     at = np.flatnonzero(_apart(end, outline, sides) < near)
@@ -420,6 +420,6 @@ def _rectangle(left: float, right: float, bottom: float, top: float) -> Part:
 
 
 def _word(word: str, x: float, y: float, size: float, *, align: float) -> Part:
-    """Return a word whose left end, middle or right end, by its share, is at x, standing on y."""
+    """Return a word with its left end, middle or right end, by a share, at x, standing on y."""
     points, ids = letters.triangles(word)
     return size * (points - (align * letters.width(word), 0.0)) + (x, y), ids

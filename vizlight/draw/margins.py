@@ -163,7 +163,7 @@ class Margin:
             text.SetPosition(gap, y)
 
     def _beside(self, room: tuple[float, float], short: int, rows: Array, *, alone: bool) -> None:
-        """Put a single bar beside the data, between their rows as far as there is room."""
+        """Put a single bar beside the data, between their rows as far as room allows."""
         (key,) = self._keys
         letters, gap = LETTERS * short, MARGIN * short
         wide = key.fit(short, letters, room[0] - gap, 0.0, alone)[0]
@@ -208,7 +208,7 @@ def _is_map(renderer: vtkRenderer) -> bool:
 
 
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
-    """Return left, low, right and top, in pixels of a renderer, of what it draws.
+    """Return left, low, right and top of the drawing of a renderer, in its pixels.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ class MarginKey:
         short : float
             Shorter side of the picture.
         letters, width : float
-            Height of letters, and width that there is.
+            Height of letters, and available width.
         tall : float
             Height of a bar; 0 for that of its own.
         alone : bool
@@ -400,7 +400,7 @@ def data_share(
     key : float
         Width of a key, as a share of the shorter side.
     titled : bool, default: True
-        Whether there is a title above the data.
+        Whether a title stands above the data.
     lying : bool, default: False
         Whether a single bar lies below the data.
     """
@@ -474,7 +474,7 @@ def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
 
 
 def _with_beyond(marks: list[tuple[float, str]], below: str, above: str) -> list[tuple[float, str]]:
-    """Return the words along a bar with those at ends beyond which there are values."""
+    """Return the words along a bar with those at ends that values lie beyond."""
     ends = [(share, word) for share, word in ((0.0, below), (1.0, above)) if word]
     near = [
         (share, word) for share, word in marks if all(abs(share - end) > CLOSE for end, _ in ends)
@@ -490,7 +490,7 @@ def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
     places : list of float
         Places, as shares of the length.
     zero : float
-        Place of zero, whose neighbours are counted from it.
+        Place of zero, from which its neighbours are counted.
     most : float
         Number of words that fit.
     """
@@ -507,11 +507,11 @@ def ink_on(background: pv.Color) -> Color:
 
 
 def _text(word: str, ink: Color) -> vtkTextActor:
-    made = vtkTextActor()
-    made.SetInput(word)
-    style = made.GetTextProperty()
+    actor = vtkTextActor()
+    actor.SetInput(word)
+    style = actor.GetTextProperty()
     style.SetColor(*ink)
     style.SetFontFamilyToArial()
     style.SetJustificationToCentered()
     style.SetVerticalJustificationToBottom()
-    return made
+    return actor

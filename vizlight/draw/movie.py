@@ -75,7 +75,7 @@ def save(
         Frames per second of a movie, up to 100.
     camera : pyvista.Camera, optional
         Camera of all frames. Default: one that shows them all; the frames are then kept in memory
-        until the last is there. Pictures have theirs.
+        until the last has come. Pictures have theirs.
     picture : mapping, optional
         Further options of :func:`vizlight.draw.render.make_plotter`, for meshes.
     progress_bar : bool, default: False
@@ -89,7 +89,7 @@ def save(
     Raises
     ------
     MovieError, BackendError, TypeError, ValueError
-        As for :func:`turn`; also if there is no frame.
+        As for :func:`turn`; also without any frame.
     """
     path = _check_movie(path)
     _check.iterable("frames", frames, "an iterable of meshes or Panels, or of pictures")
@@ -97,7 +97,7 @@ def save(
     fps = _check.number("fps", fps, low=0.01, high=100.0)
     # A missing package or a size that does not fit raises an error before anything is drawn.
     writer = _writer(path, fps, drawing["size"])
-    known = len(frames) if isinstance(frames, Sized) else 0
+    count = len(frames) if isinstance(frames, Sized) else 0
     rest: Iterator[Foreign] = iter(frames)
     first = next(rest, None)
     if first is None:
@@ -115,12 +115,12 @@ def save(
         rest = map(_check_mesh, rest)
         if camera is None:
             meshes = list(rest)
-            known, rest = len(meshes), iter(meshes)
+            count, rest = len(meshes), iter(meshes)
             bare = [mesh.mesh if isinstance(mesh, render.Panel) else mesh for mesh in meshes]
             camera = render.camera_on(common_bounds("frames", bare))
         drawing["camera"] = camera
         drawn = render.pictures(rest, **drawing)
-    with progress("draw", known, show=progress_bar) as report:
+    with progress("draw", count, show=progress_bar) as report:
         return writer(_counted(drawn, report, 0))
 
 
@@ -248,14 +248,14 @@ def orbit(
     fps: float = 24.0,
     progress_bar: bool = False,
 ) -> list[Path]:
-    """Save what a plotter shows, seen once all around, and close the plotter.
+    """Save the picture of a plotter, seen once all around, and close the plotter.
 
     The camera moves about its direction up, through its focal point.
 
     Parameters
     ----------
     plotter : pyvista.Plotter
-        Plotter that draws offscreen, whose camera is set.
+        Plotter that draws offscreen, with its camera set.
     path : path
         Path of a movie or of a sequence of PNGs, as for :func:`turn`.
     frames : int, default: 72
@@ -297,7 +297,7 @@ def travel(
     fps: float = 24.0,
     progress_bar: bool = False,
 ) -> list[Path]:
-    """Save what a plotter shows while strokes move along streamlines, and close the plotter.
+    """Save the picture of a plotter while strokes move along streamlines, and close the plotter.
 
     The movie shows one period of the strokes, of which frame i is at ``i / frames``, so that it can
     be repeated. From frame to frame a stroke moves as far as the vectors carry it: to the length of
@@ -384,15 +384,15 @@ def _check_movie(path: object) -> Path:
 
 
 def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
-    """Return a picture of a movie whose pictures all have one shape."""
-    own = picture if isinstance(picture, np.ndarray) else None
-    if own is None or own.dtype != np.uint8 or own.ndim != 3 or own.shape[2] != 3 or not own.size:
+    """Return a picture of a movie, checked to have the shape of all its pictures."""
+    rgb = picture if isinstance(picture, np.ndarray) else None
+    if rgb is None or rgb.dtype != np.uint8 or rgb.ndim != 3 or rgb.shape[2] != 3 or not rgb.size:
         expected = "pictures, each an array of uint8 of shape (height, width, 3)"
         raise ValueError(_check.message("frames", expected, _check.describe(picture)))
-    if own.shape != shape:
+    if rgb.shape != shape:
         expected = f"pictures of one shape, {shape} as the first"
-        raise ValueError(_check.message("frames", expected, own.shape))
-    return own
+        raise ValueError(_check.message("frames", expected, rgb.shape))
+    return rgb
 
 
 def _check_mesh(frame: object) -> object:
@@ -412,10 +412,10 @@ def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
     drawing.update(picture or {})
     if "camera" in drawing:
         raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
-    known = set(render.PlotterKeywords.__annotations__) - {"camera"}
+    names = set(render.PlotterKeywords.__annotations__) - {"camera"}
     for name in drawing:
-        if name not in known:
-            expected = f"options of a picture ({', '.join(sorted(known))})"
+        if name not in names:
+            expected = f"options of a picture ({', '.join(sorted(names))})"
             raise ValueError(_check.message("picture", expected, repr(name)))
     return drawing
 
@@ -454,7 +454,7 @@ def _counted(items: Iterable[Item], report: Callable[[int], None], done: int) ->
 
 
 def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]], list[Path]]:
-    """Return the function that writes pictures to files, after checking what it needs."""
+    """Return the function that writes pictures to files, after checking its packages."""
     pixels = render.pixels_of(size)
     if path.suffix.lower() == ".png":
         return lambda pictures: _write_sequence(path, pictures)

@@ -97,7 +97,7 @@ def is_live(plotter: pv.BasePlotter) -> bool:
 
 
 def _static(plotter: pv.BasePlotter, **options: object) -> object:
-    """Show a picture, by what needs IPython."""
+    """Show a picture, by functions that need IPython."""
     from pyvista.jupyter.notebook import show_static_image
 
     shown: object = show_static_image(plotter, **options)  # type: ignore[arg-type]
@@ -106,18 +106,18 @@ def _static(plotter: pv.BasePlotter, **options: object) -> object:
 
 def guard() -> None:
     """Let the backends of PyVista that draw in the browser know of live light."""
-    known = pv.jupyter.registered_jupyter_backends()
-    if all(registered.name != "html" for registered in known):
+    backends = pv.jupyter.registered_jupyter_backends()
+    if all(registered.name != "html" for registered in backends):
         # Without trame, which live light does not need, other plotters are pictures as before.
         pv.jupyter.register_jupyter_backend("html", Guarded("html", _static), override=True)
-    for registered in known:
+    for registered in backends:
         if registered.name in DRAWN_BY_THE_BROWSER and not isinstance(registered.handler, Guarded):
             guarded = Guarded(registered.name, registered.handler)
             pv.jupyter.register_jupyter_backend(registered.name, guarded, override=True)
 
 
 def _refusing(plotter: pv.BasePlotter, owner: Foreign, name: str) -> Function:
-    """Return a method that writes the scene, unless there is live light in it."""
+    """Return a method that writes the scene, unless it has live light."""
     # The owner has this as an attribute, and is to be released with its last reference.
     weak = weakref.ref(plotter), weakref.ref(owner)
 

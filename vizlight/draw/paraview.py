@@ -158,7 +158,7 @@ def shader(
     exponent: Exponent = "compensated",
     model: Model = "phong",
 ) -> Shader:
-    """Return what shows the light of a scene in each fragment in an unchanged ParaView.
+    """Return the properties that show the light of a scene in fragments of an unchanged ParaView.
 
     The light follows ParaView's camera, which takes the place of the view of the scene; ParaView's
     own lights have no effect. The properties Ambient and Diffuse scale it, but not on colours of
@@ -193,26 +193,26 @@ def shader(
 
     Notes
     -----
-    Written for ParaView 5.11, whose representations have the property ``ShaderReplacements``: 99 %
+    Written for ParaView 5.11, where representations have the property ``ShaderReplacements``: 99 %
     of the pixels are within 2 of 255 of the light of a plotter. A position of a light is rounded to
     float32, which is 0.25 at 5e6 from the origin. Light turns with a representation that is moved
     by its own ``Position`` or ``Orientation``; move the data in place of that. The text does not
-    reach what ParaView draws with shaders of its own: tubes, spheres, ray tracing and volumes.
+    reach drawings by other shaders of ParaView: tubes, spheres, ray tracing and volumes.
     """
-    asked = LightOptions.of(locals())
-    tangents, normals = (_named(name, getattr(asked, name)) for name in ("tangents", "normals"))
-    if isinstance(asked.conditioned, str):
+    options = LightOptions.of(locals())
+    tangents, normals = (_named(name, getattr(options, name)) for name in ("tangents", "normals"))
+    if isinstance(options.conditioned, str):
         expected, remedy = "True or False in ParaView", "vizlight.illuminate lights the points"
-        got = repr(asked.conditioned)
+        got = repr(options.conditioned)
         raise ValueError(_check.message("conditioned", expected, got, remedy))
-    if normals is None and (tangents is None or asked.conditioned):
+    if normals is None and (tangents is None or options.conditioned):
         # The name that ParaView's own filters give to normals.
         normals = "Normals"
     layout = Layout(k=None if tangents is None else 1, normals=normals is not None)
     scalars = _named("scalars", scalars)
-    plan = _plan(scene, layout, asked)
+    plan = _plan(scene, layout, options)
     written = glsl.write(
-        plan, turned=False, toward=TOWARD.get(asked.facing, ""), data=scalars is not None
+        plan, turned=False, toward=TOWARD.get(options.facing, ""), data=scalars is not None
     )
     return _made(scene, plan, written, tangents, normals, scalars)
 
@@ -274,9 +274,9 @@ def save(
     # sees.
     live.see(source.inputs, used.view)
     written = glsl.write(plan, turned=source.sided is not None, data=scalars is not None)
-    made = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
+    result = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
     data = files.write_mesh(live.drawn, beside(path))
-    text = made.script(data.resolve())
+    text = result.script(data.resolve())
     return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
 
 
@@ -334,20 +334,20 @@ def _made(
     shown = ambient, diffuse, material.specular_color or WHITE
     lights = [light for light in scene.lights if light.intensity > 0]
     seen, fixed = scene.replace(view=EYE), [light.seen_from(EYE) for light in lights]
-    given = glsl.numbers(
+    uniforms = glsl.numbers(
         seen, fixed, *shown, fur=plan.fur, tallest=tallest, data=scalars is not None
     )
     # What stands with the camera has its numbers in view coordinates already.
-    own = {"vizEye", "vizAxis", "vizFrom"}
-    own |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
-    given = [number._replace(space="") if number.name in own else number for number in given]
+    names = {"vizEye", "vizAxis", "vizFrom"}
+    names |= {f"vizLight{i}" for i, light in enumerate(lights) if light.follows_view}
+    uniforms = [each._replace(space="") if each.name in names else each for each in uniforms]
     normal_array, tangent_array, dialect = normals, None, dialects.PARAVIEW
     if not plan.surface:
         # VTK 9.1 takes an array of any type as normals, but as tangents one of float32 alone.
         normal_array, tangent_array, dialect = tangents, normals, dialects.PARAVIEW_TANGENTS
     replacements = [
         {"type": stage.lower(), "original": mark, "replacement": text}
-        for stage, mark, text in dialect.replacements(written, given)
+        for stage, mark, text in dialect.replacements(written, uniforms)
     ]
     color = list(material.color or WHITE)
     properties: dict[str, object] = {

@@ -178,13 +178,13 @@ def make_plotter(
         True for one width, at least 2 pixels.
     anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
-        supersampling where there are lines, which are then drawn narrower than a pixel, else
-        multisampling, which takes a third of the time. VTK before 9.7 draws several supersampled
-        panels in one place; they are multisampled there.
+        supersampling for lines, which are then drawn narrower than a pixel, else multisampling,
+        which takes a third of the time. VTK before 9.7 draws several supersampled panels in one
+        place; with it they are multisampled.
     backend : {"egl", "osmesa"}, optional
         OpenGL library; see :func:`choose_backend`.
     light : {"auto", "points"}
-        What is drawn: "points", the array as it is, interpolated between the points. "auto", the
+        Kind of light: "points", the array as it is, interpolated between the points. "auto", the
         light of its record, computed in each fragment, where the array is a light that allows it
         (in gray from 0 to 1, or ``rgb``): it is right between the points too. A scene that is
         exported to a page needs "points", because the page has no such shaders.
@@ -201,7 +201,7 @@ def make_plotter(
     BackendError
         If no OpenGL library can draw here.
     TypeError, ValueError
-        If there is nothing to draw, an array is missing, or an option does not fit.
+        If nothing can be drawn, an array is missing, or an option does not fit.
     """
     shown = _check_panels(panels, scalars)
     _check_options(camera, cmap, clim, anti_aliasing)
@@ -258,12 +258,12 @@ def make_plotter(
         if key is not None:
             plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
         if bar:
-            made = plotter.add_scalar_bar(  # type: ignore[call-arg]
+            scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
                 position_x=0.82, position_y=0.12,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
-                name_no_data(made)
+                name_no_data(scalar_bar)
     except BaseException:
         # A plotter that nobody gets would keep its window and the memory of its pictures.
         plotter.close()
@@ -308,8 +308,8 @@ def _check_panels(
         for mesh in all_blocks(panel.mesh):
             array = array_of(mesh, panel.scalars)
             if array is None:
-                known = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
-                expected = f"a point array or a cell array ({known})"
+                names = ", ".join(map(repr, [*mesh.point_data, *mesh.cell_data])) or "none"
+                expected = f"a point array or a cell array ({names})"
                 lit = panel.scalars == DEFAULT_NAME
                 remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
                 raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
@@ -321,7 +321,7 @@ def _check_panels(
 
 
 def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: object) -> None:
-    """Check options that are passed on to PyVista, whose messages do not name them."""
+    """Check options that are passed on to PyVista: its messages do not name them."""
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     low, high = _check.limits("clim", clim)
@@ -477,7 +477,7 @@ def _draw(
 
 
 def _add_in_fragments(plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: Keywords) -> bool:
-    """Add a mesh whose light is computed in each fragment; lines that cannot be round are flat."""
+    """Add a mesh with light computed in each fragment; lines that cannot be round are flat."""
     drawing = width | {"show_scalar_bar": False}
     flat = drawing | {"render_lines_as_tubes": False}
     from vizlight.draw.component import add_recorded
@@ -570,7 +570,7 @@ def _window_of(
 
 
 def check_plotter(plotter: object) -> None:
-    """Raise TypeError for what is no plotter.
+    """Raise TypeError for other objects than plotters.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Scalar bars of PyVista, whose words fit in the picture."""
+"""Scalar bars of PyVista, with words that fit in the picture."""
 
 from __future__ import annotations
 
@@ -47,20 +47,20 @@ def wrapped(text: str, columns: int) -> list[str]:
     return [line.replace(f"{BREAK} ", "").replace(BREAK, "") for line in lines]
 
 
-def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> None:
+def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, options: Keywords) -> None:
     """Leave room for the words of a scalar bar in the picture, and set them apart.
 
     Parameters
     ----------
     plotter : pyvista.Plotter
-        Plotter, whose active renderer and theme are used.
+        Plotter with the active renderer and the theme of the bar.
     bar : vtkScalarBarActor
-        Bar as PyVista made it; left so where ``asked`` says how large it is or where it stands.
-    asked : dict
+        Bar as PyVista made it; left so where ``options`` says how large it is or where it stands.
+    options : dict
         Keywords of ``pyvista.Plotter.add_scalar_bar`` that a user gave.
     """
     wide, high = plotter.renderer.GetSize()
-    if asked.keys() & PLACED or not (wide and high):
+    if options.keys() & PLACED or not (wide and high):
         return
     font = plotter.theme.font
     letters = int(max(min(font.label_size, high / LETTERS_HIGH), LEAST))
@@ -104,6 +104,6 @@ def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, asked: Keywords) -> 
 
 
 def name_no_data(bar: vtkScalarBarActor) -> None:
-    """Let a scalar bar name the colour of what is not data."""
+    """Let a scalar bar name the colour of missing values."""
     bar.SetDrawNanAnnotation(True)
     bar.SetNanAnnotation(NO_DATA_NAME)

@@ -1,4 +1,4 @@
-"""What a caller asks to be lit, by a record or by options, and its colours without an eye."""
+"""Sources of light, by a record or by options, and their colours without an eye."""
 
 from __future__ import annotations
 
@@ -46,25 +46,25 @@ def sources_of(
     options: Keywords,
     angle: FeatureAngle = "auto",
 ) -> tuple[list[Source], Scene | None]:
-    """Return what is lit: by the record of the mesh, or by options.
+    """Return the sources of light of a mesh: by its record, or by options.
 
     Without a record surfaces are split at edges of an angle, unless ``feature_angle`` is given.
     """
     if not options and relight.is_lit(mesh):
         return relight.from_record(mesh, scene)
-    given: Keywords = {"feature_angle": angle}
-    asked = LightOptions(**(given | options))
-    _refuse_without_tangents(mesh, scene, asked)
+    keywords: Keywords = {"feature_angle": angle}
+    light = LightOptions(**(keywords | options))
+    _refuse_without_tangents(mesh, scene, light)
     normals.compute_ahead(blocks.all_blocks(mesh))
-    mesh = blocks.like(mesh, (with_sharp_edges(block, asked) for block in blocks.all_blocks(mesh)))
-    if asked.feature_angle is not None and asked.occlusion == SKY:
+    mesh = blocks.like(mesh, (with_sharp_edges(block, light) for block in blocks.all_blocks(mesh)))
+    if light.feature_angle is not None and light.occlusion == SKY:
         mesh = blocks.like(mesh, iter(with_sky([*blocks.all_blocks(mesh)], SKY, finer=True)))
     # The points are split by now, and must not be once more.
-    asked = dataclasses.replace(asked, feature_angle=None)
+    light = dataclasses.replace(light, feature_angle=None)
     spaces = {
-        np.shape(block.point_data[asked.positions])[-1]
+        np.shape(block.point_data[light.positions])[-1]
         for block in blocks.all_blocks(mesh)
-        if asked.positions is not None and asked.positions in block.point_data
+        if light.positions is not None and light.positions in block.point_data
     }
     n = max(spaces, default=3)
     # Sources are checked before there is a frame.
@@ -74,7 +74,7 @@ def sources_of(
     if provisional.view is None and provisional.n in (None, n):
         # Which side of an open surface is lit is then the camera's to say.
         provisional = provisional.replace(view=seen.view)
-    return relight.from_options(mesh, provisional, asked), scene
+    return relight.from_options(mesh, provisional, light), scene
 
 
 def _has_sides(block: pv.DataSet) -> bool:
@@ -82,10 +82,10 @@ def _has_sides(block: pv.DataSet) -> bool:
 
 
 def _refuse_without_tangents(
-    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, asked: LightOptions
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, light: LightOptions
 ) -> None:
     """Raise ValueError if a surface has no tangents, and its light tells their direction."""
-    if scene is None or asked.tangents is not None or asked.positions is not None:
+    if scene is None or light.tangents is not None or light.positions is not None:
         return
     question = preset_of(scene)
     if question in OF_TANGENTS and any(map(_has_sides, blocks.all_blocks(mesh))):
@@ -97,12 +97,12 @@ def _refuse_without_tangents(
 def sources_in_scene(
     mesh: pv.DataSet | pv.MultiBlock, scene: AnyScene | None, options: Keywords
 ) -> tuple[list[Source], Scene]:
-    """Return what is lit, and its scene, for a file, which has no lights of a plotter.
+    """Return the sources of light and their scene for a file, which has no lights of a plotter.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument does not fit, or there is neither a scene nor the record of one.
+        If an argument does not fit, or neither a scene nor the record of one is given.
     """
     blocks.check(mesh)
     sources, used = sources_of(mesh, optional_scene(scene), options)
@@ -112,49 +112,49 @@ def sources_in_scene(
     return sources, used
 
 
-def with_sharp_edges(mesh: pv.DataSet, asked: LightOptions) -> pv.DataSet:
-    """Return a surface whose points are split at sharp edges, the mesh itself if there are none.
+def with_sharp_edges(mesh: pv.DataSet, light: LightOptions) -> pv.DataSet:
+    """Return a surface with points split at sharp edges, the mesh itself if it has none.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh.
-    asked : LightOptions
-        How it is lit, with ``feature_angle``, the least angle of an edge that is sharp.
+    light : LightOptions
+        Options of its light, with ``feature_angle``, the least angle of an edge that is sharp.
     """
     # An array of tangents has the rows of the mesh as it is, which split points would not fit.
-    if not (mesh.n_points and mesh.n_cells and isinstance(asked.tangents, str | None)):
+    if not (mesh.n_points and mesh.n_cells and isinstance(light.tangents, str | None)):
         return mesh
-    if asked.positions is not None or asked.normals is not None or not uses_normals(mesh, asked):
+    if light.positions is not None or light.normals is not None or not uses_normals(mesh, light):
         return mesh
-    bare, given = mesh, mesh.point_data.active_normals_name
-    if given is not None:
+    bare, carried = mesh, mesh.point_data.active_normals_name
+    if carried is not None:
         bare = mesh.copy(deep=False)
         bare.point_data.active_normals_name = None
-    if given is None and asked.feature_angle == "auto" and (sides := box(mesh)) is not None:
+    if carried is None and light.feature_angle == "auto" and (sides := box(mesh)) is not None:
         return sides
     surface = bare
     if isinstance(bare, pv.UnstructuredGrid) or bare.GetMaxSpatialDimension() == 3:
         surface = blocks.outer_surface(bare)[0]
     if not isinstance(surface, pv.PolyData):
         return mesh
-    split = split_where_computed(surface, asked.feature_angle)
+    split = split_where_computed(surface, light.feature_angle)
     if split is surface:
         return mesh
     # Known as long as the mesh is there, though the split points are made for each picture.
     computed_normals(split, owner=surface)
-    averaged = given is None or asked.feature_angle != "auto" or _fit_no_face(split, given)
+    averaged = carried is None or light.feature_angle != "auto" or _fit_no_face(split, carried)
     return split if averaged else mesh
 
 
-def _fit_no_face(split: pv.PolyData, given: str) -> bool:
+def _fit_no_face(split: pv.PolyData, name: str) -> bool:
     """Return whether normals from before a split fit neither side of many edges."""
     # Of either sign below, as a normal may be of the other side of the same face.
-    own, new = kernels.unit_rows(split.point_data[given]), computed_normals(split).vectors
-    cosine, known = np.abs(np.einsum("ij,ij->i", own, new)), np.any(new, axis=1)
-    apart = known & (cosine < np.cos(np.radians(SHARP / 2)))
+    old, new = kernels.unit_rows(split.point_data[name]), computed_normals(split).vectors
+    cosine, has_face = np.abs(np.einsum("ij,ij->i", old, new)), np.any(new, axis=1)
+    apart = has_face & (cosine < np.cos(np.radians(SHARP / 2)))
     # Faces without area come from points that were rounded; their edges are no creases.
-    return bool(np.mean(apart) > MANY_SHARP >= np.mean(~known))
+    return bool(np.mean(apart) > MANY_SHARP >= np.mean(~has_face))
 
 
 def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, Keywords]:
@@ -180,7 +180,7 @@ def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, Keywords
 def box(mesh: pv.DataSet) -> pv.PolyData | None:
     """Return the six sides of a grid as a surface with its normals and arrays, None for others.
 
-    Points on the edges of the box are there once for each side.
+    Points on the edges of the box are stored once for each side.
 
     Parameters
     ----------
@@ -196,32 +196,32 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     source, middle = GridPoints(mesh), np.asarray(mesh.center)
     origin, cells, quads, vectors, count = [], [], [], [], 0
     for axis, end in itertools.product(range(3), (0, -1)):
-        own, of_cells = _side(size, axis, end), _side(size - 1, axis, end)
-        a, b, c = source.at(own[:2, :2].ravel()[:3])
+        ids_of_side, of_cells = _side(size, axis, end), _side(size - 1, axis, end)
+        a, b, c = source.at(ids_of_side[:2, :2].ravel()[:3])
         normal = np.cross(c - a, b - a)
         # Outward on either end of an axis: corners are turned round together with their normal.
         if normal @ (a - middle) < 0:
-            own, of_cells, normal = own[::-1], of_cells[::-1], -normal
-        at = count + np.arange(own.size).reshape(own.shape)
+            ids_of_side, of_cells, normal = ids_of_side[::-1], of_cells[::-1], -normal
+        at = count + np.arange(ids_of_side.size).reshape(ids_of_side.shape)
         corners = [at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]]
         quads.append(np.stack(corners, axis=-1).reshape(-1, 4))
         cells.append(of_cells.ravel())
-        origin.append(own.ravel())
-        vectors.append(np.tile(np.float32(normal / np.linalg.norm(normal)), (own.size, 1)))
-        count += own.size
+        origin.append(ids_of_side.ravel())
+        vectors.append(np.tile(np.float32(normal / np.linalg.norm(normal)), (ids_of_side.size, 1)))
+        count += ids_of_side.size
     ids = np.concatenate(origin)
-    found = pv.PolyData()
-    found.SetPoints(pv.vtk_points(np.asarray(source.at(ids), dtype=float)))
+    surface = pv.PolyData()
+    surface.SetPoints(pv.vtk_points(np.asarray(source.at(ids), dtype=float)))
     corners_of = np.concatenate(quads)
-    found.SetPolys(cell_array(corners_of.ravel(), np.arange(0, corners_of.size + 1, 4)))
+    surface.SetPolys(cell_array(corners_of.ravel(), np.arange(0, corners_of.size + 1, 4)))
     for key, array in mesh.point_data.items():
-        records.attach_rows(found, key, np.asarray(array)[ids])
+        records.attach_rows(surface, key, np.asarray(array)[ids])
     for key, array in mesh.cell_data.items():
-        found.cell_data[key] = np.asarray(array)[np.concatenate(cells)]
-    records.carry_active(mesh, found)
+        surface.cell_data[key] = np.asarray(array)[np.concatenate(cells)]
+    records.carry_active(mesh, surface)
     lean = np.zeros(count, dtype=np.float32)
-    normals.keep(found, Sided(np.concatenate(vectors), lean, computed=True))
-    return found
+    normals.keep(surface, Sided(np.concatenate(vectors), lean, computed=True))
+    return surface
 
 
 def _side(size: Indices, axis: int, end: int) -> Indices:
@@ -229,8 +229,8 @@ def _side(size: Indices, axis: int, end: int) -> Indices:
     # VTK's first index varies fastest: these are the steps from a point to the next along each
     # axis.
     along = [np.arange(n) * step for n, step in zip(size, np.cumprod([1, *size[:2]]), strict=True)]
-    found: Indices = along[axis][end] + np.add.outer(along[axis - 2], along[axis - 1])
-    return found
+    numbers: Indices = along[axis][end] + np.add.outer(along[axis - 2], along[axis - 1])
+    return numbers
 
 
 def fixed_colors(
@@ -253,7 +253,7 @@ def fixed_colors(
     colors : ndarray of uint8, shape (M, 4)
         Colours in ambient and diffuse light.
     from_view : str
-        What was computed as the view of the scene sees it, in words; empty if nothing was.
+        Terms that were computed for the view of the scene, in words; empty if none were.
     """
     seen = []
     following = [light for light in scene.lights if light.follows_view and light.intensity > 0]
@@ -289,15 +289,15 @@ def lit_colors(source: Source, scene: Scene, colors: Bytes | None, ids: Indices)
 
 
 def _on_one_side(source: Source, view: View | None) -> Source:
-    """Return a source whose open pieces are lit on the side that most of their points show.
+    """Return a source with its open pieces lit on the side that most of their points show.
 
     Turned point by point they would be dark where the eye of the file's reader is not expected.
     """
-    own = source.inputs.normals
+    vectors_in = source.inputs.normals
     turned = source.seen_from(view, source.inputs).normals
-    if source.sided is None or own is None or turned is None:
+    if source.sided is None or vectors_in is None or turned is None:
         return source
-    vectors = np.asarray(own[:])
+    vectors = np.asarray(vectors_in[:])
     piece = piece_numbers(source.mesh)
     # Each point has a vote: 1 where the eye is on the side of its normal, -1 on the other.
     same = np.sign(np.einsum("ij,ij->i", vectors, np.asarray(turned[:])))

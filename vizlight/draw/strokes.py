@@ -1,9 +1,9 @@
 """Lines as bands that face the eye, of a width, with round ends and halos, made in VTK's shaders.
 
 A halo has the colour of the ground and is the deeper the farther it is from the middle of its line,
-like a tent: it hides what passes behind, and lines that run together keep no gap (Everts, Bekker,
-Roerdink and Isenberg, Depth-Dependent Halos, 2009). The line itself is drawn nearer to the eye by
-its own width, so that a surface on which it lies does not hide it.
+like a tent: it hides lines that pass behind, and lines that run together keep no gap (Everts,
+Bekker, Roerdink and Isenberg, Depth-Dependent Halos, 2009). The line itself is drawn nearer to the
+eye by its own width, so that a surface on which it lies does not hide it.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def with_halo(stroke: Stroke, line_width: float, halo: float | None) -> Stroke:
 
 
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
-    """Return the directions of lines at their points, whose lengths say how they are drawn.
+    """Return the directions of lines at their points, with lengths that say how they are drawn.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _ends(points: Array, ids: Indices, offsets: Indices) -> Array:
 def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> None:
     """Draw the lines of an actor as a stroke says, in the colours that they have.
 
-    The active normals of what is drawn are the :func:`directions` of its lines.
+    The active normals of the drawn mesh are the :func:`directions` of its lines.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def widened(
     actor : vtkActor
         Actor of lines.
     replacements : iterable of Replacement
-        What passes values to the fragments, and their light; with ``ALONG`` the quads of a line
+        Texts that pass values to the fragments, and their light; with ``ALONG`` the quads of a line
         join.
     stroke : Stroke
         Width of the lines, and of their halos.
@@ -241,7 +241,7 @@ def widened(
 
 
 def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
-    """Return what moves a corner of the quad of a segment, in pixels that are square.
+    """Return the text that moves a corner of the quad of a segment, in pixels that are square.
 
     VTK's own quads are not perpendicular to their lines unless the picture is a square.
     """
@@ -333,7 +333,7 @@ def _ratio(row: int) -> str:
 
 
 def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
-    """Return what lengthens a quad by a round end, and the places and depths of its corners."""
+    """Return the text that lengthens a quad by a round end, and the places of its corners."""
     band = glsl.number(2 * stroke.halo)
     # Ends are round, and so is a bend that is not mitred: both of its quads end there in a disc.
     if joined:
@@ -362,7 +362,7 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
 
 
 def _border(stroke: Stroke) -> str:
-    """Return what a fragment is: its distance from the line, its depth, and whether it is drawn."""
+    """Return the text of a fragment: its distance from the line, its depth, whether it is drawn."""
     band = glsl.number(2 * stroke.halo)
     # Corners were multiplied by their w, so that what is interpolated is linear on the screen.
     return (

@@ -49,8 +49,8 @@ class Difference:
         that is 5 % too bright on a dark background, and on any background if surfaces are drawn.
     block : float
         Largest mean, over a block of 12 x 12 pixels, of the distance from the range of colours that
-        an edge may have there: that of the expected 3 x 3 neighbourhood and a quarter more. In
-        pixel values from 0 to 255.
+        an edge may have: that of the expected 3 x 3 neighbourhood and a quarter more. In pixel
+        values from 0 to 255.
     pixels : float
         Fraction of the pixels within the outlines of surfaces that lie outside that range by more
         than 7 of 255. It reveals a highlight of another strength, which may be two pixels wide.
@@ -158,11 +158,11 @@ def assert_same_picture(
     if seen.shape != wanted.shape:
         places = _keep(failed, name, {"got": seen, "expected": wanted})
         raise AssertionError(f"{name}: {_size(seen)} pixels, expected {_size(wanted)}{places}")
-    found = _measure(seen, wanted, background)
+    measured = _measure(seen, wanted, background)
     wrong = [
-        f"{error} {getattr(found, error):.3g}, at most {getattr(limits, error):.3g}"
+        f"{error} {getattr(measured, error):.3g}, at most {getattr(limits, error):.3g}"
         for error in ("brightness", "block", "pixels")
-        if not getattr(found, error) <= getattr(limits, error)
+        if not getattr(measured, error) <= getattr(limits, error)
     ]
     if wrong:
         errors = np.abs(seen.astype(np.int16) - wanted)
@@ -172,7 +172,7 @@ def assert_same_picture(
         places = _keep(failed, name, pictures)
         times = f" times {factor}" if places else ""
         raise AssertionError(f"{name}: {'; '.join(wrong)}{places}{times}")
-    return found
+    return measured
 
 
 def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Difference:

@@ -28,7 +28,7 @@ def share_of_data(plotter: pv.Plotter, /) -> float:
     ----------
     plotter : pyvista.Plotter
         Plotter that draws offscreen; it is rendered with and without its actors in space. Keys,
-        bars, texts and what has the colour of the background behind it do not count.
+        bars, texts and surfaces of the colour of the background behind them do not count.
 
     Returns
     -------

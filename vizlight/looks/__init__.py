@@ -1,1 +1,1 @@
-"""From any data to a finished picture: what is shown, in which light, from where."""
+"""From any data to a finished picture: its subject, its light and its camera."""

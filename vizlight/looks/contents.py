@@ -1,4 +1,4 @@
-"""What data hold: their dimension, and the part that each array can have in a picture."""
+"""Contents of data: their dimension, and the part that each array can have in a picture."""
 
 from __future__ import annotations
 
@@ -106,14 +106,14 @@ class Named:
 
 @dataclass(frozen=True)
 class Contents:
-    """What a mesh holds; looked at in a sample of its points and cells.
+    """Contents of a mesh, from a sample of its points and cells.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh.
     raster : bool
-        Whether it comes from a file of a raster, whose only band is heights.
+        Whether it comes from a file of a raster, with heights as its only band.
     without : tuple of str
         Names of arrays that are used for the light, such as normals, and are not shown.
     """
@@ -124,7 +124,7 @@ class Contents:
 
     @cached_property
     def dimension(self) -> int:
-        """Highest dimension of the cells, 0 where there are none."""
+        """Highest dimension of the cells, 0 without cells."""
         return int(self.mesh.max_cell_dimensionality) if self.mesh.n_cells else 0
 
     @cached_property
@@ -153,7 +153,7 @@ class Contents:
 
     @cached_property
     def is_part(self) -> bool:
-        """Whether a solid has most of what it holds on its surface: a part that is no box of air.
+        """Whether most points of a solid are on its surface: a part that is no box of air.
 
         Its vectors, if any, are displacements or loads.
         """
@@ -173,14 +173,14 @@ class Contents:
         return tuple(array for array in every if array.name not in self.without)
 
     def first(self, *roles: Role) -> Named | None:
-        """Return the best array of some roles, None where there is none."""
+        """Return the best array of some roles, None if no array has one."""
         return next((array for array in self.arrays if array.role in roles), None)
 
     def named(self, name: str) -> Named | None:
-        """Return what is known of an array by its name, also of one that is no datum."""
-        known = next((array for array in self.arrays if array.name == name), None)
-        if known is not None or not name:
-            return known
+        """Return the description of an array by its name, also of one that is no datum."""
+        datum = next((array for array in self.arrays if array.name == name), None)
+        if datum is not None or not name:
+            return datum
         places = ((self.mesh.point_data, False), (self.mesh.cell_data, True))
         for data, of_cells in places:
             if name in data:
@@ -197,14 +197,14 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
 
     The active array comes first, then numbers in floating point, those of points before those of
     cells, those that describe the grid of a model last; then kinds, those of cells first, which are
-    materials more often than those of points; each in the order of the mesh. What a filter of light
-    made is left out.
+    materials more often than those of points; each in the order of the mesh. Arrays made by filters
+    of light are left out.
     """
-    made = records.all_made(mesh)
+    outputs = records.all_made(mesh)
     described = []
     for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
         for name in data:
-            if name in made:
+            if name in outputs:
                 continue
             values = np.asarray(data[name])
             array = _described(name, values, of_cells=of_cells, named=True)

@@ -35,14 +35,14 @@ PIXELS = 64
 ASPECT = 1.2
 #: Places of triangles that hide others, where there are few triangles.
 SPLATS = 8000
-#: Number of triangles by which the light of what is seen is measured.
+#: Number of triangles by which the light of the visible surface is measured.
 SEEN = 1000
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
 
 @dataclass(frozen=True)
-class Eye:
+class Viewpoint:
     """Direction toward the eye, direction up in the picture, and whether projection is parallel."""
 
     toward: Vector
@@ -52,10 +52,10 @@ class Eye:
 
 
 #: Eye that sees three sides alike.
-ISOMETRIC = Eye((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
+ISOMETRIC = Viewpoint((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
 
 
-def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Eye:
+def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Viewpoint:
     """Return from where a mesh is seen best.
 
     Parameters
@@ -63,9 +63,9 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Ey
     mesh : pyvista.DataSet
         Mesh that is drawn.
     contents : Contents
-        What the data hold, of which it is drawn.
+        Contents of the data, of which it is drawn.
     shown : str, optional
-        Name of an array: values, much of whose range should be seen, or the vectors of a volume,
+        Name of an array: values, with much of their range to be seen, or the vectors of a volume,
         which should run across the picture.
     """
     if contents.flat_axis is not None:
@@ -75,7 +75,7 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Ey
     points = _some(np.asarray(mesh.points, dtype=np.float64))
     extent = np.ptp(points[np.isfinite(points).all(axis=1)], axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
-        # What lies in a slab, such as a flow between two plates, is seen across it.
+        # Data in a slab, such as a flow between two plates, are seen across it.
         return _above(mesh, int(np.argmin(extent)))
     rows = _vectors(mesh, shown) if contents.dimension == 3 else None
     return _of_points(points, rows)
@@ -89,7 +89,7 @@ def _vectors(mesh: pv.DataSet, shown: str | None) -> Array | None:
     return rows[np.isfinite(rows).all(axis=1)]
 
 
-def _above(mesh: pv.DataSet, axis: int) -> Eye:
+def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     """Return the eye above a flat mesh, north up; a strip lies along the picture."""
     toward = tuple(float(i == axis) * (-1.0 if axis == 1 else 1.0) for i in range(3))
     up: Vector = (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0)
@@ -105,10 +105,10 @@ def _above(mesh: pv.DataSet, axis: int) -> Eye:
             across = axes[1] * (1.0 if axes[1, 1] >= 0 else -1.0)
             turned = across[0] * right + across[1] * np.asarray(up)
             up, words = _vector(turned), "turned to lie along the picture"
-    return Eye(toward, up, True, words)
+    return Viewpoint(toward, up, True, words)
 
 
-def _of_surface(surface: pv.PolyData, shown: str | None) -> Eye:
+def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
     faces, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
@@ -120,19 +120,19 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Eye:
         if toward[2] < -0.5:  # ground is seen from above, however its cells are wound
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
-        return Eye(_vector(toward), up, False, "along its mean normal")
+        return Viewpoint(_vector(toward), up, False, "along its mean normal")
     return _around(corners, normals, areas, _values(surface, shown, faces))
 
 
 def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:
-    """Return the values of an array at the first corners of faces, None where there are none."""
+    """Return the values of an array at the first corners of faces, None without values."""
     if shown is None or shown not in surface.point_data:
         return None
     rows: Array = np.asarray(surface.point_data[shown], dtype=np.float64)
     return rows[faces[:, 0]] if rows.ndim == 1 else None
 
 
-def eye_around(surface: pv.PolyData) -> Eye:
+def eye_around(surface: pv.PolyData) -> Viewpoint:
     """Return the eye that sees most of a surface from the side, open or not.
 
     Parameters
@@ -147,15 +147,15 @@ def eye_around(surface: pv.PolyData) -> Eye:
     return _around(corners, normals, np.linalg.norm(normals, axis=1))
 
 
-def _around(corners: Array, normals: Array, areas: Array, values: Array | None = None) -> Eye:
+def _around(corners: Array, normals: Array, areas: Array, values: Array | None = None) -> Viewpoint:
     """Return the eye from which most of some triangles is seen, and most of their values."""
     places = _places(corners)
     scores = [(_seen(corners, places, normals, areas, way, values), way) for way in _ways()]
     best = max(scores, key=lambda pair: pair[0])[1]
-    return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
+    return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
 
-def _of_points(points: Array, vectors: Array | None = None) -> Eye:
+def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:
     """Return the eye from which points spread most, and vectors run across the picture."""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
@@ -174,7 +174,7 @@ def _of_points(points: Array, vectors: Array | None = None) -> Eye:
             spread *= float(across / whole) ** 2 * (1 + RIGHTWARD * rightward)
         spreads.append((spread, way))
     best = max(spreads, key=lambda pair: pair[0])[1]
-    return Eye(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
+    return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where it spreads most")
 
 
 def _seen(
@@ -195,7 +195,7 @@ def _seen(
     front = areas * _in_front(places, len(corners), way) * (cosines > 0.15)
     seen = float(front.sum())
     if values is not None:
-        # What has no value shows nothing.
+        # Faces without a value show nothing.
         front = front * np.isfinite(values)
         seen = float(front.sum())
         seen *= 1 + min(_spread(values, front * cosines) / (_spread(values, areas) or 1.0), 1.0)
@@ -216,7 +216,7 @@ def _spread(values: Array, weights: Array) -> float:
 
 
 def _places(corners: Array) -> Array:
-    """Return the middles of triangles, and after them places of these that hide what is behind."""
+    """Return the middles of triangles, then places of these that hide others behind them."""
     middles = corners.mean(axis=1)
     # Large triangles hide what is behind more than their middles.
     count = math.ceil(SPLATS / max(len(corners), 1))
@@ -271,11 +271,11 @@ def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
 
 def _ways() -> list[Array]:
     """Return directions toward the eye, the usual one of three-quarters first."""
-    found = []
+    ways = []
     for altitude, azimuth in itertools.product(ALTITUDES, AZIMUTHS):
         a, b = math.radians(azimuth), math.radians(altitude)
-        found.append(np.array([math.cos(b) * math.cos(a), math.cos(b) * math.sin(a), math.sin(b)]))
-    return found
+        ways.append(np.array([math.cos(b) * math.cos(a), math.cos(b) * math.sin(a), math.sin(b)]))
+    return ways
 
 
 def _plane(way: Array) -> tuple[Array, Array]:

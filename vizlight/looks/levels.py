@@ -24,7 +24,7 @@ FEWEST = 30
 
 
 def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
-    """Return the level whose isosurface crosses the steepest cells, and how steep they are.
+    """Return the level with an isosurface through the steepest cells, and their steepness.
 
     Parameters
     ----------

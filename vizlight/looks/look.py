@@ -78,13 +78,13 @@ class Look:
         Question that the light answers: direction, slope, heading, shape or value, relief for
         heights, ``"none"`` for colours without light, or that of a filter.
     shown : str
-        What is drawn: sheet, surface, isosurface, slices, hull, streamlines, lines or points.
+        Kind of drawing: sheet, surface, isosurface, slices, hull, streamlines, lines or points.
     array : str or None
         Array that is shown.
     reason : str
         Why, in words.
     others : tuple of Other
-        What else can be asked, each with the words that ask it.
+        Other questions to the data, each with the words that ask it.
     """
 
     question: str
@@ -115,7 +115,7 @@ class Look:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a reader should know, such as a factor of heights."""
+        """Notes for a reader, such as a factor of heights."""
         return tuple(self.drawing.notes)
 
     def plotter(self, *, off_screen: bool | None = True) -> pv.Plotter:
@@ -128,14 +128,14 @@ class Look:
         """
         hidden = bool(pv.OFF_SCREEN) if off_screen is None else off_screen
         plotter, steps = self._picture(off_screen=_check.boolean("off_screen", hidden))
-        made: pv.Plotter = plotter.run()
+        picture: pv.Plotter = plotter.run()
         try:
             for step in steps:
                 step.run()
         except BaseException:
-            made.close()
+            picture.close()
             raise
-        return made
+        return picture
 
     def show(self, **options: Given) -> object:
         """Show the picture in a window, or in a notebook.
@@ -272,13 +272,13 @@ class Look:
         return plotter, steps
 
     def read_steps(self) -> list[Step]:
-        """Return the steps that print what a reader reads back from the picture."""
+        """Return the steps that print how much a reader reads back from the picture."""
         plotter, steps = self._picture()
         read = Step("", ".vizlight.legibility", plotter)
         return [*steps, Step("", "print", read), Step("", ".close", plotter)]
 
     def figures(self) -> Legibility:
-        """Return what a reader reads back from the picture: :func:`vizlight.legibility`."""
+        """Return how much a reader reads back from the picture: :func:`vizlight.legibility`."""
         plotter = self.plotter()
         try:
             figures: Legibility = plotter.vizlight.legibility()
@@ -292,7 +292,7 @@ class Look:
 
     @property
     def summary(self) -> str:
-        """What is shown, in one line."""
+        """Subject and light of the picture, in one line."""
         return f"{self.drawing.words} ({self.question}: {self.shown})"
 
     def _repr_html_(self) -> str:
@@ -331,12 +331,12 @@ def look(
     style: str = "paper",
     **options: Given,
 ) -> Look:
-    """Decide how data are shown: what of them, in which light, from where and with which key.
+    """Decide how data are shown: which part, in which light, from where and with which key.
 
     Parameters
     ----------
     data : mesh, path, xarray object, or sequence of them
-        What is shown. Of several, and of blocks of different dimensions, each is drawn by its own
+        Data to show. Of several, and of blocks of different dimensions, each is drawn by its own
         rule in one picture; walls of a volume are left out.
     question : str, default: "auto"
         What the picture should tell: ``"direction"``, ``"slope"``, ``"heading"``, ``"shape"``,
@@ -352,7 +352,7 @@ def look(
         Background of the picture: white or nearly black.
     **options
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
-        ``nodata``, as by :func:`vizlight.read`. What is taken of the data: ``contour``, ``level``,
+        ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``contour``, ``level``,
         ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
         ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
         as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
@@ -393,9 +393,9 @@ def decide(data: object, wishes: Wishes) -> Look:
     if not several:
         raise ValueError(message("data", "a mesh, a file, or several", "none"))
     parts, steps = [], []
-    for one in several:
-        for step in read_steps(one, wishes):
-            parts.append(one)
+    for item in several:
+        for step in read_steps(item, wishes):
+            parts.append(item)
             steps.append(step)
     ready = [prepared(part, step, wishes) for part, step in zip(parts, steps, strict=True)]
     if wishes.question == "flow":
@@ -407,11 +407,11 @@ def decide(data: object, wishes: Wishes) -> Look:
         rule, case = _chosen(step, contents, wishes)
         wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
         return _decided(rule, wide, notes)
-    own = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
-    if wishes.array is not None and not any(one.array for one in own):
-        own[0] = wishes  # whose error says what is there
+    by_part = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
+    if wishes.array is not None and not any(it.array for it in by_part):
+        by_part[0] = wishes  # whose error says what is there
     chosen = [
-        _chosen(step, contents, mine) for (step, contents, _), mine in zip(ready, own, strict=True)
+        _chosen(step, contents, it) for (step, contents, _), it in zip(ready, by_part, strict=True)
     ]
     shared = together.shared([case for _, case in chosen], wishes)
     looks = [
@@ -456,7 +456,7 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> L
 
 
 def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> Look:
-    """Return the look of one mesh, as a recipe draws it, with what maps have."""
+    """Return the look of one mesh, as a recipe draws it, with the frame and coasts of a map."""
     drawing = maps.furnished(case, drawing)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     array = None if case.array is None else case.array.name
@@ -471,11 +471,11 @@ def _unread(look: Look, names: Sequence[str]) -> str:
     """Return why a picture is not chosen, empty if a reader can read it, or nothing can draw."""
     try:
         with warnings.catch_warnings():
-            # What cannot be lit is said when the picture is made.
+            # Points that cannot be lit are reported when the picture is made.
             warnings.simplefilter("ignore")
             figures = look.figures()
     except BackendError:
-        # What the data say has to be enough.
+        # The decision from the data alone has to be enough.
         return ""
     for name, reason in figures.unreadable.items():
         if name in names:
@@ -511,7 +511,7 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
 
 
 def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, list[str]]:
-    """Return the step that takes a part of the data that a step reads, what it holds, and notes."""
+    """Return the step that takes a part of the data of a step, its contents, and notes."""
     part, notes, raster = wishes.part, [], False
     if isinstance(data, str | Path):
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
@@ -589,8 +589,8 @@ def _explicit(
         question = "shadow"
     recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))
     if recipe is None:
-        known = [name for name in _QUESTIONS if name != "shadow"]
-        expected = f"a question that these data answer, {one_of(known)}"
+        questions = [name for name in _QUESTIONS if name != "shadow"]
+        expected = f"a question that these data answer, {one_of(questions)}"
         raise ValueError(message("question", expected, repr(question)))
     chosen = array if array is not None and array.role in roles else contents.first(*roles)
     if question == "relief" and chosen is None:
@@ -657,7 +657,7 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
 
 
 def _others(contents: Contents, case: Case) -> tuple[Other, ...]:
-    """Return what else the data can tell."""
+    """Return the other questions that the data can answer."""
     shown = None if case.array is None else case.array.name
     others = [
         Other(array.role, array.name, f"array={array.name!r}", f"--array {array.name}")

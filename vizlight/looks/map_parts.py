@@ -1,4 +1,4 @@
-"""What a map has beside its data: coasts, and a frame of degrees or a bar of lengths."""
+"""Parts of a map beside its data: coasts, and a frame of degrees or a bar of lengths."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
-    """Return the step that makes what stands around a map, None where nothing is known of it."""
+    """Return the step that makes the frame of a map, None if it gets none."""
     if not 0 < max(mesh.run().bounds_size[:2]) < np.inf:
         return None
     keywords: dict[str, object] = {"letters": letters(mesh.run(), wishes, up)}

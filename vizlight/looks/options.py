@@ -1,4 +1,4 @@
-"""The options of ``vizlight.look`` by what they are for, and cuts of the data."""
+"""The options of ``vizlight.look`` by their purpose, and cuts of the data."""
 
 from __future__ import annotations
 
@@ -74,8 +74,8 @@ def sorted_out(
             "light",
         )
         if group == "light" and name not in light_names and question in ("auto", *PRESETS):
-            known = [*PART, *EYE, *PICTURE, "scene", *sorted(light_names)]
-            raise TypeError(unknown_option("look", name, known))
+            allowed = [*PART, *EYE, *PICTURE, "scene", *sorted(light_names)]
+            raise TypeError(unknown_option("look", name, allowed))
         groups[group][name] = value
     return Wishes(
         question,
@@ -131,8 +131,8 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     """
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
-    asked = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    if asked or not georeference.is_map(grid):
+    is_chosen = wishes.question != "auto" or any(part.get(name) for name in of_volume)
+    if is_chosen or not georeference.is_map(grid):
         return mesh
     count = files.layers(grid)
     words = meaning.of(grid).axes
@@ -161,7 +161,7 @@ MOST_BENT = 4_000_000
 def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
     """Return the step that draws a flat map in degrees on a projection that suits it, and contents.
 
-    What is no such map, is seen at a slant or is cut by planes in degrees stays as it is.
+    Other data, maps seen at a slant and maps cut by planes in degrees stay as they are.
     """
     mesh = contents.mesh
     is_sheet = contents.flat_axis == 2 and contents.dimension in (0, 2)
@@ -206,13 +206,13 @@ def _moves(mesh: pv.DataSet, name: str | None) -> bool:
 
 
 def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
-    """Return the step that keeps the cells whose values are in a range."""
+    """Return the step that keeps the cells with values in a range."""
     present = [*mesh.run().point_data, *mesh.run().cell_data]
     if name not in present:
         raise ValueError(
             message("threshold", f"the name of an array, {one_of(present)}", repr(name))
         )
-    # PyVista takes two ends, or one value and what of it is kept: the upper side by default.
+    # PyVista takes two ends, or one value and the side to keep: the upper one by default.
     ends: object = (low, high)
     if math.isinf(low) or math.isinf(high):
         ends = low if math.isinf(high) else high

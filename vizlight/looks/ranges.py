@@ -61,7 +61,7 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     values : ndarray
         Finite values, one at least.
     lengths : bool
-        Whether they are lengths of vectors, whose bar may be logarithmic.
+        Whether they are lengths of vectors, with a bar that may be logarithmic.
 
     Returns
     -------

@@ -26,7 +26,7 @@ class Rule:
     Parameters
     ----------
     shown : str
-        What is shown.
+        Kind of drawing.
     fits : callable
         Predicate on the contents.
     question : str
@@ -36,7 +36,7 @@ class Rule:
     recipe : callable
         Function that draws it.
     why : str
-        What the data are, in words.
+        Kind of the data, in words.
     """
 
     shown: str
@@ -51,7 +51,7 @@ class Rule:
         return contents.first(*self.roles) if self.roles else None
 
     def holds(self, contents: Contents) -> bool:
-        """Return whether the rule fits, and there is an array for it."""
+        """Return whether the rule fits, and the contents have an array for it."""
         return self.fits(contents) and (not self.roles or self.array(contents) is not None)
 
 

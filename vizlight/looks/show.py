@@ -1,4 +1,4 @@
-"""``mesh.vizlight.plot``: a mesh whose light follows the camera, shown as ``pyvista.plot`` does."""
+"""``mesh.vizlight.plot``: ``pyvista.plot`` with light that follows the camera."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ EFFECTS = {
     "parallel_projection": ("parallel_projection",),
     "ssao": ("ssao",),
 }
-#: Keywords of ``pyvista.plot`` that say nothing of what is shown.
+#: Keywords of ``pyvista.plot`` that do not change the picture.
 SHOWN = {"off_screen", "return_img", "interactive", "auto_close", "return_cpos"}
 #: Keywords of ``pyvista.plot`` that its signature does not name.
 _MORE = {"edl", "show_grid", "auto_close", "camera"}
@@ -53,7 +53,7 @@ def plot(
     sky: bool = False,
     **options: Given,
 ) -> object:
-    """Show a mesh whose light follows the camera; without options as :func:`vizlight.look` decides.
+    """Show a mesh with light that follows the camera; by default as :func:`vizlight.look` decides.
 
     Parameters
     ----------
@@ -79,8 +79,8 @@ def plot(
     Returns
     -------
     object
-        What ``pyvista.plot`` returns: the widget of a notebook, or what ``return_img`` and
-        ``return_cpos`` ask for; otherwise None.
+        Result of ``pyvista.plot``: the widget of a notebook, or the results of ``return_img`` and
+        ``return_cpos``; otherwise None.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def plot(
     if _check.boolean("sky", sky):
         options = {"occlusion": SKY} | options
     named = {*inspect.signature(pv.plot).parameters} - {"var_item", "kwargs"} | _MORE
-    given = {name: options.pop(name) for name in [*options] if name in named}
+    show_options = {name: options.pop(name) for name in [*options] if name in named}
     scene = optional_scene(scene)
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
     size = None if window_size is None else _size(window_size)
@@ -106,30 +106,30 @@ def plot(
     if jupyter_backend is not None:
         _check.text("jupyter_backend", jupyter_backend)
     for name in ("off_screen", "notebook"):
-        if given.get(name) is not None:
-            _check.boolean(name, given[name])
+        if show_options.get(name) is not None:
+            _check.boolean(name, show_options[name])
     if (
         scene is None
         and scalars is None
         and light == "auto"
-        and not (options or given.keys() - SHOWN)
+        and not (options or show_options.keys() - SHOWN)
     ):
         pixels = (1200, 800) if size is None else (size[0], size[1])
         shown = look(mesh, view=camera, size=pixels).plotter(
-            off_screen=given.pop("off_screen", None)
+            off_screen=show_options.pop("off_screen", None)
         )
         backend = jupyter_backend if shown.notebook else None
-        return shown.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
-    own = inspect.signature(pv.Plotter.__init__).parameters
-    window = {name: given.pop(name) for name in [*given] if name in own}
+        return shown.show(screenshot=screenshot or False, jupyter_backend=backend, **show_options)
+    parameters = inspect.signature(pv.Plotter.__init__).parameters
+    window = {name: show_options.pop(name) for name in [*show_options] if name in parameters}
     plotter: Foreign = pv.Plotter(window_size=size, **window)
     try:
-        if given.pop("volume", False):
+        if show_options.pop("volume", False):
             _check.warn("volume=True: PyVista draws the volume with its own light")
             plotter.add_volume(mesh, scalars=scalars, **options)
         else:
             plotter.vizlight.add_mesh(mesh, scene=scene, light=light, scalars=scalars, **options)
-        _furnish(plotter, given)
+        _furnish(plotter, show_options)
         if camera is not None:
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
     except BaseException:
@@ -137,7 +137,7 @@ def plot(
         raise
     # Outside a notebook PyVista warns that it ignores the backend.
     backend = jupyter_backend if plotter.notebook else None
-    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **given)
+    return plotter.show(screenshot=screenshot or False, jupyter_backend=backend, **show_options)
 
 
 def _size(window_size: object) -> list[int]:
@@ -148,33 +148,33 @@ def _size(window_size: object) -> list[int]:
     return [int(side) for side in sides]
 
 
-def _furnish(plotter: Foreign, given: Keywords) -> None:
-    """Give a plotter what keywords of ``pyvista.plot`` ask for beside the mesh, and take them."""
-    background = given.pop("background", None)
+def _furnish(plotter: Foreign, show_options: Keywords) -> None:
+    """Apply the keywords of ``pyvista.plot`` that are for the plotter, and remove them."""
+    background = show_options.pop("background", None)
     if isinstance(background, str | Path) and Path(background).is_file():
         plotter.add_background_image(background)
     elif background is not None:
         plotter.background_color = _check.color("background", background)
-    axes, asked = plotter.theme.axes, given.pop("show_axes", None)
-    if axes.show if asked is None else asked:
+    axes, show_axes = plotter.theme.axes, show_options.pop("show_axes", None)
+    if axes.show if show_axes is None else show_axes:
         (plotter.add_box_axes if axes.box else plotter.add_axes)()
-    if text := given.pop("text", ""):
+    if text := show_options.pop("text", ""):
         plotter.add_text(text)
-    grid, bounds = given.pop("show_grid", False), given.pop("show_bounds", False)
+    grid, bounds = show_options.pop("show_grid", False), show_options.pop("show_bounds", False)
     if grid or bounds:
         (plotter.show_grid if grid else plotter.show_bounds)()
-    cpos = given.pop("cpos", None)
+    cpos = show_options.pop("cpos", None)
     plotter.camera_position = plotter.get_default_cam_pos() if cpos is None else cpos
     plotter.camera_set = cpos is not None
-    smooth = given.pop("anti_aliasing", None)
+    smooth = show_options.pop("anti_aliasing", None)
     if smooth is False:
         plotter.disable_anti_aliasing()
     elif smooth is not None:
         plotter.enable_anti_aliasing("msaa" if smooth is True else smooth)
     for effect, names in EFFECTS.items():
-        asked_for = [given.pop(name, False) for name in names]
+        asked_for = [show_options.pop(name, False) for name in names]
         if any(asked_for):
             getattr(plotter, f"enable_{effect}")()
-    zoom = given.pop("zoom", None)
+    zoom = show_options.pop("zoom", None)
     if zoom is not None:
         plotter.camera.zoom(zoom)

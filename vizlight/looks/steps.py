@@ -1,4 +1,4 @@
-"""Calls that can be run or written as a Python script: what a look does, defined once."""
+"""Calls that can be run or written as a Python script: the work of a look, defined once."""
 
 from __future__ import annotations
 
@@ -69,12 +69,12 @@ class Step:
         with warnings.catch_warnings():
             if self.quiet:
                 warnings.simplefilter("ignore")
-            made = self._called()
-        if self.asked[0] and not made.n_points:
+            result = self._called()
+        if self.asked[0] and not result.n_points:
             raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
         for key, value in self.attributes.items():
-            setattr(made, key, value)
-        return made
+            setattr(result, key, value)
+        return result
 
     def _called(self) -> Foreign:
         arguments: list[Foreign] = [_run(value) for value in self.arguments]
@@ -94,7 +94,7 @@ class Step:
         return function(*arguments, **keywords)
 
     def _of_first(self, arguments: list[Foreign], keywords: dict[str, object]) -> Foreign:
-        """Return what a method of the first argument returns, or set an attribute of it."""
+        """Return the result of a method of the first argument, or set an attribute of it."""
         *owners, last = self.path[1:].split(".")
         owner = functools.reduce(getattr, owners, arguments[0])
         if last.endswith("="):
@@ -129,7 +129,7 @@ def written(steps: Sequence[Step]) -> Path:
 def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> str:
     """Return the script that runs the steps of each job in order.
 
-    The steps ``reported`` stand in a block whose cost is printed.
+    The steps ``reported`` stand in a block that prints its cost.
     """
     lines: list[str] = []
     heads: set[str] = set()
@@ -141,10 +141,10 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
             if step.path == "-":
                 lines.append(f"# {step.name}: the {type(step.arguments[0]).__name__} of the look")
             elif step.name or any(step is last for last in job):
-                lines += _statement(step, reported=any(step is one for one in reported))
+                lines += _statement(step, reported=any(step is other for other in reported))
     groups = [[f"import {head}" for head in group if head in heads] for group in MODULES]
-    if own := [head for head in OWN if head in heads]:
-        groups[-1].append(f"from vizlight import {', '.join(own)}")
+    if names := [head for head in OWN if head in heads]:
+        groups[-1].append(f"from vizlight import {', '.join(names)}")
     return "\n\n".join("\n".join(group) for group in (*groups, lines) if group)
 
 
@@ -162,21 +162,21 @@ def _keep_apart(step: Step, holders: dict[str, Step]) -> None:
 
 
 def in_order(steps: Sequence[Step]) -> list[Step]:
-    """Return the steps and all that they need, each once and after what it needs."""
-    found: list[Step] = []
+    """Return the steps and all that they need, each once and after those that it needs."""
+    ordered: list[Step] = []
 
     def visit(value: object) -> None:
         if isinstance(value, Step):
-            if not any(value is step for step in found):
+            if not any(value is step for step in ordered):
                 for part in value.parts():
                     visit(part)
-                found.append(value)
+                ordered.append(value)
         elif isinstance(value, list | tuple):
             for part in value:
                 visit(part)
 
     visit(list(steps))
-    return found
+    return ordered
 
 
 def _statement(step: Step, *, reported: bool) -> list[str]:

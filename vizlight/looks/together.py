@@ -50,7 +50,7 @@ def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
         if case.array is not None and case.array.role in ("values", "heights"):
             name = case.array.name
             ranges.setdefault(name, []).append(range_of(case.data.run(), name))
-    found = []
+    of_cases = []
     for case in cases:
         ends = ranges.get(case.array.name, []) if case.array is not None else []
         picture: Keywords = dict(case.wishes.picture)
@@ -58,8 +58,8 @@ def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
             picture = {
                 "clim": (min(low for low, _ in ends), max(high for _, high in ends))
             } | picture
-        found.append(replace(case.wishes, picture=picture, frame=camera))
-    return found
+        of_cases.append(replace(case.wishes, picture=picture, frame=camera))
+    return of_cases
 
 
 def joined(drawings: Sequence[Drawing]) -> Drawing:
@@ -70,11 +70,11 @@ def joined(drawings: Sequence[Drawing]) -> Drawing:
         for key in drawing.keys:
             scene = key.get("scene")
             question = key.get("question") or (scene and preset_of(scene.run()))
-            told = (question, key.get("title") if question == "value" else "", key.get("clim"))
-            keys.setdefault(repr(told), key)
+            identity = (question, key.get("title") if question == "value" else "", key.get("clim"))
+            keys.setdefault(repr(identity), key)
     first = drawings[0]
     words = dict.fromkeys(drawing.words for drawing in drawings)
-    background = next((one.background for one in drawings if one.background), None)
+    background = next((each.background for each in drawings if each.background), None)
     return replace(
         first,
         layers=[layer for drawing in drawings for layer in drawing.layers],

@@ -1,4 +1,4 @@
-"""What is asked of a look beside its question: options, and the steps that they make."""
+"""Options of a look beside its question, and the steps that they make."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Keywords, Vector
     from vizlight.looks.contents import Named
-    from vizlight.looks.framing import Eye
+    from vizlight.looks.framing import Viewpoint
     from vizlight.scene import Scene
 
     #: Function that returns the step of a scene, of a question, the steps of a view and a camera,
@@ -107,7 +107,7 @@ class Wishes:
     style : {"paper", "dark"}
         Background.
     part : mapping
-        What of the data is taken: time, overlay, at, nodata, clip, threshold, contour, level,
+        Parts of the data: time, overlay, at, nodata, clip, threshold, contour, level,
         slice, warp, exaggeration.
     light : mapping
         Options of the filter that lights.
@@ -148,8 +148,8 @@ class Wishes:
     @property
     def background(self) -> str:
         """Colour behind the data."""
-        given = self.picture.get("background")
-        return STYLES[self.style] if given is None else given
+        color = self.picture.get("background")
+        return STYLES[self.style] if color is None else color
 
     def scene(self, question: str, camera: Step) -> Step:
         """Return the step that makes the scene of a question, or the one that was given."""
@@ -178,7 +178,7 @@ class Wishes:
         view = Step("", "vizlight.View", direction=(*toward, *(0.0,) * (n - len(toward))))
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
-    def camera(self, mesh: object, eye: Eye, *, boxed: bool = False) -> Step:
+    def camera(self, mesh: object, eye: Viewpoint, *, boxed: bool = False) -> Step:
         """Return the step that sets the camera on a mesh, with room for numbers around a box."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
@@ -225,25 +225,25 @@ class Wishes:
         if not hasattr(camera, "GetPosition"):
             return None
         zoom = _check.number("zoom", self.eye.get("zoom", 1.0), low=1e-6)
-        made = Step("camera", "pyvista.Camera")
+        step = Step("camera", "pyvista.Camera")
         position, focus, up = (
             tuple(float(x) for x in getattr(camera, name)())
             for name in ("GetPosition", "GetFocalPoint", "GetViewUp")
         )
-        made.attributes = {
+        step.attributes = {
             "position": position, "focal_point": focus, "up": self.eye.get("up") or up,
             "view_angle": float(camera.GetViewAngle()) / zoom,
         }  # fmt: skip
         if camera.GetParallelProjection():
             scale = float(camera.GetParallelScale())
-            made.attributes |= {"parallel_projection": True, "parallel_scale": scale / zoom}
+            step.attributes |= {"parallel_projection": True, "parallel_scale": scale / zoom}
         elif self.eye.get("parallel"):
             half = math.dist(position, focus) * math.tan(math.radians(VIEW_ANGLE / 2))
-            made.attributes |= {"parallel_projection": True, "parallel_scale": half / zoom}
-        return made
+            step.attributes |= {"parallel_projection": True, "parallel_scale": half / zoom}
+        return step
 
     def light_of_surface(self) -> Keywords:
-        """Return the options of light of a surface, whose creases are seen as creases."""
+        """Return the options of light of a surface with visible creases."""
         return {"feature_angle": "auto"} | dict(self.light)
 
     def drawn(self, light: Mapping[str, object]) -> Keywords:
@@ -306,9 +306,9 @@ class Wishes:
 
     def heightened(self, mesh: pv.DataSet, heights: str) -> tuple[float, str]:
         """Return the factor with which heights can be seen, and the words that say so."""
-        given = self.part.get("exaggeration")
-        if given is not None:
-            return float(given), ""
+        explicit = self.part.get("exaggeration")
+        if explicit is not None:
+            return float(explicit), ""
         if heights not in records.averaged(mesh, heights).point_data:
             return 1.0, ""
         factor = georeference.exaggeration(mesh, heights)
@@ -336,7 +336,7 @@ def _given(**values: object) -> Keywords:
     return {name: value for name, value in values.items() if value is not None}
 
 
-def _usual(eye: Eye) -> bool:
+def _usual(eye: Viewpoint) -> bool:
     """Return whether the direction up is the one that a camera takes by itself."""
     usual = (0.0, 1.0, 0.0) if abs(eye.toward[2]) > 0.999 else (0.0, 0.0, 1.0)
     return np.allclose(eye.up, usual)

@@ -1,4 +1,4 @@
-"""Crossings of lines in a picture, and how a reader tells there which line is nearer.
+"""Crossings of lines in a picture, and how a reader tells which line is nearer.
 
 Where two lines cross, the nearer one runs on and interrupts the other by its colour, by a gap
 beside it, or by its darker border: a T on either side (Rubin, Perception 30, 2001).
@@ -68,7 +68,7 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     count : int
         Largest number of crossings.
     random : numpy.random.Generator
-        Generator that chooses where there are more.
+        Generator that chooses among them if they are more.
     """
     number = lines.number
     pairs = []
@@ -109,8 +109,8 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
 def answers(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: float) -> Array:
     """Return which line a reader takes for the nearer one: 1 that, -1 the other, 0 neither.
 
-    It is the line whose borders are seen on both sides: differences of 3 deviations of the noise at
-    least, and by half as much more than at the borders of the other.
+    It is the line with borders that are seen on both sides: differences of 3 deviations of the
+    noise at least, and by half as much more than at the borders of the other.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def answers(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: flo
     lines : Segments
         Lines of the picture.
     seen : SeenPicture
-        What the eye sees of the picture.
+        The picture as the eye sees it.
     noise : float
         Noise of the eye in CIELAB.
     """
@@ -175,7 +175,7 @@ def _straight(lines: Segments, at: Array, line: Indices, other: Indices) -> Bool
 
 
 def _read(seen: SeenPicture, places: Array) -> Array:
-    """Return what the eye sees at places, shape (N, 3) in CIELAB."""
+    """Return the colours that the eye sees at places, shape (N, 3) in CIELAB."""
     column, row = np.floor(places).astype(np.intp).T
     return seen.colors_at(row, column)
 
@@ -201,7 +201,7 @@ def _near(lines: Segments, shown: Indices, line: Indices) -> Bools:
 
 
 def _clear(lines: Segments, crossings: Crossings) -> Bools:
-    """Return whether there is no third line around crossings."""
+    """Return whether no third line is around crossings."""
     width = np.maximum(lines.width[crossings.front], lines.width[crossings.back])
     reach = np.ceil(width / 2 + CLEAR - 0.5)
     clear = np.ones(len(width), dtype=np.bool_)

@@ -1,7 +1,7 @@
 """The eye of the meter: which contrasts of a picture are left at a size and a distance.
 
-S-CIELAB (Zhang and Wandell 1997): linear light in an opponent space, each of whose channels passes
-the filter of its contrast sensitivity, and CIELAB after that. What is gray stays gray.
+S-CIELAB (Zhang and Wandell 1997): linear light in an opponent space, where each channel passes the
+filter of its contrast sensitivity, and CIELAB after that. Gray stays gray.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Eye:
         return np.array(shares)
 
     def look(self, picture: Array, drawn: Bools) -> SeenPicture:
-        """Return what the eye sees of a picture.
+        """Return a picture as the eye sees it.
 
         Parameters
         ----------
@@ -157,14 +157,14 @@ class Eye:
 
 @dataclass(frozen=True)
 class SeenPicture:
-    """What an eye sees of a picture.
+    """A picture as an eye sees it.
 
     Attributes
     ----------
     channels : ndarray, shape (H, W, 3)
         Opponent channels of the filtered picture.
     cover : ndarray, shape (H, W, 3)
-        Share of what is drawn in each channel of each pixel; the rest is background.
+        Share of the drawing in each channel of each pixel; the rest is background.
     ground : ndarray, shape (3,)
         Opponent channels of the background.
     """

@@ -17,7 +17,7 @@ HEAD = ("question", "figure", "read", "chance")
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """What is read of one question.
+    """Figure of one question.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class Heading(Direction):
 
 @dataclass(frozen=True, kw_only=True)
 class Shape(Figure):
-    """Normals of surfaces, whose colours a reader finds on a ball in the same light.
+    """Normals of surfaces: a reader finds their colours on a ball in the same light.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class TwoSided(Figure):
 
 @dataclass(frozen=True, kw_only=True)
 class Order(TwoSided):
-    """Which of two lines is nearer where they cross, told by what goes on across the crossing.
+    """Which of two lines is nearer where they cross: the one that goes on across the crossing.
 
     Places are crossings at 30 degrees or more without a third line beside them.
     """
@@ -209,7 +209,7 @@ class Scale:
     Attributes
     ----------
     question : str
-        Question whose data are meant.
+        Question about the data.
     pixels : float or None
         Least structure in pixels at which half of the answers are right beyond chance; None where
         none is.
@@ -239,7 +239,7 @@ QUESTIONS = ("direction", "slope", "heading", "sense", "order", "shape", "value"
 
 @dataclass(frozen=True, kw_only=True)
 class Legibility:
-    """What a reader can read back from a picture; see :func:`vizlight.legibility`.
+    """Figures of what a reader can read back from a picture; see :func:`vizlight.legibility`.
 
     Attributes
     ----------
@@ -252,7 +252,7 @@ class Legibility:
         Direction of lines in space, lit or in the colours of its axes; None without lines.
     sense : Sense or None
         Which of two opposite ways strokes and glyphs run; None without glyphs and without lines
-        whose vectors or time of integration tell a sense, and for fewer than 8 of both.
+        that have a sense by vectors or time of integration, and for fewer than 8 of both.
     order : Order or None
         Which of two crossing lines is nearer; None without crossings.
     shape : Shape or None
@@ -262,7 +262,7 @@ class Legibility:
     speed : Speed or None
         Length of vectors; None without vectors of several lengths.
     scale : Scale or None
-        Finest structure that is read, of the first of direction, value and shape that there is.
+        Finest structure that is read, of the first of direction, value and shape that has a figure.
     pixels : int
         Number of pixels that show the data.
     size : (int, int)
@@ -276,7 +276,7 @@ class Legibility:
     seed : int
         Seed of the drawing of places and of the noise.
     notes : tuple of str
-        What has no figure, and what was left out.
+        Questions without a figure, and data that were left out.
     """
 
     direction: Direction | None = None

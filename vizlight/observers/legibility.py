@@ -1,4 +1,4 @@
-"""The public meter: what a reader can read back from a picture of a mesh."""
+"""The public meter: how much a reader can read back from a picture of a mesh."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Given, Keywords, Raw
     from vizlight.filters.tint import ColorMap
-    from vizlight.observers.samples import Part
+    from vizlight.observers.samples import SeenMesh
     from vizlight.scene.conversion import AnyView
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Model
@@ -74,13 +74,13 @@ def legibility(
     seed: int = 0,
     **options: Given,
 ) -> Legibility:
-    """Measure what a reader can read back from a picture of a mesh.
+    """Measure how much a reader can read back from a picture of a mesh.
 
     The mesh is drawn as ``plotter.vizlight.add_mesh`` draws it, or ``picture`` is taken. The
-    picture passes an eye at some distance: what is too fine or too pale for it is gone. A reader
+    picture passes an eye at some distance: details too fine or too pale for it are gone. A reader
     then matches the colours of single places with the key of the picture, and the answers are
-    compared with the data. What the reader cannot tell is "unreadable", and its error is that of
-    chance.
+    compared with the data. A question that the reader cannot answer is "unreadable", and its error
+    is that of chance.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def legibility(
         Name of a point array of 3 or 6 components, or its values, as for
         :func:`vizlight.illuminate`.
     scalars : str or array_like, optional
-        Array whose values colour the picture, as for :func:`vizlight.tint`. Default: none.
+        Array of values that colour the picture, as for :func:`vizlight.tint`. Default: none.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
         Colour map of the values. Default: as for :func:`vizlight.tint`.
     clim : (float, float) or float, optional
@@ -107,11 +107,11 @@ def legibility(
     camera : pyvista.Camera, optional
         Camera of ``picture``.
     key : Scene, (cmap, clim), or list of both, optional
-        What the colours of ``picture`` mean: light of a scene (direction, slope, heading, shape),
+        Meaning of the colours of ``picture``: light of a scene (direction, slope, heading, shape),
         or values of ``scalars`` on a colour map with limits. With an empty list colours mean
-        nothing. Without a scene marks are read by their form: lines, glyphs (``mesh`` is what
-        ``glyph`` returned), and on a surface with ``tangents`` whatever texture there is, such as
-        line integral convolution.
+        nothing. Without a scene marks are read by their form: lines, glyphs (``mesh`` is the result
+        of ``glyph``), and on a surface with ``tangents`` any texture, such as line integral
+        convolution.
     size_mm : float, optional
         Width of the picture in print. Default: 85 mm, a column.
     dpi : float, default: 300
@@ -129,8 +129,8 @@ def legibility(
         Seed of the drawing of pixels and of the noise.
     **options
         Further options of ``plotter.vizlight.add_mesh``, such as ``occlusion="sky"``, ``bundle``,
-        ``feature_angle`` and ``line_width``. Of a ``picture`` they say how the mesh is drawn
-        there; ``feature_angle=None`` is for edges that are smooth.
+        ``feature_angle`` and ``line_width``. Of a ``picture`` they say how it shows the mesh;
+        ``feature_angle=None`` is for edges that are smooth.
 
     Returns
     -------
@@ -163,25 +163,25 @@ def legibility(
     it the colours of a window of 8 arc minutes change most, of glyphs those of the whole. *slope*:
     lightness ranks steepness. *heading*: a key of all directions of lines, in one share of its
     light for all of the picture, since smoothed edges and halos darken lines. *shape*: a ball in
-    the same light; where there are tangents, which are unknown, 72 of them for each normal.
-    *value*: colours of the bar, as they are or in some light, whichever the whole picture fits.
-    *speed*: lightness, chroma, or the lengths of glyphs rank the lengths of vectors.
-    *scale*: the finest structure at which half of the answers are right beyond chance. *order*: at
-    crossings the borders of the nearer line, darker ones inside it too, or gaps beside it, differ
-    by 3 deviations of the noise (Rose 1948), on both sides and by more than those of the other;
-    crossings with a third line within 5.5 pixels are left out. Of two narrow lines of 3 pixels on
-    black without halos the darker one is read as the nearer. *sense*: a reader sees which end of a
-    stroke is ahead where its ends differ by 3 deviations of the noise, in lightness or in contrast,
-    each as the mean of 8 arc minutes. It needs lines that have ``tangents``, or VTK's
-    ``IntegrationTime``. For a glyph, the pixels that it covers are compared with those that it
-    would cover if it were turned round: the sense is right where the former stand out more.
+    the same light; with tangents, which are unknown, 72 of them for each normal. *value*: colours
+    of the bar, as they are or in some light, whichever the whole picture fits. *speed*: lightness,
+    chroma, or the lengths of glyphs rank the lengths of vectors. *scale*: the finest structure at
+    which half of the answers are right beyond chance. *order*: at crossings the borders of the
+    nearer line, darker ones inside it too, or gaps beside it, differ by 3 deviations of the noise
+    (Rose 1948), on both sides and by more than those of the other; crossings with a third line
+    within 5.5 pixels are left out. Of two narrow lines of 3 pixels on black without halos the
+    darker one is read as the nearer. *sense*: a reader sees which end of a stroke is ahead where
+    its ends differ by 3 deviations of the noise, in lightness or in contrast, each as the mean of 8
+    arc minutes. It needs lines that have ``tangents``, or VTK's ``IntegrationTime``. For a glyph,
+    the pixels that it covers are compared with those that it would cover if it were turned round:
+    the sense is right where the former stand out more.
 
     A reader of a surface with lines on it looks between them, as far as 10 arc minutes away.
 
-    Bits are the logarithmic score of what the reader believes, ``log2(A) + E[log2 q]`` for A
+    Bits are the logarithmic score of the reader's belief, ``log2(A) + E[log2 q]`` for A
     candidates, at the best share of lapses, less the score of the same answers about other places
-    at random: what all of the data have in common is not read. Of order and sense they are those of
-    a yes or no, 1 at most. Below 0.3 bits a question is unreadable.
+    at random: a property that all of the data share is not read. Of order and sense they are those
+    of a yes or no, 1 at most. Below 0.3 bits a question is unreadable.
 
     Examples
     --------
@@ -264,8 +264,8 @@ def _parts(
     drawing: Keywords,
     scalars: str | ArrayLike | None,
     camera: pv.Camera,
-) -> list[Part]:
-    """Return the meshes of a picture whose colours mean what a key says."""
+) -> list[SeenMesh]:
+    """Return the meshes of a picture with the meaning of their colours by a key."""
     keys = key if isinstance(key, list) else [key]
     scene, bar = None, None
     for meaning in keys:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
     from vizlight.observers.eye import Eye, SeenPicture
     from vizlight.observers.pixels import Cells, Pixels
-    from vizlight.observers.samples import Part
+    from vizlight.observers.samples import SeenMesh
 
 #: Number of deviations of noise by which a difference is seen (Rose, J. Opt. Soc. Am. 38, 1948: 3
 #: at least).
@@ -42,7 +42,7 @@ class Segments(NamedTuple):
     number : ndarray of int, shape (H, W)
         Segment that each pixel shows, -1 without one.
     start, way : ndarray, shape (S, 2)
-        Beginning of each segment, to the right and down, and the vector from there to its end.
+        Beginning of each segment, to the right and down, and the vector from it to its end.
     along : ndarray, shape (S,)
         Length of the line before the segment; different lines are far apart.
     line : ndarray of int, shape (S,)
@@ -71,12 +71,12 @@ class Segments(NamedTuple):
         return segment, self.along[segment] + share * np.sqrt(square)
 
 
-def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Segments | None:
+def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) -> Segments | None:
     """Return the segments of the lines of a picture, None without lines.
 
     Parameters
     ----------
-    parts : sequence of Part
+    parts : sequence of SeenMesh
         Meshes that the picture shows.
     pixels : Pixels
         Pixels that show them.
@@ -114,7 +114,7 @@ def segments_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Seg
 
 
 class Strokes(NamedTuple):
-    """What a reader sees of strokes whose data have a sense.
+    """Strokes as a reader sees them, of data that have a sense.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
     lines : Segments
         Lines of the picture.
     seen : SeenPicture
-        What the eye sees of the picture.
+        The picture as the eye sees it.
     eye : Eye
         Eye.
     """
@@ -168,7 +168,7 @@ def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
     Parameters
     ----------
     seen : SeenPicture
-        What the eye sees of the picture.
+        The picture as the eye sees it.
     covered : ndarray of bool, shape (H, W)
         Pixels of lines and glyphs.
     eye : Eye
@@ -195,15 +195,15 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     """Return the structure that a reader sees around each pixel: the grain of marks and textures.
 
     It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
-    across the direction in which the colours change most. What changes over more than the window,
-    such as shading, is no grain.
+    across the direction in which the colours change most. Changes over more than the window, such
+    as shading, are no grain.
 
     Parameters
     ----------
     seen : SeenPicture
-        What the eye sees of the picture.
+        The picture as the eye sees it.
     eye : Eye
-        Eye, whose noise is added to each pixel.
+        Eye: its noise is added to each pixel.
     seed : int
         Seed of the noise.
 
@@ -257,7 +257,7 @@ class Glyphs(NamedTuple):
     reach: Array
 
 
-def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyphs | None:
+def glyphs_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) -> Glyphs | None:
     """Return the glyphs of a picture, None without glyphs; as for :func:`segments_of`."""
     cells: list[Cells] = []
     numbers: list[Indices] = []
@@ -283,7 +283,7 @@ def glyphs_of(parts: Sequence[Part], pixels: Pixels, camera: pv.Camera) -> Glyph
     return Glyphs(shown, turned_shown, np.nan_to_num(middle), unit_rows(way), reach)
 
 
-def _turned(part: Part) -> tuple[Cells, Array, Array]:
+def _turned(part: SeenMesh) -> tuple[Cells, Array, Array]:
     """Return glyphs turned round about their middles, the middles, and the ends ahead of them."""
     assert part.glyph is not None
     assert part.inputs.tangents is not None
@@ -306,7 +306,7 @@ def _turned(part: Part) -> tuple[Cells, Array, Array]:
 
 
 def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:
-    """Return what each pixel of a picture shows by numbers of the cells of parts, else -1."""
+    """Return the number of the cell of a part that each pixel of a picture shows, else -1."""
     width, height = pixels.size
     shown = np.full((height, width), -1, dtype=np.intp)
     for part, number in enumerate(numbers):

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from vizlight.observers.figures import Figure
     from vizlight.observers.lines import Glyphs, Segments
     from vizlight.observers.readers import Colors, Reading
-    from vizlight.observers.samples import Part, Sample
+    from vizlight.observers.samples import Sample, SeenMesh
 
 #: Largest number of places at which normals are read, each among 900 or more.
 NORMALS = 1024
@@ -82,12 +82,12 @@ GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "
 
 
 @dataclass(frozen=True)
-class Places:
+class SeenPlaces:
     """Places of one mesh in the picture.
 
     Attributes
     ----------
-    part : Part
+    part : SeenMesh
         Mesh.
     here, right, up : Sample
         Data at the places, and a pixel beside and above or below them.
@@ -102,12 +102,12 @@ class Places:
     course : ndarray, shape (M,)
         Directions of single tangents in the picture in degrees, from right toward up.
     thing : ndarray of int, shape (M,)
-        Numbers of what is seen as a whole, ``NO_THING`` on surfaces.
+        Numbers of the things seen as a whole, ``NO_THING`` on surfaces.
     length : ndarray, shape (M,), or None
         Lengths in pixels at which glyphs are seen.
     """
 
-    part: Part
+    part: SeenMesh
     here: Sample
     right: Sample
     up: Sample
@@ -119,7 +119,7 @@ class Places:
     thing: Indices
     length: Array | None = None
 
-    def take(self, rows: Bools | Indices) -> Places:
+    def take(self, rows: Bools | Indices) -> SeenPlaces:
         """Return some of the places."""
         return dataclasses.replace(
             self, here=self.here.take(rows), right=self.right.take(rows), up=self.up.take(rows),
@@ -150,7 +150,7 @@ class Places:
 
 def measure(
     picture: Array,
-    parts: Sequence[Part],
+    parts: Sequence[SeenMesh],
     camera: pv.Camera,
     *,
     size_mm: float,
@@ -167,7 +167,7 @@ def measure(
     ----------
     picture : ndarray, shape (H, W, 3)
         sRGB values from 0 to 1.
-    parts : sequence of Part
+    parts : sequence of SeenMesh
         Meshes that the picture shows.
     camera : pyvista.Camera
         Camera of the picture.
@@ -180,9 +180,9 @@ def measure(
     seed : int
         Seed of the places and of the noise.
     occluders : sequence of vtkActor
-        What hides the meshes.
+        Actors that hide the meshes.
     notes : sequence of str
-        What is left out already.
+        Notes on data that are left out already.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def measure(
                 glyph = places.thing - (len(parts) << 40)
                 places = dataclasses.replace(places, length=lengths[glyph])
             groups.append(places)
-    reader = _Reader(groups, seed, eye, list(notes))
+    reader = _PictureReader(groups, seed, eye, list(notes))
     figures = reader.figures()
     answers = ahead[np.isfinite(ahead)]
     if lines is not None:
@@ -239,7 +239,7 @@ def measure(
 
 
 class _Seen(NamedTuple):
-    """What a reader has of a picture."""
+    """A picture as a reader has it."""
 
     pixels: Pixels
     number: Indices
@@ -250,7 +250,7 @@ class _Seen(NamedTuple):
     tensor: Array
     random: np.random.Generator
 
-    def places(self, part: Part, ids: Indices) -> Places:
+    def places(self, part: SeenMesh, ids: Indices) -> SeenPlaces:
         """Return the places of some pixels, all of which show one mesh."""
         pixels, camera = self.pixels, self.camera
         chosen = pixels.take(ids)
@@ -265,7 +265,7 @@ class _Seen(NamedTuple):
         if here.tangents is not None and here.has_one_tangent:
             way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
             course = np.degrees(np.arctan2(-way[:, 1], way[:, 0]))
-        return Places(
+        return SeenPlaces(
             part=part, here=here, right=right, up=up, colors=colors, course=course,
             apart=(beside[0] != ids) & (beside[1] != ids), thing=self.thing[ids],
             unit=footprint(camera, here.points, pixels.size[1]),
@@ -291,9 +291,13 @@ def toward(camera: pv.Camera) -> Vector:
 
 
 def _things(
-    pixels: Pixels, parts: Sequence[Part], lines: Segments | None, glyphs: Glyphs | None, eye: Eye
+    pixels: Pixels,
+    parts: Sequence[SeenMesh],
+    lines: Segments | None,
+    glyphs: Glyphs | None,
+    eye: Eye,
 ) -> Indices:
-    """Return numbers of what is seen as a whole: a point, a glyph, a piece of a line.
+    """Return numbers of the things seen as a whole: a point, a glyph, a piece of a line.
 
     Pixels of surfaces have none, ``NO_THING``.
     """
@@ -330,7 +334,7 @@ def _between(
 ) -> tuple[Indices, Indices]:  # fmt: skip
     """Return where a reader looks at pixels of a mesh: close by, but not beside another mesh.
 
-    What lies over a surface, such as lines, colours what is beside it; a reader looks between.
+    Things over a surface, such as lines, colour their surroundings; a reader looks between.
     Without a place within 10 arc minutes that is free of the other the pixel itself is taken.
     """
     row, column = pixels.row[ids], pixels.column[ids]
@@ -403,10 +407,10 @@ def _two_sided(answers: Array, remedy: str) -> Keywords:
     }
 
 
-class _Reader:
+class _PictureReader:
     """The figures of places, question by question."""
 
-    def __init__(self, groups: list[Places], seed: int, eye: Eye, notes: list[str]) -> None:
+    def __init__(self, groups: list[SeenPlaces], seed: int, eye: Eye, notes: list[str]) -> None:
         self.groups, self.eye, self.notes = groups, eye, notes
         self.random = np.random.default_rng(seed)
         # The key lies amid what it explains, since the light of near lamps depends on the place.
@@ -421,7 +425,7 @@ class _Reader:
         }  # fmt: skip
         return {name: function() for name, function in questions.items()}
 
-    def _with(self, question: str, has_it: Callable[[Places], bool]) -> list[Places]:
+    def _with(self, question: str, has_it: Callable[[SeenPlaces], bool]) -> list[SeenPlaces]:
         """Return the places where a question of light has an answer, and note those without."""
         lit = [p for p in self.groups if p.part.lit or p.part.by_axes]
         some = [p for p in lit if has_it(p)]
@@ -433,9 +437,9 @@ class _Reader:
         return [p for p in kept if len(p.here)]
 
     def _common(
-        self, question: str, groups: list[Places], readings: list[Reading], lengths: Array
+        self, question: str, groups: list[SeenPlaces], readings: list[Reading], lengths: Array
     ) -> Keywords:
-        """Return what all figures of matched colours have, and find the scale."""
+        """Return the common part of all figures of matched colours, and find the scale."""
         error = _errors(readings)
         bits = readers.bits_told(readings)
         right = error <= TOLERANCE[question]
@@ -453,7 +457,7 @@ class _Reader:
             "reason": self._reason(question, groups, lengths) if unread else "",
         }
 
-    def _reason(self, question: str, groups: list[Places], lengths: Array) -> str:
+    def _reason(self, question: str, groups: list[SeenPlaces], lengths: Array) -> str:
         """Return why a question is unreadable."""
         finite = lengths[np.isfinite(lengths)]
         minutes = 60 / self.eye.pixels_per_degree
@@ -478,7 +482,7 @@ class _Reader:
         return "the colours do not follow the data as the key says; choose a light or a map for it"
 
     def direction(self) -> Direction | None:
-        """Return which way tangents run in the picture, by hue or by form: what tells more."""
+        """Return which way tangents run in the picture, by hue or by form, whichever tells more."""
         by_hue = self._with("direction", lambda p: not p.part.by_form and p.here.has_one_tangent)
         some = [p for p in self.groups if p.part.by_form and p.here.has_one_tangent]
         by_form = _kept(some, lambda p: p.here.valid)
@@ -566,7 +570,7 @@ class _Reader:
 
     def value(self) -> Value | None:
         """Return values as they are read off the bar."""
-        groups: list[Places] = []
+        groups: list[SeenPlaces] = []
         places: list[Array] = []
         for p in self.groups:
             if p.part.values is None or p.part.table is None:
@@ -620,7 +624,7 @@ class _Reader:
                     figures.append(Speed(**self._ranked(length, signal, [p])))
         return max(figures, key=lambda each: each.bits, default=None)
 
-    def _ranked(self, magnitude: Array, signal: Array, groups: list[Places]) -> Keywords:
+    def _ranked(self, magnitude: Array, signal: Array, groups: list[SeenPlaces]) -> Keywords:
         """Return the figures of a magnitude that a signal ranks."""
         bits = readers.mutual_information(magnitude, signal)
         right = readers.ranked_error(magnitude, signal) <= TOLERANCE["rank"]
@@ -635,7 +639,7 @@ class _Reader:
         }
 
 
-def _once(places: Places) -> Places:
+def _once(places: SeenPlaces) -> SeenPlaces:
     """Return one place of each point and glyph, which has one colour, and all of the others."""
     whole = places.part.kind == "point" or places.part.glyph is not None
     if not whole:
@@ -643,7 +647,7 @@ def _once(places: Places) -> Places:
     return places.take(np.unique(places.thing, return_index=True)[1])
 
 
-def _kept(groups: list[Places], rule: Callable[[Places], Bools]) -> list[Places]:
+def _kept(groups: list[SeenPlaces], rule: Callable[[SeenPlaces], Bools]) -> list[SeenPlaces]:
     """Return the places that a rule keeps, of the meshes that have any."""
     return [places for places in (p.take(rule(p)) for p in groups) if len(places.here)]
 
@@ -723,6 +727,6 @@ def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
     return np.asarray((values < table.scalar_range[0]) & bool(is_apart))
 
 
-def _table(places: Places) -> pv.LookupTable:
+def _table(places: SeenPlaces) -> pv.LookupTable:
     assert places.part.table is not None
     return places.part.table

@@ -135,7 +135,7 @@ def visible(
     size : (int, int)
         Width and height in pixels.
     occluders : sequence of vtkActor
-        What hides cells and has none.
+        Actors without cells that hide cells.
 
     Returns
     -------
@@ -190,7 +190,7 @@ def frame_of(window: vtkRenderWindow) -> Bytes:
 def in_pixels(camera: pv.Camera, size: tuple[int, int], points: Array) -> Array:
     """Return where points are in a picture, in pixels from its upper left, to the right and down.
 
-    What is behind the eye has no place in the picture: NaN.
+    Points behind the eye have no place in the picture: NaN.
     """
     width, height = size
     places, front = in_view(camera, width / height, points)
@@ -224,7 +224,7 @@ def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
 def _actor(
     mesh: Cells, start: int, shift: int, camera: pv.Camera, height: int
 ) -> vtkActor:  # fmt: skip
-    """Return a mesh whose cells have their numbers, from 1, as flat colours; 0 is background."""
+    """Return a mesh with the numbers of its cells, from 1, as flat colours; 0 is background."""
     points, shown = mesh.points, mesh.corners
     number = np.arange(start + 1, start + 1 + len(shown)) >> shift
     if mesh.diameter is not None:

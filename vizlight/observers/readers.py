@@ -1,7 +1,7 @@
-"""Readers of a picture: what colours mean by a key, and how much they tell of the data.
+"""Readers of a picture: the meaning of colours by a key, and how much they tell of the data.
 
 A reader matches the colour that the eye has of a place with the colours of a key, knows the noise
-of the eye, and answers with what is likeliest. It knows no normal, no lamp and no formula of light.
+of the eye, and gives the likeliest answer. It knows no normal, no lamp and no formula of light.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def colors_at(
 ) -> Colors:  # fmt: skip
     """Return the colours that a reader has of pixels, with the noise of the eye.
 
-    The eye mixes what is small with the background and with what is beside it. A reader knows the
-    background, and takes off its share, by which the noise grows. What is beside a point adds as
+    The eye mixes small things with the background and with their neighbours. A reader knows the
+    background, and takes off its share, by which the noise grows. The neighbours of a point add as
     much as colours differ in the picture, for all that is drawn but ``share``, its own share of
     each channel. Lines run beside others like them.
     """
@@ -120,8 +120,8 @@ class Reading(NamedTuple):
     candidates : int
         Number of candidates.
     other_error, other_truth : ndarray
-        The same, compared with the data of other places, at random: what guessing gives where data
-        are alike.
+        The same, compared with the data of other places, at random: the result of guessing where
+        data are alike.
     """
 
     error: Array
@@ -150,7 +150,7 @@ def likelihood(colors: Colors, tables: Array) -> Array:
     colors : Colors
         Colours of M places.
     tables : ndarray, shape (L, A, 3)
-        Colours of the candidates in CIELAB, each in any of L lights, whose likelihoods are summed.
+        Colours of the candidates in CIELAB, each in any of L lights, with their likelihoods summed.
     """
     logarithms = np.empty((len(colors.lab), tables.shape[1]))
     for rows, each in _in_lights(colors, tables):
@@ -162,7 +162,7 @@ def likelihood(colors: Colors, tables: Array) -> Array:
 
 
 def _in_lights(colors: Colors, tables: Array) -> Iterator[tuple[Indices, Array]]:
-    """Yield rows of places, and the logarithms of likelihoods there, shape (rows, L, A)."""
+    """Yield rows of places, and the logarithms of their likelihoods, shape (rows, L, A)."""
     lights, count, _ = tables.shape
     precision = 1 / colors.deviation**2
     square = (precision * colors.lab**2).sum(axis=1, keepdims=True)
@@ -202,7 +202,7 @@ def of_truth(logarithms: Array, *truths: Indices) -> Array:
 def _compared(
     error: Array, other_error: Array, logarithms: Array, right: Indices, other: Indices
 ) -> Reading:
-    """Return answers compared with what is right at their places, and at the other places."""
+    """Return answers compared with the truth at their places, and at the other places."""
     truth, other_truth = of_truth(logarithms, right, right[other])
     return Reading(error, truth, logarithms.shape[1], other_error, other_truth)
 
@@ -211,7 +211,7 @@ def information(readings: list[Reading]) -> float:
     """Return the bits that a picture tells of candidates that are equally likely before.
 
     It is ``log2(A) + E[log2(q)]``, q the probability that the reader gives to the right one of A
-    candidates: what a reader believes counts only as far as it is true (logarithmic score, Good
+    candidates: the reader's belief counts only as far as it is true (logarithmic score, Good
     1952). The reader knows how far the picture is to be trusted, so that the best sharpness and
     the best share of lapses are taken; with lapses alone the bits are 0.
     """
@@ -225,7 +225,7 @@ def information(readings: list[Reading]) -> float:
 
 
 def bits_told(readings: list[Reading]) -> float:
-    """Return the bits that a picture tells of its places, beyond what all places have in common."""
+    """Return the bits that a picture tells of its places, beyond those common to all places."""
     return max(
         0.0, information(readings) - information([reading.elsewhere for reading in readings])
     )
@@ -323,7 +323,7 @@ def _single(sample: Sample) -> Array:
 
 
 def _nearest(sample: Sample, middle: Array, count: int) -> Sample:
-    """Return the place nearest to the middle, some times: lamps shine there as on a key."""
+    """Return the place nearest to the middle, some times: lamps shine on it as on a key."""
     nearest = np.argmin(((sample.points - middle) ** 2).sum(axis=1))
     return sample.take(np.full(count, nearest))
 
@@ -372,8 +372,8 @@ def read_heading(
 def read_axes(sample: Sample, middle: Array, colors: Colors) -> Reading:
     """Return the answers of a reader who knows the course of lines, and hues of the axes.
 
-    A hue is that of up to four directions. Lightness and chroma tell nothing, since light and what
-    is between lines, dark or white, are mixed with the hues.
+    A hue is that of up to four directions. Lightness and chroma tell nothing, since light and the
+    ground between lines, dark or white, are mixed with the hues.
 
     Parameters
     ----------
@@ -428,7 +428,7 @@ def _along(sample: Sample, middle: Array, colors: Colors, tables: Array) -> Read
 
 
 def _light_in_frame(sample: Sample, middle: Array, ways: Array) -> Array:
-    """Return the light of lines at the middle whose directions are in the frame of the eye."""
+    """Return the light of lines at the middle, with directions in the frame of the eye."""
     place = _nearest(sample, middle, len(ways))
     axes = np.stack([place.right, place.up, place.eye], axis=1)
     return place.light(np.einsum("ij,ijk->ik", ways, axes)[:, np.newaxis], None)
@@ -438,7 +438,7 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
     """Return the answers of a reader who matches colours with a ball.
 
     The candidates are even on the disc that a ball shows, so that each is as likely as it is large
-    in a picture of all normals. Tangents, if there are any, may have any direction.
+    in a picture of all normals. Tangents, if any, may have any direction.
 
     Parameters
     ----------
@@ -576,7 +576,7 @@ def rank_correlation(a: Array, b: Array) -> float:
 def mutual_information(magnitude: Array, signal: Array) -> float:
     """Return the bits that a signal tells of a magnitude, both in classes of equal count.
 
-    Fewer than 1024 places tell less than there is: of n, classes of the signal are ``n / 32``. The
+    Fewer than 1024 places tell less than all: of n, classes of the signal are ``n / 32``. The
     bias of a sample of n is taken off: ``(joint - rows - columns + 1) / (2 n ln 2)``, of the
     numbers of classes that occur (Miller 1955).
     """
@@ -597,9 +597,9 @@ def mutual_information(magnitude: Array, signal: Array) -> float:
 
 
 def ranked_error(magnitude: Array, signal: Array) -> Array:
-    """Return how far ranks of a magnitude are from what a calibrated reader of a signal answers.
+    """Return how far ranks of a magnitude are from the answers of a calibrated reader of a signal.
 
-    The reader answers with the median rank of the places whose signal is in the same class.
+    The reader answers with the median rank of the places with a signal in the same class.
     """
     rank = (ranks(magnitude) - 0.5) / len(magnitude)
     count = min(SIGNALS, max(2, len(signal) // EACH))

@@ -1,4 +1,4 @@
-"""Places of a picture with the data there, and the light of what they might be."""
+"""Places of a picture with their data, and the light of the data that they might have."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ TIME, GLYPH = "IntegrationTime", "GlyphVector"
 
 @dataclass(frozen=True, kw_only=True)
 class Sample:
-    """Some places of a picture on one mesh: where they are, and what is there.
+    """Some places of a picture on one mesh: where they are, and their data.
 
     Attributes
     ----------
     kind : {"surface", "line", "point"}
-        What is seen.
+        Kind of the mesh.
     points : ndarray, shape (M, 3)
         Places.
     eye, right, up : ndarray, shape (M, 3)
@@ -90,7 +90,7 @@ class Sample:
 
     @property
     def has_one_tangent(self) -> bool:
-        """Whether there is a single tangent at each place."""
+        """Whether each place has a single tangent."""
         return self.tangents is not None and self.tangents.shape[1] == 1
 
     def inputs(
@@ -113,12 +113,12 @@ class Sample:
         return np.repeat(result.luminance[:, np.newaxis].astype(np.float64), 3, axis=1)
 
 
-def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
-    """Return places of a picture with the data that are interpolated there.
+def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
+    """Return places of a picture with the data that are interpolated at them.
 
     Parameters
     ----------
-    part : Part
+    part : SeenMesh
         Mesh.
     pixels : Pixels
         Pixels that show the mesh.
@@ -157,7 +157,7 @@ def sample(part: Part, pixels: Pixels, camera: pv.Camera) -> Sample:
     )  # fmt: skip
 
 
-def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
+def _tangents(part: SeenMesh, ids: Indices, places: Places) -> Array | None:
     """Return tangents interpolated as a picture has them, zero where one has no direction.
 
     Vectors are interpolated linearly; lines without sign, and planes, are turned alike before.
@@ -174,7 +174,7 @@ def _tangents(part: Part, ids: Indices, places: Places) -> Array | None:
     return unit_rows(frames[:, 0])[:, np.newaxis] if is_single else frames
 
 
-def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array | None:
+def _normals(part: SeenMesh, ids: Indices, places: Places, points: Array) -> Array | None:
     """Return interpolated normals, turned to the side that is lit; zero without a direction."""
     sides = part.inputs.sides
     if sides is None or part.inputs.normals is None:
@@ -186,24 +186,24 @@ def _normals(part: Part, ids: Indices, places: Places, points: Array) -> Array |
 
 
 @dataclass(frozen=True, kw_only=True)
-class Part:
+class SeenMesh:
     """One mesh of the picture.
 
     Attributes
     ----------
     kind : {"surface", "line", "point"}
-        What its cells are.
+        Kind of its cells.
     mesh : pyvista.DataSet
         Mesh.
     cells : ndarray of int, shape (C, s)
         Triangles, segments or points.
     inputs : ShadingInputs
         Points, tangents and normals. A surface has normals also where its light does not depend
-        on them: they are what a reader sees as its shape.
+        on them: a reader sees them as its shape.
     options : ShadingOptions
         How the mesh is lit.
     scene : Scene
-        Scene with a view, whose light the colours of the picture mean.
+        Scene with a view: the colours of the picture mean its light.
     lit : bool
         Whether the colours of the picture mean light.
     values : ndarray, shape (N,), or None
@@ -258,8 +258,8 @@ class Part:
 
 def part_on(
     mesh: pv.DataSet, scene: Scene, options: LightOptions, path: str = "", **more: Given
-) -> Part:
-    """Return what the meter needs of a mesh in the light of a scene.
+) -> SeenMesh:
+    """Return the part that the meter needs of a mesh in the light of a scene.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ def part_on(
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
     ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells, inputs, options)
-    return Part(
+    return SeenMesh(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
         glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
     )  # fmt: skip
@@ -318,7 +318,7 @@ def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
     """Return the numbers of the glyphs that cells belong to.
 
     VTK writes the points of one glyph after those of another, as many of each. In another mesh,
-    such as one whose sharp edges are split, glyphs of equal vectors count as one.
+    such as one with split sharp edges, glyphs of equal vectors count as one.
     """
     vectors = np.asarray(mesh.point_data[GLYPH])
     starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
@@ -445,7 +445,7 @@ def weights(corners: Array, origin: Array, way: Array) -> Array:
 
 
 def flattened(vectors: Array, way: Array) -> Array:
-    """Return what of vectors stands across unit directions."""
+    """Return the part of vectors that stands across unit directions."""
     return np.asarray(vectors - dots(vectors, way)[:, np.newaxis] * way)
 
 

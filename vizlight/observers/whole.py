@@ -1,4 +1,4 @@
-"""What a plotter shows, for the meter: its picture, its meshes, and what hides them."""
+"""The picture of a plotter for the meter: its pixels, its meshes, and actors that hide them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkMapper, vtkProperty, vtkRenderer
 
     from vizlight._types import Array, Foreign, Keywords, Raw
-    from vizlight.observers.samples import Part
+    from vizlight.observers.samples import SeenMesh
 
 #: Width in mm, pixels per inch and distance in mm of a picture in print.
 PRINT = 85.0, 300.0, 400.0
@@ -46,19 +46,19 @@ HIDES = 0.5
 
 
 class Shown(NamedTuple):
-    """What a renderer shows.
+    """Picture of a renderer.
 
     Attributes
     ----------
-    parts : list of Part
+    parts : list of SeenMesh
         Meshes that can be read.
     occluders : list of vtkActor
-        What hides them.
+        Actors that hide them.
     notes : list of str
-        What is not read.
+        Data that are not read.
     """
 
-    parts: list[Part]
+    parts: list[SeenMesh]
     occluders: list[vtkActor]
     notes: list[str]
 
@@ -75,7 +75,7 @@ def legibility_of(
     samples: int = 4096,
     seed: int = 0,
 ) -> Legibility:
-    """Return what a reader can read back from the picture of a plotter, with all that it shows.
+    """Return how much a reader can read back from the whole picture of a plotter.
 
     Parameters
     ----------
@@ -140,9 +140,9 @@ def reading(
 
 
 def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) -> Shown:
-    """Return what a renderer shows that can be read, and what hides it.
+    """Return the readable meshes of a renderer, and the actors that hide them.
 
-    An actor that cannot be picked is no data: it hides what is behind it.
+    An actor that cannot be picked is no data: it hides meshes behind it.
     """
     shown = Shown([], [], [])
     # Supersampling draws a picture that many times as wide and shrinks it.
@@ -176,7 +176,7 @@ def _point_width(style: vtkProperty, pixel: float) -> float:
     return max(1.0, share * style.GetPointSize() / pixel)
 
 
-def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Part | None:
+def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> SeenMesh | None:
     """Return a mesh with light of vizlight as a part."""
     mesh, table = live.source.mesh, actor.GetMapper().GetLookupTable()
     if live.n != 3:
@@ -225,7 +225,7 @@ def moved(
 
 
 def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
-    """Return the mesh of a mapper of PyVista whose colours may mean values, or axes of lines."""
+    """Return the mesh of a mapper of PyVista with colours that may mean values or axes of lines."""
     glyphs = isinstance(mapper, vtkGlyph3DMapper)
     mesh = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
     if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
@@ -276,8 +276,8 @@ def _colored(
     mesh: pv.DataSet | None,
     name: str | None,
     diameter: float | None = None,
-) -> Part | None:
-    """Return a mesh whose colours mean values, or nothing on lines, as a part."""
+) -> SeenMesh | None:
+    """Return a mesh with colours that mean values, or nothing on lines, as a part."""
     mapper = actor.GetMapper()
     if mesh is None:
         return None
@@ -292,7 +292,7 @@ def _colored(
 
 
 def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
-    """Return what the colours of an array mean: values and their table, axes, or nothing."""
+    """Return the meaning of the colours of an array: values and their table, axes, or nothing."""
     if name is None or name not in (*mesh.point_data, *mesh.cell_data):
         return {}
     flat = isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data
@@ -323,7 +323,7 @@ def _by_axes(mesh: pv.DataSet, colors: Raw) -> bool:
 
 
 def _occluder(actor: vtkActor, pixel: float) -> vtkActor:
-    """Return a black copy of an actor, which hides what is behind it and has no cells."""
+    """Return a black copy of an actor, which hides meshes behind it and has no cells."""
     mapper = vtkDataSetMapper()
     mapper.SetInputData(actor.GetMapper().GetInput())
     mapper.ScalarVisibilityOff()

@@ -187,7 +187,7 @@ def _tried(piece: Piece, reader: Callable[[], T]) -> T | None:
         raise PieceError(f"piece {piece.name}: {error}") from error
 
 
-def look(piece: Piece, job: Job) -> sides.Look | None:
+def look(piece: Piece, job: Job) -> sides.PartFacts | None:
     """Return the facts of a piece about the sides of the whole, None where its light has none."""
     mesh = _target(piece, job, job.ghost)
     options = LightOptions.of(job.options)

@@ -3,7 +3,7 @@
 The plugin for ParaView, 5.11 or newer with Python 3.10, NumPy 1.24 and SciPy 1.10, is the filter
 *Vizlight Illuminate*. Its properties are the light, the tangents (point arrays of 3 components),
 conditioning, the material and the eye. ``vizlight paraview`` prints the paths of its files and how
-to start ParaView with their folder on PYTHONPATH: the ``sitecustomize.py`` there lets ParaView's
+to start ParaView with their folder on PYTHONPATH: its ``sitecustomize.py`` lets ParaView's
 Python find vizlight, and none of the packages beside it::
 
     PYTHONPATH=FOLDER paraview

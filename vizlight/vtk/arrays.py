@@ -39,8 +39,8 @@ class GridPoints:
         self._dimensions = dimensions(grid)
         if isinstance(grid, vtkImageData):
             # It has the directions of the axes too, as of a scanner, beside origin and spacing.
-            own = grid.GetIndexToPhysicalMatrix()
-            matrix = np.array([[own.GetElement(i, j) for j in range(4)] for i in range(3)])
+            place = grid.GetIndexToPhysicalMatrix()
+            matrix = np.array([[place.GetElement(i, j) for j in range(4)] for i in range(3)])
             self._place: Callable[[Indices], Array] = lambda ijk: (
                 (ijk + low) @ matrix[:, :3].T + matrix[:, 3]
             )
@@ -72,7 +72,7 @@ def points_of(mesh: Dataset, positions: str | None) -> ArraySource:
 
 
 def named(data: vtkDataSetAttributes, name: str) -> AnyArray | None:
-    """Return an array of the points or the cells of a dataset, None if there is none."""
+    """Return an array of the points or the cells of a dataset, None if it has none of the name."""
     array = data.GetAbstractArray(name)
     return None if array is None else as_numpy(array)
 
@@ -86,15 +86,15 @@ def array_of(
 ) -> Array:
     """Return a point array of real numbers, from its name or from an array with those values.
 
-    A cell array is an error. Errors name the arrays whose number of components is among ``sizes``,
-    if there are any.
+    A cell array is an error. Errors name the arrays with a number of components among ``sizes``, if
+    any.
 
     Raises
     ------
     TypeError
         If the array does not hold real numbers.
     ValueError
-        If there is no such array, its shape is wrong, or it is a cell array.
+        If the mesh has no such array, its shape is wrong, or it is a cell array.
     """
     if isinstance(value, str):
         _check.text(name, value, expected="the name of a point array")
@@ -124,8 +124,8 @@ def _real_rows(name: str, array: Array, what: str) -> Array:
 
 def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Array:
     data = mesh.GetPointData()
-    if (found := named(data, value)) is not None:
-        return found
+    if (of_points := named(data, value)) is not None:
+        return of_points
     if mesh.GetCellData().HasArray(value):
         remedy = "call mesh.cell_data_to_point_data()"
         raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
@@ -135,8 +135,8 @@ def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Arra
         for array in there
         if (array.GetNumberOfComponents() in sizes if sizes else array.GetNumberOfComponents() > 1)
     ]
-    known = ", ".join(fitting) or "none"
-    raise ValueError(_check.message(name, f"the name of a point array ({known})", repr(value)))
+    names = ", ".join(fitting) or "none"
+    raise ValueError(_check.message(name, f"the name of a point array ({names})", repr(value)))
 
 
 def vectors_of(mesh: Dataset, name: str, value: object, n: int) -> Array:
@@ -179,9 +179,9 @@ def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Arra
     k = _checked_tangents(argument, value, rows, n).shape[1] // n
     # Opposite tangents of two cells are one line, but would cancel in a mean of vectors.
     products = means(mesh, line_fields.outer(rows.reshape(-1, k, n)).reshape(-1, n * n))
-    found, _ = line_fields.principal(products.reshape(-1, n, n), k)
+    directions, _ = line_fields.principal(products.reshape(-1, n, n), k)
     kind = rows.dtype if rows.dtype in (np.float32, np.float64) else np.float64
-    return found.reshape(-1, k * n).astype(kind)
+    return directions.reshape(-1, k * n).astype(kind)
 
 
 def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
@@ -209,7 +209,7 @@ def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
     if are_colors(rows):
         return np.rint(means(mesh, rows)).astype(np.uint8)
     kinds, number = np.unique(rows, axis=0, return_inverse=True)
-    found = np.zeros((mesh.GetNumberOfPoints(), *rows.shape[1:]), rows.dtype)
+    values = np.zeros((mesh.GetNumberOfPoints(), *rows.shape[1:]), rows.dtype)
     pairs, cell = [], 0
     for cells in cell_arrays(_explicit(mesh)):
         ids, ends = connectivity(cells)
@@ -221,8 +221,8 @@ def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
         point, kind = np.divmod(both, len(kinds))
         # The last of each point is the most frequent, and the least number among those.
         order = np.lexsort((-kind, count, point))
-        found[point[order]] = kinds[kind[order]]
-    return found
+        values[point[order]] = kinds[kind[order]]
+    return values
 
 
 def are_colors(rows: AnyArray) -> bool:
@@ -231,7 +231,7 @@ def are_colors(rows: AnyArray) -> bool:
 
 
 def _explicit(mesh: Dataset) -> Dataset:
-    """Return a dataset whose cells name their points, without arrays."""
+    """Return a dataset with cells that name their points, without arrays."""
     if isinstance(mesh, vtkPolyData | vtkUnstructuredGrid):
         return mesh
     only: Foreign = mesh.NewInstance()
@@ -239,8 +239,8 @@ def _explicit(mesh: Dataset) -> Dataset:
     append = vtkAppendFilter()
     append.SetInputData(only)
     append.Update()
-    found: vtkUnstructuredGrid = append.GetOutput()
-    return found
+    explicit: vtkUnstructuredGrid = append.GetOutput()
+    return explicit
 
 
 def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Array:

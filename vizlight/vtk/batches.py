@@ -52,7 +52,7 @@ class Batch(NamedTuple):
     block : ndarray of int, shape (n_points,)
         Place in ``numbers`` of the dataset of each point.
     owner : vtkPolyData or None
-        First dataset, as long as whose points what is computed of all may be kept.
+        First dataset: results of all may be kept as long as its points.
     """
 
     mesh: Dataset
@@ -112,12 +112,12 @@ class _Member(NamedTuple):
 def _kind(
     number: int, mesh: Foreign, names: Sequence[str], kept: Sequence[str]
 ) -> tuple[object, _Member | None]:
-    """Return what datasets that are joined have in common, None for one that stays alone."""
+    """Return the key that datasets to be joined have in common, None for one that stays alone."""
     data = point_data(mesh)
     if not 0 < n_points(mesh) <= SMALL or any(data.HasArray(name) for name in kept):
         return None, None
     if isinstance(mesh, vtkPolyData):
-        cells = [own(mesh) for count, own in POLYDATA if count(mesh)]
+        cells = [get_cells(mesh) for count, get_cells in POLYDATA if count(mesh)]
         kind = _of_surface(mesh)
     elif isinstance(mesh, vtkUnstructuredGrid):
         cells, kind = [grid_cells(mesh)], _of_grid(mesh)
@@ -177,9 +177,9 @@ def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:
     if not alike or not np.isfinite(rows).all() or not rows.any(axis=1).all():
         return None
     whole: Foreign = vtkPolyData() if isinstance(model.mesh, vtkPolyData) else vtkUnstructuredGrid()
-    own = vtkPoints()
-    own.SetData(as_vtk(points))
-    whole.SetPoints(own)
+    places = vtkPoints()
+    places.SetData(as_vtk(points))
+    whole.SetPoints(places)
     by_kind = zip(*(member.cells for member in members), strict=True)
     cells = [_cells(of_kind, first) for of_kind in by_kind]
     if isinstance(model.mesh, vtkPolyData):
@@ -200,15 +200,15 @@ def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:
 
 
 def _cells(parts: Sequence[vtkCellArray], first: Indices) -> vtkCellArray:
-    """Return the cells of several datasets, whose points begin at some places, as one."""
-    found = vtkCellArray()
+    """Return the cells of several datasets, with points that begin at some places, as one."""
+    joined = vtkCellArray()
     ids = [as_numpy(cells.GetConnectivityArray()) for cells in parts]
-    start = np.repeat(first, [len(own) for own in ids])
+    start = np.repeat(first, [len(each) for each in ids])
     corners = as_vtk(np.concatenate(ids) + start)
     size, *others = {cells.IsHomogeneous() for cells in parts}
     if size > 0 and not others:
-        found.SetData(size, corners)
-        return found
+        joined.SetData(size, corners)
+        return joined
     sizes = [np.diff(as_numpy(cells.GetOffsetsArray())) for cells in parts]
-    found.SetData(as_vtk(np.cumsum(np.append(0, np.concatenate(sizes)))), corners)
-    return found
+    joined.SetData(as_vtk(np.cumsum(np.append(0, np.concatenate(sizes)))), corners)
+    return joined

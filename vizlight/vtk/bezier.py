@@ -1,4 +1,4 @@
-"""Cells of Bezier as cells of Lagrange, whose nodes lie on the surface of the mesh."""
+"""Cells of Bezier as cells of Lagrange, with nodes on the surface of the mesh."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
     control = places(grid).astype(np.float64)
     of_points = point_data(grid).GetAttribute(_WEIGHTS)
     weights = np.ones(len(control)) if of_points is None else as_numpy(of_points).reshape(-1)
-    found, plain = control.copy(), _without_weights(grid)
+    points_out, plain = control.copy(), _without_weights(grid)
     for cells in _alike(grid, types, np.diff(ends), np.flatnonzero(curved)):
         shares = _shares(plain.GetCell(int(cells[0])))
         corners = ids[ends[cells][:, np.newaxis] + np.arange(len(shares))]
-        own = weights[corners][..., np.newaxis]
+        shares_of = weights[corners][..., np.newaxis]
         # A rational point is the mean of the control points by weight times Bernstein polynomial.
-        sums = np.einsum("ij,mjk->mik", shares, own * control[corners])
-        found[corners] = sums / np.einsum("ij,mjk->mik", shares, own)
+        sums = np.einsum("ij,mjk->mik", shares, shares_of * control[corners])
+        points_out[corners] = sums / np.einsum("ij,mjk->mik", shares, shares_of)
     out = vtkUnstructuredGrid()
     out.ShallowCopy(grid)
     points = vtkPoints()
-    points.SetData(as_vtk(found))
+    points.SetData(as_vtk(points_out))
     out.SetPoints(points)
     kinds = np.where(curved, types - VTK_BEZIER_CURVE + VTK_LAGRANGE_CURVE, types)
     out.SetCells(as_vtk(kinds.astype(np.uint8)), grid_cells(grid))
@@ -67,7 +67,7 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
 
 
 def _without_weights(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
-    """Return a copy whose shape functions are the Bernstein polynomials alone."""
+    """Return a copy with the Bernstein polynomials alone as shape functions."""
     plain = vtkUnstructuredGrid()
     plain.ShallowCopy(grid)
     point_data(plain).SetActiveAttribute(-1, _WEIGHTS)

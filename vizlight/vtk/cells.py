@@ -64,39 +64,39 @@ def as_numpy(array: vtkAbstractArray) -> AnyArray:
     """Return the values of an array of VTK, without a copy where its memory has their order."""
     if isinstance(array, vtkStringArray):
         return np.array([array.GetValue(i) for i in range(array.GetNumberOfValues())], dtype=str)
-    own: Foreign = array
+    dense: Foreign = array
     # Variants and the like have no type in NumPy; their shape is enough, since whoever asks for
     # numbers refuses the type object.
     if not isinstance(array, vtkDataArray):
         return np.empty((array.GetNumberOfTuples(), array.GetNumberOfComponents()), dtype=object)
     if array.IsA("vtkBitArray"):
         # VTK packs bits eight to a byte, in which NumPy cannot index.
-        own = vtkUnsignedCharArray()
-        own.DeepCopy(array)
+        dense = vtkUnsignedCharArray()
+        dense.DeepCopy(array)
     elif not array.HasStandardMemoryLayout():
         # Components that are stored apart, or values that are computed, are no rows in memory.
-        own = vtkDataArray.CreateDataArray(array.GetDataType())
-        own.DeepCopy(array)
-    found: AnyArray = _SUPPORT.vtk_to_numpy(own)
-    return found
+        dense = vtkDataArray.CreateDataArray(array.GetDataType())
+        dense.DeepCopy(array)
+    values: AnyArray = _SUPPORT.vtk_to_numpy(dense)
+    return values
 
 
 def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:
     """Return an array of VTK with a copy of some values."""
     # VTK has no truth values of one byte.
-    own = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
+    plain = rows.view(np.uint8) if rows.dtype == np.bool_ else rows
     # Values in the byte order of another machine are swapped as they are assigned below.
-    kind = own.dtype.newbyteorder("=")
+    kind = plain.dtype.newbyteorder("=")
     # Twice as fast as VTK's own way, which counts where there are many small meshes.
     array: Foreign = vtkDataArray.CreateDataArray(_vtk_type(kind))
     array.SetName(name)
-    array.SetNumberOfComponents(1 if own.ndim == 1 else own.shape[1])
-    array.SetNumberOfTuples(len(own))
-    if own.size:
+    array.SetNumberOfComponents(1 if plain.ndim == 1 else plain.shape[1])
+    array.SetNumberOfTuples(len(plain))
+    if plain.size:
         values: AnyArray = np.frombuffer(array, dtype=kind)
-        values.reshape(own.shape)[...] = own
-    made: vtkDataArray = array
-    return made
+        values.reshape(plain.shape)[...] = plain
+    result: vtkDataArray = array
+    return result
 
 
 def places(mesh: Foreign) -> AnyArray:
@@ -143,15 +143,15 @@ def faces_only(mesh: vtkPolyData) -> vtkPolyData:
     return bare_faces(mesh, None if first is None else first == np.arange(len(first)))
 
 
-def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
+def finite_faces(surface: vtkPolyData, chosen: Bools | None = None) -> vtkPolyData:
     """Return a surface without its polygons that have a corner which is not finite.
 
     VTK would take such a corner, as of a hole in a terrain, into the normals of its neighbours.
-    With ``own``, a mask of points, only the polygons that have one of them are left.
+    With ``chosen``, a mask of points, only the polygons that have one of them are left.
     """
-    known = finite_points(places(surface))
+    finite = finite_points(places(surface))
     polys = surface.GetPolys()
-    if (known.all() and own is None) or not polys.GetNumberOfCells():
+    if (finite.all() and chosen is None) or not polys.GetNumberOfCells():
         return surface
     ids, offsets = connectivity(polys)
 
@@ -160,7 +160,7 @@ def finite_faces(surface: vtkPolyData, own: Bools | None = None) -> vtkPolyData:
         # polygon.
         return np.diff(np.concatenate([[0], np.cumsum(points[ids])])[offsets]) > 0
 
-    return bare_faces(surface, ~some(~known) if own is None else ~some(~known) & some(own))
+    return bare_faces(surface, ~some(~finite) if chosen is None else ~some(~finite) & some(chosen))
 
 
 def finite_points(points: Raw) -> Bools:
@@ -181,11 +181,11 @@ def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
         ends = np.concatenate([[0], np.cumsum(size[kept])])
         polys = vtkCellArray()
         polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
-    found = vtkPolyData()
-    found.SetPoints(surface.GetPoints())
-    found.SetStrips(surface.GetStrips())
-    found.SetPolys(polys)
-    return found
+    bare = vtkPolyData()
+    bare.SetPoints(surface.GetPoints())
+    bare.SetStrips(surface.GetStrips())
+    bare.SetPolys(polys)
+    return bare
 
 
 def first_twins(cells: vtkCellArray) -> Indices | None:
@@ -212,8 +212,8 @@ def firsts(numbers: NDArray[np.uint64]) -> Indices | None:
     if not np.any(ordered[1:] == ordered[:-1]):
         return None
     del ordered
-    _, first, own = np.unique(numbers, return_index=True, return_inverse=True)
-    return np.asarray(first[own.reshape(-1)], dtype=np.intp)
+    _, first, inverse = np.unique(numbers, return_index=True, return_inverse=True)
+    return np.asarray(first[inverse.reshape(-1)], dtype=np.intp)
 
 
 #: Factors of the finaliser of splitmix64.
@@ -224,16 +224,16 @@ def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
     x = (x ^ (x >> np.uint64(30))) * _MIX[0]
     x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    found: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return found
+    result: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
+    return result
 
 
 def used(surface: vtkPolyData) -> Bools:
     """Return whether each point is a corner of a face."""
-    found = np.zeros(surface.GetNumberOfPoints(), dtype=np.bool_)
+    is_used = np.zeros(surface.GetNumberOfPoints(), dtype=np.bool_)
     for ids, _ in faces(surface):
-        found[ids] = True
-    return found
+        is_used[ids] = True
+    return is_used
 
 
 def triangles(surface: vtkPolyData) -> Indices:
@@ -251,9 +251,9 @@ def triangles(surface: vtkPolyData) -> Indices:
     split.PassLinesOff()
     split.SetInputData(surface)
     split.Update()
-    found = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
+    corners = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
     # VTK's are twice as long, and go with the filter.
-    return found.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
+    return corners.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
 
 
 def drawn_triangles(surface: vtkPolyData) -> tuple[Indices, Indices]:
@@ -280,13 +280,13 @@ def drawn_triangles(surface: vtkPolyData) -> tuple[Indices, Indices]:
     split = vtkTriangleFilter()
     split.SetInputData(rest)
     split.Update()
-    found = split.GetOutput()
-    corners = connectivity(found.GetPolys())[0].reshape(-1, 3)
-    own = as_numpy(found.GetCellData().GetArray("number"))
+    output = split.GetOutput()
+    corners = connectivity(output.GetPolys())[0].reshape(-1, 3)
+    numbers = as_numpy(output.GetCellData().GetArray("number"))
     halves = np.flatnonzero(is_quad)
     return (
         np.concatenate([corners, quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]),
-        np.concatenate([own, halves, halves]),
+        np.concatenate([numbers, halves, halves]),
     )
 
 
@@ -296,7 +296,7 @@ def _halves(quads: Indices, points: Raw) -> Indices | None:
     They have its shorter diagonal in common. None where the halves by one of its diagonals turn
     away from each other: such a quadrilateral is dented or folded.
     """
-    found = np.empty((len(quads), 6), dtype=np.int32 if len(points) < 2**31 else np.intp)
+    corners = np.empty((len(quads), 6), dtype=np.int32 if len(points) < 2**31 else np.intp)
     columns = np.ascontiguousarray(points.T, dtype=np.float64)
     for block in _pool.blocks(len(quads), 1 << 15):
         at = np.ascontiguousarray(quads[block].T)
@@ -308,13 +308,13 @@ def _halves(quads: Indices, points: Raw) -> Indices | None:
         # First the halves by the diagonal from the second corner, then those by the other diagonal.
         if not (np.all(across > dots[1] * dots[3]) and np.all(across > dots[0] * dots[2])):
             return None
-        one, other = c - a, d - b
-        shorter = kernels.dot(one, one) < kernels.dot(other, other)
+        diagonal, other = c - a, d - b
+        shorter = kernels.dot(diagonal, diagonal) < kernels.dot(other, other)
         p, q, r, s = at
         halves = p, q, np.where(shorter, r, s), np.where(shorter, p, q), r, s
-        for column, corner in zip(found[block].T, halves, strict=True):
+        for column, corner in zip(corners[block].T, halves, strict=True):
             column[:] = corner
-    return found.reshape(-1, 3)
+    return corners.reshape(-1, 3)
 
 
 #: Number of corners of a quadrilateral.
@@ -331,7 +331,7 @@ POLYDATA: tuple[tuple[Callable[[Foreign], int], Callable[[Foreign], vtkCellArray
 
 
 def cell_arrays(mesh: Foreign) -> list[vtkCellArray]:
-    """Return the cells of a mesh by kind; none of a grid, whose cells name no points."""
+    """Return the cells of a mesh by kind; none of a grid, since its cells name no points."""
     if isinstance(mesh, vtkPolyData):
         return [cells(mesh) for count, cells in POLYDATA if count(mesh)]
     cells = grid_cells(mesh) if isinstance(mesh, vtkUnstructuredGrid) else None

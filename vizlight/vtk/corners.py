@@ -73,7 +73,7 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
     of random points, 0.8 on even grids of quads and 1.05 of triangles, 0.85 on isosurfaces through
     even voxels and 1.02 through voxels 5 times as long. It is up to 1.45 on grids sheared by 2,
     1.6 where points are off by more than surfaces bend, and 1.9 where planes end in narrow strips,
-    as at rounded edges of parts: there weights by area are better.
+    as at rounded edges of parts: weights by area are better for those.
 
     Parameters
     ----------
@@ -185,9 +185,9 @@ CORNERS_APART = 0.7
 def crease_share(counts: Indices) -> Array:
     """Return the share of sharp edges where these are creases, else 0.
 
-    Creases stand apart: few edges are nearly as sharp. On a coarse mesh of a smooth shape there
-    are more of those, and no edge is meant to be seen. ``counts`` are
-    :attr:`.orientation.Shape.edges`, and each block has a share of its own.
+    Creases stand apart: few edges are nearly as sharp. A coarse mesh of a smooth shape has more of
+    those, and no edge is meant to be seen. ``counts`` are the ``edges`` of a
+    :class:`.orientation.SurfaceShape`, and each block has a share of its own.
     """
     beyond, share, nearly = (counts[..., 1:] / np.maximum(counts[..., :1], 1)).T
     apart = (beyond >= MANY_SHARP) & (share - beyond <= CORNERS_APART * beyond)
@@ -237,16 +237,16 @@ def split_faces(
         return np.ones(len(a), dtype=np.bool_) if lone is None else lone[a] & lone[b]
 
     alike = True
-    for own, one, other, a, b, against in _neighbours(len(points), ids, ends, twins):
+    for members, this, other, a, b, against in _neighbours(len(points), ids, ends, twins):
         # The normal of one of two faces that are wound against each other is turned to compare
         # them.
         cosine = np.einsum("ij,ij->i", unit[a], unit[b])
         smooth = np.where(against, cosine, -cosine) > least
         alike = alike and bool(against[sided(a, b)].all())
         # Both corners of a pair are at the same point, so that each point is split by itself.
-        a, b = one[smooth], other[smooth]
-        root[own] = own[
-            components(np.minimum(a, b), np.maximum(a, b), len(own), kind=root.dtype.type)
+        a, b = this[smooth], other[smooth]
+        root[members] = members[
+            components(np.minimum(a, b), np.maximum(a, b), len(members), kind=root.dtype.type)
         ]
     if twins is not None:
         # A twin may begin at another corner or run the other way round: only the first face of its
@@ -259,11 +259,11 @@ def split_faces(
         edges = []
         for _, _, _, a, b, against in _neighbours(len(points), ids, ends, twins):
             # Each pair is met at both ends of its edge.
-            known = (a < b) & sided(a, b)
+            met_once = (a < b) & sided(a, b)
             # The other side of a face has its number beyond those of all faces.
-            edges.append((a[known], np.where(against, b, b + count)[known]))
-        one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
-        up, down = double_cover(one, other, count)
+            edges.append((a[met_once], np.where(against, b, b + count)[met_once]))
+        this, other = (np.concatenate(each) for each in zip(*edges, strict=True))
+        up, down = double_cover(this, other, count)
         # The copies that agree with the first face of their piece as it is have the lower number.
         turned = up > down
     return *numbered(root, ids, len(points)), turned
@@ -280,31 +280,31 @@ def _neighbours(
     sizes = np.diff(ends)
     size = int(sizes[0]) if len(sizes) and sizes.min() == sizes.max() else 0
     for block in _pool.blocks(count, EDGES // 16):
-        own = np.flatnonzero((ids >= block.start) & (ids < block.stop))
+        place = np.flatnonzero((ids >= block.start) & (ids < block.stop))
         # With as many corners each, faces begin at regular places.
-        face = own // size if size else np.searchsorted(ends, own, side="right") - 1
+        face = place // size if size else np.searchsorted(ends, place, side="right") - 1
         begin, end = ends[face], ends[face + 1]
-        after = ids[np.where(own + 1 < end, own + 1, begin)]
-        before = ids[np.where(own > begin, own, end) - 1]
+        after = ids[np.where(place + 1 < end, place + 1, begin)]
+        before = ids[np.where(place > begin, place, end) - 1]
         # Each corner has an edge ahead of it and one behind it.
-        at, toward = np.tile(ids[own], 2), np.concatenate([after, before])
-        known = at != toward
+        at, toward = np.tile(ids[place], 2), np.concatenate([after, before])
+        has_edge = at != toward
         if twins is not None:
             # A face that is there again would make each of its edges one of several faces, which
             # joins none of them.
-            known &= np.tile(twins[face] == face, 2)
-        rows = np.flatnonzero(known)
+            has_edge &= np.tile(twins[face] == face, 2)
+        rows = np.flatnonzero(has_edge)
         key = at[rows].astype(np.int64) << 32 | toward[rows]
         order = np.argsort(key, kind="stable")
         key, rows = key[order], rows[order]
         new = np.concatenate([[True], key[1:] != key[:-1], [True, True]])
         pair = np.flatnonzero(new[:-3] & ~new[1:-2] & new[2:-1])
-        one, other = rows[pair], rows[pair + 1]
-        ahead, onward = one < len(own), other < len(own)
-        one, other = np.where(ahead, one, one - len(own)), np.where(onward, other, other - len(own))
+        a, b = rows[pair], rows[pair + 1]
+        ahead, onward = a < len(place), b < len(place)
+        a, b = np.where(ahead, a, a - len(place)), np.where(onward, b, b - len(place))
         # Faces that are wound alike run along their common edge against each other.
         against = ahead != onward
-        yield own, one, other, face[one], face[other], against
+        yield place, a, b, face[a], face[b], against
 
 
 def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
@@ -321,7 +321,7 @@ def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
 
 
 def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]:
-    """Return the points of corners, of which those of one root are one, and what each point was.
+    """Return the points of corners, one for each root, and the earlier number of each point.
 
     The first of the roots at a point has that point; others come after all points.
 
@@ -335,13 +335,13 @@ def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]
         Number of points before.
     """
     roots = np.flatnonzero(root == np.arange(len(root), dtype=root.dtype))
-    own = ids[roots]
+    of_root = ids[roots]
     # The first root keeps the row of its point, so that arrays of the old points stay valid there.
     first = np.zeros(len(roots), dtype=np.bool_)
-    first[np.unique(own, return_index=True)[1]] = True
+    first[np.unique(of_root, return_index=True)[1]] = True
     place = np.empty(len(root), dtype=root.dtype)
-    place[roots] = np.where(first, own, count - 1 + np.cumsum(~first))
-    return place[root], np.concatenate([np.arange(count), own[~first]])
+    place[roots] = np.where(first, of_root, count - 1 + np.cumsum(~first))
+    return place[root], np.concatenate([np.arange(count), of_root[~first]])
 
 
 #: Share of the longest side of a triangle up to which another side joins its ends, and of the
@@ -379,22 +379,22 @@ def slivers_of(rows: Indices, squares: Sequence[Array], longest: Array) -> Slive
     """
     limit = NEAR * NEAR * longest
     near = [np.flatnonzero(square <= limit) for square in squares]
-    one = np.concatenate([rows[at, i] for i, at in enumerate(near)])
+    this = np.concatenate([rows[at, i] for i, at in enumerate(near)])
     other = np.concatenate([rows[at, i - 1] for i, at in enumerate(near)])
-    return Slivers(np.minimum(one, other), np.maximum(one, other), longest[np.concatenate(near)])
+    return Slivers(np.minimum(this, other), np.maximum(this, other), longest[np.concatenate(near)])
 
 
 def faces_of_three(surface: vtkPolyData) -> Indices:
     """Return the corners of the polygons of three corners, shape (n, 3)."""
     ids, offsets = connectivity(surface.GetPolys())
     first = offsets[:-1][np.diff(offsets) == 3]
-    found: Indices = ids[first[:, np.newaxis] + np.arange(3)]
-    return found
+    corners: Indices = ids[first[:, np.newaxis] + np.arange(3)]
+    return corners
 
 
 def all_slivers(points: Raw, triangles: Indices) -> list[Slivers]:
     """Return the slivers among triangles."""
-    found = []
+    slivers = []
     for block in _pool.blocks(len(triangles), BLOCK):
         rows = triangles[block]
         corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
@@ -402,11 +402,11 @@ def all_slivers(points: Raw, triangles: Indices) -> list[Slivers]:
             sides = [corners[i] - corners[i - 1] for i in range(3)]
             squares = [kernels.dot(side, side) for side in sides]
             longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
-            found.append(slivers_of(rows, squares, longest))
-    return found
+            slivers.append(slivers_of(rows, squares, longest))
+    return slivers
 
 
-def joined(points: Raw, found: list[Slivers]) -> Indices | None:
+def joined(points: Raw, slivers: list[Slivers]) -> Indices | None:
     """Return the first of the points that slivers join with each.
 
     A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
@@ -416,16 +416,16 @@ def joined(points: Raw, found: list[Slivers]) -> Indices | None:
     Parameters
     ----------
     points : ndarray, shape (n_points, 3)
-    found : list of Slivers
+    slivers : list of Slivers
 
     Returns
     -------
     ndarray of int, shape (n_points,), or None
         None where no points are joined.
     """
-    if not found:
+    if not slivers:
         return None
-    lower, upper, longest = (np.concatenate(each) for each in zip(*found, strict=True))
+    lower, upper, longest = (np.concatenate(each) for each in zip(*slivers, strict=True))
     apart = lower != upper
     lower, upper, longest = lower[apart], upper[apart], longest[apart]
     if not len(lower):
@@ -483,6 +483,6 @@ def common_normals(
     # One point that differs, as at a sharp edge, leaves its whole group as it was.
     kept[first[apart]] = False
     chosen = several & kept[first]
-    found = normals.copy()
-    found[chosen] = common[chosen]
-    return found, np.where(chosen, first, np.arange(len(first)))
+    shared = normals.copy()
+    shared[chosen] = common[chosen]
+    return shared, np.where(chosen, first, np.arange(len(first)))

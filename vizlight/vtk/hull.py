@@ -123,16 +123,16 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     surface.GetPointData().RemoveArray(NUMBERS)
     if not curved:
         return surface, ids
-    own = as_numpy(surface.GetCellData().GetArray(NUMBERS))
+    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))
     surface.GetCellData().RemoveArray(NUMBERS)
     if isinstance(mesh, vtkUnstructuredGrid):
         # Cells are numbered by VTK's kinds: vertices and lines first.
-        own = own[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
-        surface.SetPolys(_outward(surface, mesh, own))
+        cells = cells[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
+        surface.SetPolys(_outward(surface, mesh, cells))
     return _merged(surface, ids)
 
 
-def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, own: Indices) -> vtkCellArray:
+def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) -> vtkCellArray:
     """Return the polygons of a surface, those of solid cells facing away from the cells' middles.
 
     VTK winds the faces of quadratic wedges and hexahedra now this way, now that way.
@@ -141,20 +141,20 @@ def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, own: Indices) -> v
     start, size = offsets[:-1], np.diff(offsets)
     first = [ids[start + i] for i in range(3)] if len(size) else [ids] * 3
     a, b, c = (places(surface)[corner].astype(np.float64) for corner in first)
-    middles = _middles(grid)[own]
+    middles = _middles(grid)[cells]
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles) < 0
     # One by one, since the array of all types has another name in each version of VTK.
-    turned = np.unique(own[inward])
+    turned = np.unique(cells[inward])
     solid = {kind for kind in cell_types(grid) if _dimension(kind) == _SOLID}
     fills = [grid.GetCellType(cell) in solid for cell in turned.tolist()]
-    inward &= np.isin(own, turned[np.array(fills, dtype=np.bool_)])
+    inward &= np.isin(cells, turned[np.array(fills, dtype=np.bool_)])
     # The corners of a polygon from its last to its first, or as they are.
     along = np.arange(len(ids)) - np.repeat(start, size)
     back = np.repeat(size, size) - 1 - along
     order = np.repeat(start, size) + np.where(np.repeat(inward, size), back, along)
-    found = vtkCellArray()
-    found.SetData(as_vtk(offsets), as_vtk(ids[order]))
-    return found
+    polygons = vtkCellArray()
+    polygons.SetData(as_vtk(offsets), as_vtk(ids[order]))
+    return polygons
 
 
 def _middles(grid: vtkUnstructuredGrid) -> Array:
@@ -167,30 +167,30 @@ def _middles(grid: vtkUnstructuredGrid) -> Array:
 
 
 def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
-    """Return a surface whose faces share their points: VTK gives each curved face its own."""
-    own, first, number = np.unique(ids, return_index=True, return_inverse=True)
-    found = vtkPolyData()
-    found.SetPoints(vtkPoints())
-    found.GetPoints().SetData(as_vtk(places(surface)[first]))
+    """Return a surface with faces that share their points: VTK gives each curved face its own."""
+    points, first, number = np.unique(ids, return_index=True, return_inverse=True)
+    merged = vtkPolyData()
+    merged.SetPoints(vtkPoints())
+    merged.GetPoints().SetData(as_vtk(places(surface)[first]))
     for get, put in (
-        (surface.GetVerts, found.SetVerts),
-        (surface.GetLines, found.SetLines),
-        (surface.GetPolys, found.SetPolys),
+        (surface.GetVerts, merged.SetVerts),
+        (surface.GetLines, merged.SetLines),
+        (surface.GetPolys, merged.SetPolys),
     ):
         corners, offsets = connectivity(get())
         cells = vtkCellArray()
         cells.SetData(as_vtk(offsets), as_vtk(number.reshape(-1)[corners]))
         put(cells)
-    found.GetCellData().ShallowCopy(surface.GetCellData())
-    found.GetFieldData().ShallowCopy(surface.GetFieldData())
+    merged.GetCellData().ShallowCopy(surface.GetCellData())
+    merged.GetFieldData().ShallowCopy(surface.GetFieldData())
     data = surface.GetPointData()
     for i in range(data.GetNumberOfArrays()):
         # Arrays of words have no rows of numbers, and are no data of a point of a picture.
         if (array := data.GetArray(i)) is not None:
-            at = found.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
+            at = merged.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
             if (kind := data.IsArrayAnAttribute(i)) >= 0:
-                found.GetPointData().SetActiveAttribute(at, kind)
-    return found, own
+                merged.GetPointData().SetActiveAttribute(at, kind)
+    return merged, points
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
@@ -200,9 +200,9 @@ def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
 
 def scattered(rows: AnyArray, origin: Indices, count: int) -> AnyArray:
     """Return an array of all points of a mesh from one of its surface; other rows are zero."""
-    found = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
-    found[origin] = rows
-    return found
+    out = np.zeros((count, *rows.shape[1:]), dtype=rows.dtype)
+    out[origin] = rows
+    return out
 
 
 #: Number of points of a part. Its surface takes some 200 bytes for each of them.
@@ -211,7 +211,7 @@ PART = 1 << 14
 FEW = 1 / 16
 
 
-class Part(NamedTuple):
+class GridPart(NamedTuple):
     """The outer surface of some layers of a grid, with the layer before and the one after them.
 
     Attributes
@@ -230,7 +230,7 @@ class Part(NamedTuple):
 
 
 def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
-    """Return whether a mesh is a grid, all of it seen, whose surface takes much memory."""
+    """Return whether a mesh is a grid, all of it seen, with a surface that takes much memory."""
     if not isinstance(mesh, vtkImageData | vtkRectilinearGrid | vtkStructuredGrid):
         return False
     size = np.array(dimensions(mesh))
@@ -245,7 +245,7 @@ def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
     return not any(data.HasArray(GHOSTS) for data in (mesh.GetPointData(), mesh.GetCellData()))
 
 
-def parts(mesh: Grid) -> Iterator[Part]:
+def parts(mesh: Grid) -> Iterator[GridPart]:
     """Yield the surface of a grid by layers across its longest axis."""
     size = dimensions(mesh)
     # Of axes of equal length the last: the later the axis, the longer the stretches of memory.
@@ -256,17 +256,17 @@ def parts(mesh: Grid) -> Iterator[Part]:
         stop = min(start + layers, count)
         low, high = max(start - 1, 0), min(stop + 1, count)
         # A layer more on either side: normals and borders at the cut are then those of the whole.
-        surface, own = outer_surface(_layers(mesh, axis, low, high))
+        surface, ids = outer_surface(_layers(mesh, axis, low, high))
         # The number of a point in the layers becomes its number in the grid: VTK's first index
         # varies fastest.
         inner = (*size[:axis], high - low, *size[axis + 1 :])
-        index = list(np.unravel_index(own, inner, order="F"))
+        index = list(np.unravel_index(ids, inner, order="F"))
         index[axis] = layer = index[axis] + low
         side = (layer >= stop).astype(np.int8) - (layer < start)
         # The cut itself makes faces too: those between points of the added layers alone are no
         # surface of the grid.
         around = finite_faces(surface, side == 0)
-        yield Part(around, np.ravel_multi_index(index, size, order="F"), side)
+        yield GridPart(around, np.ravel_multi_index(index, size, order="F"), side)
 
 
 def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:

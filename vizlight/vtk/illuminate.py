@@ -49,19 +49,19 @@ class _Option:
         self.__doc__ = f"Option ``{name}`` of light, as for :func:`vizlight.illuminate`."
         words = "".join(word.capitalize() for word in name.split("_"))
         # Methods as all filters of VTK have them, by which wrappers and scripts set properties.
-        setattr(owner, f"Get{words}", lambda own: getattr(own, name))
-        setattr(owner, f"Set{words}", lambda own, value: setattr(own, name, value))
+        setattr(owner, f"Get{words}", lambda algorithm: getattr(algorithm, name))
+        setattr(owner, f"Set{words}", lambda algorithm, value: setattr(algorithm, name, value))
 
-    def __get__(self, own: Illuminate | None, owner: type) -> Foreign:
-        return self if own is None else getattr(own.options, self.name)
+    def __get__(self, algorithm: Illuminate | None, owner: type) -> Foreign:
+        return self if algorithm is None else getattr(algorithm.options, self.name)
 
-    def __set__(self, own: Illuminate, value: object) -> None:
+    def __set__(self, algorithm: Illuminate, value: object) -> None:
         if self.name in _NAMES and value is not None:
             _check.text(self.name, value, expected="the name of a point array")
         if self.name == "name":
             _check.array_name("name", value)
         changes: Keywords = {self.name: value}
-        own._change("_options", dataclasses.replace(own.options, **changes))
+        algorithm._change("_options", dataclasses.replace(algorithm.options, **changes))
 
 
 class Illuminate(VTKPythonAlgorithmBase):
@@ -79,8 +79,8 @@ class Illuminate(VTKPythonAlgorithmBase):
     Raises
     ------
     TypeError, ValueError
-        If a value does not fit, when it is set. What does not fit the data is an error of VTK
-        (``ErrorEvent``) when they come, and the output is then empty.
+        If a value does not fit, when it is set. A value that does not fit the data is an error of
+        VTK (``ErrorEvent``) when they come, and the output is then empty.
 
     See Also
     --------
@@ -97,7 +97,7 @@ class Illuminate(VTKPythonAlgorithmBase):
 
     Where a pipeline runs in several pieces, light does not depend on the cut: ``facing="auto"``
     then means ``"eye"``, which lights both sides alike if the scene has no view, ``"outward"`` is
-    an error, and ``luminance_valid`` is always there. Normals that come from data, such as the
+    an error, and ``luminance_valid`` is always written. Normals that come from data, such as the
     gradient of a contoured field, need nothing else. Normals of faces, which contours of
     unstructured grids have too, need a layer of ghost cells that the pieces have before they are
     contoured: where the filter itself computes them without any, it warns.
@@ -145,14 +145,14 @@ class Illuminate(VTKPythonAlgorithmBase):
         components: bool = False,
         precision: Precision | None = None,
     ) -> None:
-        asked = LightOptions.of(locals())
+        options = LightOptions.of(locals())
         super().__init__(  # type: ignore[no-untyped-call]
             nInputPorts=1, nOutputPorts=1, inputType="vtkDataSet", outputType="vtkDataSet"
         )
         self._scene: Scene | None = None
         self._options = LightOptions()
         self.scene = scene
-        for option, value in asked.changed().items():
+        for option, value in options.changed().items():
             setattr(self, option, value)
 
     @property
@@ -192,7 +192,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         return output
 
     def prepare(self) -> None:
-        """Set what depends on others before the input is lit; here there is nothing."""
+        """Set options that depend on others before the input is lit; this filter has none."""
 
     def _change(self, name: str, value: object) -> None:
         """Set an attribute; the filter runs again if its value has changed."""
@@ -200,45 +200,45 @@ class Illuminate(VTKPythonAlgorithmBase):
             setattr(self, name, value)
             self.Modified()
 
-    def RequestDataObject(self, _request: Foreign, given: Foreign, out: Foreign) -> int:
+    def RequestDataObject(self, _request: Foreign, inputs: Foreign, out: Foreign) -> int:
         """Make an output of the type of the input."""
-        data: vtkDataSet | None = vtkDataSet.GetData(given[0])
-        made: vtkDataSet | None = vtkDataSet.GetData(out)
+        data: vtkDataSet | None = vtkDataSet.GetData(inputs[0])
+        output: vtkDataSet | None = vtkDataSet.GetData(out)
         if data is None:
-            other = vtkDataObject.GetData(given[0])
+            other = vtkDataObject.GetData(inputs[0])
             kind = "nothing" if other is None else other.GetClassName()
             self._tell(
                 "ErrorEvent", _check.message("input", "a vtkDataSet or blocks of them", kind)
             )
             return 0
         # An output of the right type stays, so that whoever holds it sees each new run.
-        if made is None or made.GetClassName() != data.GetClassName():
+        if output is None or output.GetClassName() != data.GetClassName():
             information = out.GetInformationObject(0)
             information.Set(vtkDataObject.DATA_OBJECT(), data.NewInstance())
         return 1
 
-    def RequestData(self, _request: Foreign, given: Foreign, out: Foreign) -> int:
+    def RequestData(self, _request: Foreign, inputs: Foreign, out: Foreign) -> int:
         """Light the input."""
-        data, made = vtkDataSet.GetData(given[0]), vtkDataSet.GetData(out)
-        asked = out.GetInformationObject(0)
+        data, output = vtkDataSet.GetData(inputs[0]), vtkDataSet.GetData(out)
+        information = out.GetInformationObject(0)
         # 0 where nobody asked for pieces.
-        pieces = asked.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) or 1
+        pieces = information.Get(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES()) or 1
         try:
             self.prepare()
             arrays, record = self._lit(data, pieces)
         except (TypeError, ValueError) as error:
             # The light of an earlier run must not stay there as if it belonged to this input.
-            made.Initialize()
+            output.Initialize()
             self._tell("ErrorEvent", str(error))
             return 0
-        made.ShallowCopy(data)
+        output.ShallowCopy(data)
         for name, array in arrays.items():
-            made.GetPointData().AddArray(as_vtk(array, name))
-        made.GetPointData().SetActiveScalars(self.name)
+            output.GetPointData().AddArray(as_vtk(array, name))
+        output.GetPointData().SetActiveScalars(self.name)
         text = vtkStringArray()
         text.SetName(record_key(self.name))
         text.InsertNextValue(json.dumps(record))
-        made.GetFieldData().AddArray(text)
+        output.GetFieldData().AddArray(text)
         return 1
 
     def _lit(self, data: vtkDataSet, pieces: int) -> tuple[dict[str, Raw], dict[str, object]]:
@@ -266,7 +266,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         return arrays, record | {"arrays": digests}
 
     def _part(self, data: vtkDataSet, scene: Scene, pieces: int) -> Part:
-        """Return what a dataset is lit by, which is the same in one piece and in several."""
+        """Return the inputs of the light of a dataset, the same in one piece and in several."""
         options = self._options
         if not data.GetNumberOfPoints():
             # A piece without points may lack the arrays that the others have.
@@ -286,9 +286,9 @@ class Illuminate(VTKPythonAlgorithmBase):
         part = part_of(data, "", scene, options)
         # Tangents of lines and normals of faces depend on neighbours, which lie in other pieces at
         # the cut.
-        own = options.tangents is None and part.inputs.tangents is not None
+        of_lines = options.tangents is None and part.inputs.tangents is not None
         computed = part.sided is not None and part.sided.computed
-        if pieces > 1 and (own or computed) and not data.GetCellData().HasArray(GHOSTS):
+        if pieces > 1 and (of_lines or computed) and not data.GetCellData().HasArray(GHOSTS):
             self._tell("WarningEvent", _NO_GHOSTS)
         return part
 

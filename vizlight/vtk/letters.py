@@ -103,7 +103,7 @@ def _bezier(corners: list[Array], share: Array) -> Array:
 
 
 def _path(word: str) -> tuple[Array, Indices]:
-    """Return the control points of a word's outlines in pixels, and what each is."""
+    """Return the control points of a word's outlines in pixels, and the kind of each."""
     style, path = vtkTextProperty(), vtkPath()
     style.SetFontFamilyToArial()
     style.SetFontSize(SIZE)

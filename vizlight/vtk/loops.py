@@ -133,7 +133,7 @@ def find_directions(
 ) -> int:  # fmt: skip
     """Find the directions of triangles, and which have one; return the number of slivers.
 
-    Arrays but ``unit``, of shape (3, n), are flat. See :class:`~vizlight.vtk.orientation.Shape`.
+    Arrays but ``unit``, of shape (3, n), are flat. See :class:`.orientation.SurfaceShape`.
     """
     slivers = 0
     for face in range(len(full)):
@@ -143,11 +143,11 @@ def find_directions(
         d, e, f = points[k] - px, points[k + 1] - py, points[k + 2] - pz
         x, y, z, size = _unit(b * f - c * e, c * d - a * f, a * e - b * d)
         unit[0, face], unit[1, face], unit[2, face] = x, y, z
-        one, other = a * a + b * b + c * c, d * d + e * e + f * f
+        first, other = a * a + b * b + c * c, d * d + e * e + f * f
         third = (d - a) ** 2 + (e - b) ** 2 + (f - c) ** 2
-        longest = max(one, other, third)
+        longest = max(first, other, third)
         full[face] = size > narrowest * longest
-        slivers += min(one, other, third) <= near * near * longest
+        slivers += min(first, other, third) <= near * near * longest
     return slivers
 
 
@@ -156,22 +156,22 @@ def survey(
     sums: Array, bend: Array, least: NDArray[np.float32], points: Raw, ids: Indices,
     normals: Array, finite: Bools, full: Bools, piece: Indices, middle: Array, largest: float,
 ) -> None:  # fmt: skip
-    """Add the triangles of a surface up; see :meth:`~vizlight.vtk.orientation.Shape.survey`.
+    """Add the triangles of a surface up; see :meth:`~vizlight.vtk.orientation.SurfaceShape.survey`.
 
     Rows of ``sums`` are volume, area and the area vector of each piece, those of ``middle`` its
     centroid; other arrays are flat.
     """
     at, place, way = np.empty(3, dtype=np.int64), np.empty((3, 3)), np.empty((3, 3))
     for face in range(len(full)):
-        known = True
+        valid = True
         for i in range(3):
             at[i] = ids[3 * face + i]
-            known = known and finite[at[i]]
+            valid = valid and finite[at[i]]
             for k in range(3):
                 place[i, k] = points[3 * at[i] + k]
-        if not known:
+        if not valid:
             continue
-        own = piece[at[0]]
+        number = piece[at[0]]
         a, b, c = (
             (place[1, 0] - place[0, 0]) / largest,
             (place[1, 1] - place[0, 1]) / largest,
@@ -184,15 +184,15 @@ def survey(
         )
         x, y, z = b * f - c * e, c * d - a * f, a * e - b * d
         p, q, r, size = _unit(x, y, z)
-        sums[own, 0] += (
-            (place[0, 0] - middle[own, 0]) / largest * x
-            + (place[0, 1] - middle[own, 1]) / largest * y
-            + (place[0, 2] - middle[own, 2]) / largest * z
+        sums[number, 0] += (
+            (place[0, 0] - middle[number, 0]) / largest * x
+            + (place[0, 1] - middle[number, 1]) / largest * y
+            + (place[0, 2] - middle[number, 2]) / largest * z
         )
-        sums[own, 1] += size
-        sums[own, 2] += x
-        sums[own, 3] += y
-        sums[own, 4] += z
+        sums[number, 1] += size
+        sums[number, 2] += x
+        sums[number, 3] += y
+        sums[number, 4] += z
         # Three times the way from each corner to the centre of its triangle.
         way[0, 0], way[0, 1], way[0, 2] = a + d, b + e, c + f
         way[1, 0], way[1, 1], way[1, 2] = d - 2 * a, e - 2 * b, f - 2 * c
@@ -212,16 +212,16 @@ def survey(
 def _sort(begin: Indices, keys: NDArray[np.int64], places: Indices, forward: Bools) -> None:
     """Sort the edges from each point on by their keys; those of one key stay in order."""
     for i in range(len(begin) - 1):
-        one, beyond = begin[i], begin[i + 1]
-        if beyond - one > _MANY:
-            order = one + np.argsort(keys[one:beyond], kind="mergesort")
-            own, whole, ahead = keys[order], places[order], forward[order]
-            keys[one:beyond], places[one:beyond], forward[one:beyond] = own, whole, ahead
+        low, beyond = begin[i], begin[i + 1]
+        if beyond - low > _MANY:
+            order = low + np.argsort(keys[low:beyond], kind="mergesort")
+            values, whole, ahead = keys[order], places[order], forward[order]
+            keys[low:beyond], places[low:beyond], forward[low:beyond] = values, whole, ahead
             continue
-        for j in range(one + 1, beyond):
+        for j in range(low + 1, beyond):
             key, place, way = keys[j], places[j], forward[j]
             k = j
-            while k > one and keys[k - 1] > key:
+            while k > low and keys[k - 1] > key:
                 keys[k], places[k], forward[k] = keys[k - 1], places[k - 1], forward[k - 1]
                 k -= 1
             keys[k], places[k], forward[k] = key, place, way

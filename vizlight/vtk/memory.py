@@ -1,4 +1,4 @@
-"""What was found out of a surface, kept as long as its points are."""
+"""Results of a surface, kept as long as its points are."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _LOCK = threading.Lock()
 
 
 def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData | None = None) -> T:
-    """Return what a function computes of the points and cells of a surface, computed once.
+    """Return the result of a function of the points and cells of a surface, computed once.
 
     It is kept for any mesh of the same points and cells, until the points of the surface are
     deleted, and nobody may change it.
@@ -51,20 +51,20 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     mesh : vtkDataSet
         Surface; for another kind of mesh nothing is kept.
     name : str
-        Name of what is computed.
+        Name of the result.
     compute : callable
         Function without arguments that computes it of points and cells alone.
     owner : vtkPolyData, optional
-        Surface in place of the mesh whose points bound the time.
+        Surface in place of the mesh: its points bound the time.
     """
     if not isinstance(mesh, vtkPolyData):
         return compute()
     # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
     key = name, *_digests(mesh)
     with _LOCK:
-        found = _KEPT.get(key)
-    if found is not None:
-        return cast("T", found.value)
+        entry = _KEPT.get(key)
+    if entry is not None:
+        return cast("T", entry.value)
     value = compute()
     points = vtkWeakReference()
     points.Set((mesh if owner is None else owner).GetPoints())
@@ -76,7 +76,7 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
 
 
 def _forget() -> None:
-    """Forget what is of deleted points, and the oldest things where there is too much."""
+    """Forget results of deleted points, and the oldest where they are too many."""
     for key in [key for key, kept in _KEPT.items() if kept.points.Get() is None]:
         del _KEPT[key]
     size = sum(kept.size for kept in _KEPT.values())
@@ -89,14 +89,14 @@ def _forget() -> None:
 def _digests(mesh: vtkPolyData) -> list[str]:
     """Return digests of the points and of the cells of each kind."""
     points = places(mesh)
-    found = [points.dtype.str, digest(points)]
+    texts = [points.dtype.str, digest(points)]
     for count, cells in POLYDATA:
         if count(mesh):
-            own = cells(mesh)
-            size = own.IsHomogeneous()
-            found.append(digest(as_numpy(own.GetConnectivityArray())))
+            cell_array = cells(mesh)
+            size = cell_array.IsHomogeneous()
+            texts.append(digest(as_numpy(cell_array.GetConnectivityArray())))
             # Cells of one size need no offsets, which VTK may hold as a rule alone.
-            found.append(f"{size}" if size > 0 else digest(as_numpy(own.GetOffsetsArray())))
+            texts.append(f"{size}" if size > 0 else digest(as_numpy(cell_array.GetOffsetsArray())))
         else:
-            found.append("")
-    return found
+            texts.append("")
+    return texts

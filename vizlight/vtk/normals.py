@@ -45,8 +45,8 @@ from vizlight.vtk.memory import once
 from vizlight.vtk.orientation import (
     MOST_LEAN,
     PartShape,
-    Shape,
     Sums,
+    SurfaceShape,
     sides_of,
     toward_eye,
 )
@@ -80,7 +80,7 @@ NEIGHBOURS = 12
 
 @dataclass(frozen=True)
 class Sided:
-    """Normals of the points of a mesh, and what tells which side of them is seen.
+    """Normals of the points of a mesh, and the facts that tell which side of them is seen.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Sided:
         Sine of the largest angle between a normal and a face around its point, negative where the
         surface is concave; see :meth:`leaning`. None: 0 everywhere.
     open : ndarray of int, shape (n_points,), or int
-        1 for points of pieces with a border, or whose faces have no common side, as in a Klein
+        1 for points of pieces with a border, or with faces that have no common side, as in a Klein
         bottle: either side may be seen. From 2 on the number of such a piece that is a height
         field; 0 for others.
     sharp : float or ndarray
@@ -122,19 +122,19 @@ class Sided:
         return bool(np.any(self.open)) if self.averted is None else len(self.averted) > 1
 
     def at(self, rows: Indices, /) -> Sided:
-        """Return the normals of some points, which may be there more than once."""
+        """Return the normals of some points, with repetitions if any."""
         lean = None if self.lean is None else self.lean[rows]
         border = self.open[rows] if isinstance(self.open, np.ndarray) else self.open
         return dataclasses.replace(self, vectors=self.vectors[rows], lean=lean, open=border)
 
     def of_blocks(self, chosen: Bools, rows: Indices) -> Sided:
         """Return the normals of some of several blocks, which have some of the points."""
-        own = self.at(rows)
-        if isinstance(own.sharp, np.ndarray):
-            own = dataclasses.replace(own, sharp=own.sharp[chosen])
-        if isinstance(own.inside, np.ndarray):
-            own = dataclasses.replace(own, inside=own.inside[chosen])
-        return own
+        part = self.at(rows)
+        if isinstance(part.sharp, np.ndarray):
+            part = dataclasses.replace(part, sharp=part.sharp[chosen])
+        if isinstance(part.inside, np.ndarray):
+            part = dataclasses.replace(part, inside=part.inside[chosen])
+        return part
 
     def of_block(self, number: int, rows: Slice) -> Sided:
         """Return the normals of one of several blocks, which has some of the points."""
@@ -172,7 +172,7 @@ class Sided:
     def averted_fields(self, points: ArraySource, view: View | None) -> Bools:
         """Return by the numbers of :attr:`open` the height fields that show an eye their back.
 
-        It is the side that takes up less of what the eye sees, by the sum of ``N . w / d^2`` over
+        It is the side that takes up less of the eye's view, by the sum of ``N . w / d^2`` over
         some of the points, with ``w`` the direction toward the eye and ``d`` the distance from it.
         Without a view they are seen from above.
         """
@@ -186,10 +186,10 @@ class Sided:
         number = np.broadcast_to(self.open, count)[some]
         # A height field shows an eye above it more of its upper side, whatever its borders do.
         shown = facing_of(self.vectors[some], points[some], view)
-        found: Bools = np.bincount(number, shown, most + 1) < 0
+        averted: Bools = np.bincount(number, shown, most + 1) < 0
         # Numbers 0 and 1 are no height fields: these are never turned, or point by point.
-        found[:2] = False
-        return found
+        averted[:2] = False
+        return averted
 
     def leaning(self, facing: Facing, averted: Bools, rows: Rows = slice(None)) -> Array | None:
         """Return the sine by which normals may lean away from an eye that sees their own side.
@@ -197,8 +197,8 @@ class Sided:
         Faces around a point are seen until the last of them is averted where the surface is convex,
         and no longer than the first where it is concave, but by
         :data:`~vizlight.vtk.orientation.MOST_LEAN` at most. On a height field under ``"auto"``
-        all that is seen of the side that an eye sees most of is lit on that side, and what is
-        seen of the other side, below a border, on the other. ``averted`` are
+        all visible parts of the side that an eye sees most of are lit on that side, and visible
+        parts of the other side, below a border, on the other. ``averted`` are
         :meth:`averted_fields`.
         """
         if self.lean is None:
@@ -210,12 +210,12 @@ class Sided:
         if facing != "auto" or not field.any():
             return limited
         # The side that shows most takes in what leans to it; the other side gives that up.
-        own = np.abs(lean)
-        return np.where(field, np.where(averted[number], -own, own), limited)
+        size = np.abs(lean)
+        return np.where(field, np.where(averted[number], -size, size), limited)
 
 
 class Told(NamedTuple):
-    """What the whole decides of the pieces of a part, see :mod:`vizlight.vtk.sides`.
+    """Decision of the whole about the pieces of a part, see :mod:`vizlight.vtk.sides`.
 
     Attributes
     ----------
@@ -226,7 +226,7 @@ class Told(NamedTuple):
     averted : ndarray of bool
         See :attr:`Sided.averted`.
     side : ndarray of int8, shape (n_points,), or None
-        See :attr:`Shape.side`; of the points of a mesh of cells that fill space.
+        See :attr:`SurfaceShape.side`; of the points of a mesh of cells that fill space.
     """
 
     sign: Array
@@ -236,7 +236,7 @@ class Told(NamedTuple):
 
 
 def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
-    """Return how much of what an eye sees shows it the side of each normal: ``N . w / d^2``."""
+    """Return how large the side of each normal appears to an eye: ``N . w / d^2``."""
     if view is None:
         shown = normals[:, 2]
     else:
@@ -261,17 +261,17 @@ class Turned:
 
     def __getitem__(self, rows: Rows, /) -> Array:
         """Return a slice of the normals."""
-        sided, own = self._sided, self._sided.vectors[rows]
+        sided, vectors = self._sided, self._sided.vectors[rows]
         lean = sided.leaning(self._facing, self._fields, rows)
-        averted = _averted(own, self._points[rows], self._view, lean)
+        averted = _averted(vectors, self._points[rows], self._view, lean)
         if self._facing == "auto":
             border = sided.open
             averted &= (border[rows] if isinstance(border, np.ndarray) else border) > 0
-        return np.where(averted[:, np.newaxis], -own, own)
+        return np.where(averted[:, np.newaxis], -vectors, vectors)
 
 
 def _averted(vectors: Array, points: Raw, view: View, lean: Array | None) -> Bools:
-    """Return the points whose normals point away from the eye, by more than they lean."""
+    """Return the points with normals that point away from the eye, by more than they lean."""
     toward = toward_eye(view, points)
     # Across the lean a normal of a coarse mesh points away while its faces are still seen: turning
     # it there would draw a dark rim.
@@ -292,49 +292,51 @@ def sided_normals(
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
     ``kept`` is a function of the mesh that returns normals of its surface which are known already,
-    or None. ``told`` is what the whole, of which the mesh is a part, decides of its sides.
+    or None. ``told`` is the decision of the whole, of which the mesh is a part, about its sides.
     ``block`` is the number of the block of each point, where the mesh is several.
 
     Raises
     ------
     TypeError, ValueError
-        If there are none, or an array does not fit.
+        If the mesh has none, or an array does not fit.
     """
-    given = given_normals(mesh, value, n)
-    if given is None:
+    vectors = given_normals(mesh, value, n)
+    if vectors is None:
         if facing == "as given":
             return computed_normals(mesh, as_wound=True, sides=False, block=block)
         if told is not None:
             return computed_normals(mesh, told=told)
         return (kept and kept(mesh)) or computed_normals(mesh, block=block)
     # Integers without a sign, such as normals in bytes, could not be turned over.
-    if given.dtype.kind != "f":
-        given = given.astype(np.float64)
+    if vectors.dtype.kind != "f":
+        vectors = vectors.astype(np.float64)
     # These two need no pieces; in n-space there is no order of corners that tells a side.
     if facing in ("eye", "as given") or n != 3:
-        return Sided(given)
+        return Sided(vectors)
     if told is None and hull.in_parts(mesh):
-        return _sided_grid(mesh, given)
+        return _sided_grid(mesh, vectors)
     surface, origin = _skin(mesh)
     if surface is None:
-        return Sided(given)
-    own = given if origin is None else given[origin]
+        return Sided(vectors)
+    on_surface = vectors if origin is None else vectors[origin]
     of = block if block is None or origin is None else block[origin]
     if told is None:
-        inward, border = _of_given(surface, own, of)
+        inward, border = _of_given(surface, on_surface, of)
         # Given normals agree with each other by themselves, so that a block counts as one piece.
-        number = sides_of(given, block, border)
+        number = sides_of(vectors, block, border)
     else:
         inward, number = told.sign[:1] < 0, told.number
     if inward.any():
-        given = -given if block is None else np.where(inward[block, np.newaxis], -given, given)
+        vectors = (
+            -vectors if block is None else np.where(inward[block, np.newaxis], -vectors, vectors)
+        )
     lean = None
     if np.any(number > 1):
-        lean = _lean_of_given(Shape(surface, block=of), own)
-        lean = lean if origin is None else scattered(lean, origin, len(given))
+        lean = _lean_of_given(SurfaceShape(surface, block=of), on_surface)
+        lean = lean if origin is None else scattered(lean, origin, len(vectors))
         lean = lean if block is None else np.where(number[block] > 1, lean, 0)
     side = int(number[0]) if block is None else number[block]
-    return Sided(given, lean, open=side, averted=None if told is None else told.averted)
+    return Sided(vectors, lean, open=side, averted=None if told is None else told.averted)
 
 
 def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tuple[Bools, Bools]:
@@ -352,7 +354,7 @@ def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tu
     return closed & _inward(places(surface)[ids], normals[ids], of[ids], count), ~closed
 
 
-def _lean_of_given(shape: Shape, normals: Array) -> Array:
+def _lean_of_given(shape: SurfaceShape, normals: Array) -> Array:
     """Return the sine of the largest angle between normals and faces, however these are wound."""
     # Against normals of the wrong sign all faces look averted, and the lean is 1.
     return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
@@ -360,13 +362,13 @@ def _lean_of_given(shape: Shape, normals: Array) -> Array:
 
 def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
     """Return of which closed blocks the normals at the outermost points point inside."""
-    known = np.isfinite(points).all(axis=1) & np.isfinite(normals).all(axis=1)
-    if not known.all():
-        points, normals, block = points[known], normals[known], block[known]
+    finite = np.isfinite(points).all(axis=1) & np.isfinite(normals).all(axis=1)
+    if not finite.all():
+        points, normals, block = points[finite], normals[finite], block[finite]
     if np.any(block[1:] < block[:-1]):
         order = np.argsort(block, kind="stable")
         points, normals, block = points[order], normals[order], block[order]
-    start, own = runs(block)
+    start, number = runs(block)
     outward = np.zeros(count)
     # At the outermost points along each axis an outward normal points along it: six votes.
     for axis in range(3):
@@ -377,38 +379,38 @@ def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
             # The first of several in each block.
             at = at[runs(block[at])[0]]
             sign = 1 if end is np.maximum else -1
-            outward[own] += sign * normals[at, axis]
+            outward[number] += sign * normals[at, axis]
     return outward < 0
 
 
-def _sided_grid(mesh: Grid, given: Array) -> Sided:
+def _sided_grid(mesh: Grid, vectors: Array) -> Sided:
     """Return normals of a grid with their sides, found part by part."""
     # Edges that are not on the border of a sheet have two faces.
-    found = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, hull.rim(mesh))]
-    if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *found]), keepdims=True)):
-        side = int(sides_of(given, None, np.ones(1, dtype=np.bool_))[0])
+    edges = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, hull.rim(mesh))]
+    if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *edges]), keepdims=True)):
+        side = int(sides_of(vectors, None, np.ones(1, dtype=np.bool_))[0])
         if side < 2:
-            return Sided(given, open=side)
-        lean = np.zeros(len(given), dtype=np.float32)
+            return Sided(vectors, open=side)
+        lean = np.zeros(len(vectors), dtype=np.float32)
         for part in hull.parts(mesh):
             # A lean is an angle, which needs neither the centroid of the whole nor its size.
             shape = PartShape(part.surface, part.side, np.zeros(3), 1.0)
             on = part.side == 0
-            lean[part.origin[on]] = _lean_of_given(shape, given[part.origin])[on]
-        return Sided(given, lean, open=side)
+            lean[part.origin[on]] = _lean_of_given(shape, vectors[part.origin])[on]
+        return Sided(vectors, lean, open=side)
     points, normals = [], []
     for part in hull.parts(mesh):
         where = places(part.surface)
-        own = given[part.origin]
-        known = np.isfinite(where).all(axis=1) & np.isfinite(own).all(axis=1) & (part.side == 0)
-        where, own = where[known], own[known]
+        rows = vectors[part.origin]
+        valid = np.isfinite(where).all(axis=1) & np.isfinite(rows).all(axis=1) & (part.side == 0)
+        where, rows = where[valid], rows[valid]
         # Only the outermost points of a part can be the outermost ones of the whole.
         ends = [f(axis) for axis in where.T for f in (np.argmax, np.argmin) if len(where)]
         points.append(where[ends])
-        normals.append(own[ends])
-    outermost, own = np.concatenate(points), np.concatenate(normals)
-    inward = _inward(outermost, own, np.zeros(len(own), dtype=np.intp), 1)[0]
-    return Sided(-given if inward else given)
+        normals.append(rows[ends])
+    outermost, rows = np.concatenate(points), np.concatenate(normals)
+    inward = _inward(outermost, rows, np.zeros(len(rows), dtype=np.intp), 1)[0]
+    return Sided(-vectors if inward else vectors)
 
 
 def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
@@ -425,17 +427,17 @@ def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
     carried = mesh.GetPointData().GetNormals()
     if carried is None:
         return None
-    found = vectors_of(mesh, "normals", carried.GetName() or as_numpy(carried), 3)
-    longest = np.abs(found).max(axis=1, initial=0)
-    known = (longest > 0) & (longest < np.inf)
-    if known.all():
-        return found
+    vectors = vectors_of(mesh, "normals", carried.GetName() or as_numpy(carried), 3)
+    longest = np.abs(vectors).max(axis=1, initial=0)
+    valid = (longest > 0) & (longest < np.inf)
+    if valid.all():
+        return vectors
     # Files have normals of no length, or NaN, where their writer knew none: the faces do.
-    if not known.any():
+    if not valid.any():
         return None
     of_faces = computed_normals(mesh, sides=False).vectors
-    against = np.einsum("ij,ij->", of_faces[known], kernels.unit_rows(found[known])) < 0
-    return np.where(known[:, np.newaxis], found, -of_faces if against else of_faces)
+    against = np.einsum("ij,ij->", of_faces[valid], kernels.unit_rows(vectors[valid])) < 0
+    return np.where(valid[:, np.newaxis], vectors, -of_faces if against else of_faces)
 
 
 def computed_normals(
@@ -470,9 +472,9 @@ def computed_normals(
     sides : bool
         Whether lean and share of sharp edges are found.
     told : Told, optional
-        What the whole, of which this is a part, decides of the pieces.
+        Decision of the whole, of which this is a part, about the pieces.
     owner : vtkPolyData, optional
-        Surface as long as whose points the normals are kept; by default the mesh.
+        Surface: the normals are kept as long as its points; by default the mesh.
     block : ndarray of int, shape (n_points,), optional
         Number of the block of each point, where the mesh is several that have nothing in common.
 
@@ -499,7 +501,7 @@ def remember(mesh: vtkPolyData, sided: Sided) -> None:
 
 
 def _frozen(sided: Sided) -> Sided:
-    """Return normals whose arrays cannot be written."""
+    """Return normals with arrays that cannot be written."""
     for array in (sided.vectors, sided.lean, sided.open):
         if isinstance(array, np.ndarray):
             array.setflags(write=False)
@@ -527,14 +529,14 @@ def _computed(
         outer = outer_shape(mesh, block=block)
     # First normals that agree with each other on each piece, then the side of each piece as a
     # whole.
-    found = wound_normals(mesh, as_wound=as_wound, side=part, outer=outer)
-    if found is None and is_scan(mesh):
+    wound = wound_normals(mesh, as_wound=as_wound, side=part, outer=outer)
+    if wound is None and is_scan(mesh):
         return _of_cloud(mesh, view)
-    if found is None:
+    if wound is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
         raise ValueError(_check.message("mesh", expected, got, remedy))
-    shape, vectors, first, origin = found
+    shape, vectors, first, origin = wound
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
     sharp: float | Array = 0.0
@@ -572,14 +574,14 @@ def wound_normals(
     as_wound: bool = False,
     side: NDArray[np.int8] | None = None,
     outer: Outer | None = None,
-) -> tuple[Shape, Array, Indices | None, Indices | None] | None:
+) -> tuple[SurfaceShape, Array, Indices | None, Indices | None] | None:
     """Return the outer surface of a mesh and the normals of its points, None where it has none.
 
     The normals agree with each other on each piece, and are zero where no face is. After them come
-    the first of the points that slivers join with each, None where there are no slivers, and the
+    the first of the points that slivers join with each, None without slivers, and the
     point of the mesh that each point of the surface is, None for a surface.
 
-    With ``side`` the mesh is a part of another, see :attr:`Shape.side`. ``outer`` is
+    With ``side`` the mesh is a part of another, see :attr:`SurfaceShape.side`. ``outer`` is
     :func:`outer_shape` where that is known.
     """
     outer = outer or outer_shape(mesh, side)
@@ -609,14 +611,14 @@ class Outer(NamedTuple):
 
     Attributes
     ----------
-    shape : Shape
+    shape : SurfaceShape
     surface : vtkPolyData
         Its faces.
     origin : ndarray of int, or None
         Point of the mesh that each point of the surface is, None for a surface.
     """
 
-    shape: Shape
+    shape: SurfaceShape
     surface: vtkPolyData
     origin: Indices | None
 
@@ -632,7 +634,7 @@ def outer_shape(
         block = block if block is None or origin is None else block[origin]
         # Faces that are there twice are rare, and the edges tell that there are none.
         bare = finite_faces(bare_faces(surface))
-        shape = Shape(bare, block=block)
+        shape = SurfaceShape(bare, block=block)
         if not shape.doubtful or first_twins(surface.GetPolys()) is None:
             return Outer(shape, bare, origin)
     skin, origin = _skin(mesh)
@@ -645,13 +647,13 @@ def outer_shape(
             # Where the part is cut from the others faces arise that join what is apart.
             around = finite_faces(skin, side == 0)
             skin = around if has_faces(around) else skin
-    return Outer(Shape(skin, side, block), skin, origin)
+    return Outer(SurfaceShape(skin, side, block), skin, origin)
 
 
 def creases(mesh: vtkPolyData) -> float:
     """Return the share of edges that are creases, see :func:`~.corners.crease_share`.
 
-    Where there are none normals are computed beside it, and found by :func:`computed_normals`.
+    Without any, normals are computed beside it, and found by :func:`computed_normals`.
     """
     return once(mesh, "creases", lambda: _creases(mesh))
 
@@ -664,7 +666,7 @@ def _creases(mesh: vtkPolyData) -> float:
     return share
 
 
-def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
+def _mend_seams(surface: vtkPolyData, shape: SurfaceShape, vectors: Array) -> None:
     """Make normals anew where faces around a point have no common side, as on a Möbius strip.
 
     The others take the side of the first.
@@ -684,8 +686,8 @@ def _mend_seams(surface: vtkPolyData, shape: Shape, vectors: Array) -> None:
     # Each corner becomes a triangle with two ends of its own, whose normals nobody asks for.
     apart = np.arange(fan[1:].size).reshape(2, -1) + len(first)
     points = shape.points[np.concatenate([fan[0, first], *fan[1:]])]
-    found = corner_normals(points, [np.stack([number, *apart], axis=1)])
-    vectors[fan[0, first]] = found[: len(first)]
+    mended = corner_normals(points, [np.stack([number, *apart], axis=1)])
+    vectors[fan[0, first]] = mended[: len(first)]
 
 
 def is_scan(mesh: Dataset) -> bool:
@@ -706,12 +708,12 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     # A plane has no side: each takes the side of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
     estimate.Update()
-    found = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
-    found[~np.isfinite(found).all(axis=1)] = 0
+    unit = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
+    unit[~np.isfinite(unit).all(axis=1)] = 0
     # Where an eye is known it decides, point by point: no side of a scan is the outer one for sure.
     if view is not None:
-        found = np.where(_averted(found, places(mesh), view, None)[:, np.newaxis], -found, found)
-    return Sided(found, open=True, computed=True)
+        unit = np.where(_averted(unit, places(mesh), view, None)[:, np.newaxis], -unit, unit)
+    return Sided(unit, open=True, computed=True)
 
 
 def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> Sided:
@@ -738,16 +740,16 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     single, ends = single_edges(lines)
     sums, counts = [], np.zeros(4, dtype=np.intp)
     for part in hull.parts(mesh):
-        surface, own = part.surface, part.side == 0
+        surface, inner = part.surface, part.side == 0
         normals = surface_normals(surface)
         shape = PartShape(surface, part.side, middle, scale or 1.0)
         # Normals in the added layers lack the faces beyond; the next part has these points as its
         # own.
-        vectors[part.origin[own]] = normals[own]
+        vectors[part.origin[inner]] = normals[inner]
         own_sums, own_lean = shape.survey(normals)
         sums.append(own_sums._replace(score=shape.score(normals, view)))
         if sides:
-            lean[part.origin[own]] = own_lean[own]
+            lean[part.origin[inner]] = own_lean[inner]
             counts += shape.edges
         if len(single):
             single = np.setdiff1d(single, inner_edges(shape.points, shape.triangles, ends))
@@ -769,8 +771,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     )
 
 
-def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData:
-    """Return a surface whose faces are wound alike, by VTK where they are not.
+def _wound(surface: vtkPolyData, shape: SurfaceShape, *, as_wound: bool) -> vtkPolyData:
+    """Return a surface with faces wound alike, by VTK where they are not.
 
     ``shape`` takes the faces as VTK winds them.
     """
@@ -779,10 +781,10 @@ def _wound(surface: vtkPolyData, shape: Shape, *, as_wound: bool) -> vtkPolyData
     rewind = _orienter()
     rewind.SetInputData(surface)
     rewind.Update()
-    found: vtkPolyData = rewind.GetOutput()
-    if not _same_cells(surface, found):
-        shape.rewind(found)
-    return found
+    output: vtkPolyData = rewind.GetOutput()
+    if not _same_cells(surface, output):
+        shape.rewind(output)
+    return output
 
 
 def _orienter() -> Foreign:
@@ -803,7 +805,7 @@ def _orienter() -> Foreign:
 
 def _inside_out(surface: vtkPolyData, block: Indices, count: int) -> Bools:
     """Return which blocks have a piece without an outer side, such as a Klein bottle."""
-    shape = Shape(surface, block=block)
+    shape = SurfaceShape(surface, block=block)
     _wound(surface, shape, as_wound=False)
     return np.bincount(block, shape.inside_out[shape.piece], count) > 0
 
@@ -824,8 +826,8 @@ def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
     return (finite_faces(faces_only(surface)) if has_faces(surface) else None), origin
 
 
-def _same_cells(one: vtkPolyData, other: vtkPolyData) -> bool:
+def _same_cells(this: vtkPolyData, other: vtkPolyData) -> bool:
     """Return whether two surfaces of polygons have equal cells."""
-    strips = one.GetNumberOfStrips() or other.GetNumberOfStrips()
-    cells = [connectivity(surface.GetPolys()) for surface in (one, other)]
+    strips = this.GetNumberOfStrips() or other.GetNumberOfStrips()
+    cells = [connectivity(surface.GetPolys()) for surface in (this, other)]
     return not strips and all(np.array_equal(a, b) for a, b in zip(*cells, strict=True))

@@ -78,11 +78,11 @@ class Sums(NamedTuple):
         # Six times the volumes of tetrahedra about the centroid: those of a closed surface add up
         # to what it encloses, by the divergence theorem.
         values = [kernels.dot(across, corner), size, *across]
-        for into, own in zip([self.volume, self.area, *self.total.T], values, strict=True):
-            into += own.sum() if len(into) == 1 else np.bincount(owner, own, len(into))
+        for into, value in zip([self.volume, self.area, *self.total.T], values, strict=True):
+            into += value.sum() if len(into) == 1 else np.bincount(owner, value, len(into))
 
     def turned(self, border: Bools) -> Bools:
-        """Return the pieces whose normals point inward, or away from the eye.
+        """Return the pieces with normals that point inward, or away from the eye.
 
         For a sheet or a bowl the sign of a sum over its points decides, of three times the cosine
         between N and the direction toward the eye plus the cosine between N and the direction away
@@ -94,11 +94,11 @@ class Sums(NamedTuple):
     def around(self, border: Bools) -> Bools:
         """Return the pieces that are closed or nearly closed: their area vectors almost cancel."""
         across = np.linalg.norm(self.total, axis=1)
-        found: Bools = ~border | (across < NEARLY_CLOSED * self.area)
-        return found
+        is_around: Bools = ~border | (across < NEARLY_CLOSED * self.area)
+        return is_around
 
 
-class Shape:
+class SurfaceShape:
     """The triangles of a surface, its connected pieces, and which of those have a border.
 
     Coincident points are connected, so that triangles that share no point can form one piece.
@@ -130,9 +130,9 @@ class Shape:
 
     def _find_pieces(self, surface: vtkPolyData) -> None:
         """Find the connected pieces."""
-        own = None if self.side is None else self.side == 0
-        found = topology(self.triangles, self.points, own, self._count, self.block)
-        self.piece, self.open, self.alike, folded, self.same = found
+        is_inner = None if self.side is None else self.side == 0
+        pieces = topology(self.triangles, self.points, is_inner, self._count, self.block)
+        self.piece, self.open, self.alike, folded, self.same = pieces
         # A polygon and a strip have two triangles less than corners.
         self.triangular = (
             not surface.GetNumberOfStrips() and surface.GetPolys().IsHomogeneous() == CORNERS
@@ -158,7 +158,7 @@ class Shape:
         self._find_directions()
 
     def _note_folded(self, folded: list[Indices]) -> None:
-        """Note the pieces whose faces have no common side, as in a Klein bottle, and where."""
+        """Note the pieces with faces that have no common side, as in a Klein bottle, and where."""
         self.inside_out = np.zeros(self.count, dtype=np.bool_)
         self.seam = np.zeros(len(self.points), dtype=np.bool_)
         for ends in folded:
@@ -209,19 +209,19 @@ class Shape:
         for block in _pool.blocks(len(first), BLOCK):
             at = first[block]
             # Corners are numbered triangle by triangle.
-            one, other = edges.places[at] // 3, edges.places[at + 1] // 3
-            full = self._full[one] & self._full[other]
+            this, other = edges.places[at] // 3, edges.places[at + 1] // 3
+            full = self._full[this] & self._full[other]
             # Faces that are wound alike run along their common edge against each other.
             against = edges.forward[at] != edges.forward[at + 1]
-            cosine = kernels.dot(self._unit.take(one, axis=1), self._unit.take(other, axis=1))
+            cosine = kernels.dot(self._unit.take(this, axis=1), self._unit.take(other, axis=1))
             cosine = np.where(against, cosine, -cosine)
             kinds = [full & (cosine < beyond) for beyond in (2.0, *least)]
-            found = [np.count_nonzero(kind) for kind in kinds]
-            self.doubtful |= bool(found[0] < len(full) or found[1])
+            counts = [np.count_nonzero(kind) for kind in kinds]
+            self.doubtful |= bool(counts[0] < len(full) or counts[1])
             if self.block is None:
-                self.edges += found
+                self.edges += counts
                 continue
-            of = self.block[self.triangles[one, 0]]
+            of = self.block[self.triangles[this, 0]]
             for i, kind in enumerate(kinds):
                 self.edges[:, i] += np.bincount(of[kind], minlength=len(self.edges))
 
@@ -232,15 +232,15 @@ class Shape:
         size = np.maximum(np.bincount(piece, self.finite, self.count), 1)
         middle = np.empty((3, self.count))
         for row, axis in zip(middle, self.points.T, strict=True):
-            own = np.where(self.finite, axis, 0).astype(np.float64)
-            row[:] = np.bincount(piece, own, self.count) / size
+            finite = np.where(self.finite, axis, 0).astype(np.float64)
+            row[:] = np.bincount(piece, finite, self.count) / size
         largest = 0.0
         for block in _pool.blocks(len(self.points), BLOCK):
             largest = max(largest, float(np.abs(self._from_middle(block, middle)).max()))
         # Lengths are scaled, because products of tiny ones underflow and of huge ones overflow; by
         # a power of two, which rounds nothing.
-        known = 0 < largest < np.inf
-        return middle, math.ldexp(0.5, math.frexp(largest)[1]) if known else largest or 1.0
+        scalable = 0 < largest < np.inf
+        return middle, math.ldexp(0.5, math.frexp(largest)[1]) if scalable else largest or 1.0
 
     def _from_middle(self, rows: Indices | Slice, middle: Array) -> Array:
         """Return the ways from the centroids of the pieces to some points."""
@@ -264,7 +264,7 @@ class Shape:
         return bool(self.finite.all())
 
     def survey(self, normals: Array) -> tuple[Sums, Array]:
-        """Return what a walk over the triangles finds, given the normals of the points.
+        """Return the sums of a walk over the triangles, given the normals of the points.
 
         Returns
         -------
@@ -279,20 +279,20 @@ class Shape:
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
         middle, largest = self.frame
         if self.side is None and loops.survey.pays(loops.SURVEY_SAVED * len(self.triangles)):
-            found = np.zeros((self.count, 5))
+            sums_of_loop = np.zeros((self.count, 5))
             loops.survey(
-                found, bend, least, np.ascontiguousarray(self.points).reshape(-1),
+                sums_of_loop, bend, least, np.ascontiguousarray(self.points).reshape(-1),
                 self.triangles.reshape(-1), np.ascontiguousarray(normals).reshape(-1),
                 self.finite, self._full, piece, middle.T, largest,
             )  # fmt: skip
-            sums = Sums(sums.score, found[:, 2:], found[:, 1], found[:, 0])
+            sums = Sums(sums.score, sums_of_loop[:, 2:], sums_of_loop[:, 1], sums_of_loop[:, 0])
             return sums, self._lean(bend, least)
         for block in _pool.blocks(len(self.triangles), FEW):
             rows: Indices = self.triangles[block]
             wide = self._full[block]
             if not self.all_finite:
-                known = self.finite[rows].all(axis=1)
-                rows, wide = rows[known], wide[known]
+                finite = self.finite[rows].all(axis=1)
+                rows, wide = rows[finite], wide[finite]
             corners = [np.ascontiguousarray(at) for at in rows.T]
             a, b, c = (self.points.take(at, axis=0).T.astype(np.float64) for at in corners)
             u, v = b - a, c - a
@@ -300,11 +300,11 @@ class Shape:
             v /= largest
             across = kernels.cross(u, v)
             unit, size = kernels.unit(across)
-            own = slice(None)
+            inner = slice(None)
             if self.side is not None:
-                own = self.side[rows].min(axis=1) == 0
-            start = corners[0][own]
-            sums.add(piece[start], self.away(start), across[:, own], size[own])
+                inner = self.side[rows].min(axis=1) == 0
+            start = corners[0][inner]
+            sums.add(piece[start], self.away(start), across[:, inner], size[inner])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
                 normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
@@ -318,7 +318,7 @@ class Shape:
         return sums, self._lean(bend, least)
 
     def _lean(self, bend: Array, least: Array) -> Array:
-        """Return what :meth:`survey` does, in the place of the least cosines."""
+        """Return the lean of :meth:`survey`, in the place of the least cosines."""
         lean = least
         for block in _pool.blocks(len(least), BLOCK):
             near = least[block]
@@ -348,11 +348,11 @@ class Shape:
         scores = np.zeros(self.count)
         seen = view is not None and len(view.position or view.direction or ()) == 3
         for block in _pool.blocks(len(normals), BLOCK):
-            own = normals[block].T.astype(np.float64)
+            columns = normals[block].T.astype(np.float64)
             toward = kernels.unit(self.away(block))[0]
             if seen and view is not None:
                 toward += 3 * kernels.unit(toward_eye(view, self.points[block]))[0]
-            score = kernels.dot(own, toward)
+            score = kernels.dot(columns, toward)
             good = self.finite[block] & np.isfinite(score)
             if self.side is not None:
                 good &= self.side[block] == 0
@@ -368,8 +368,8 @@ def toward_eye(view: View, points: Raw) -> Array:
     return np.asarray(eye - np.asarray(points).T.astype(np.float64))
 
 
-class PartShape(Shape):
-    """The triangles of a part of a surface of one piece, whose centroid and size are known."""
+class PartShape(SurfaceShape):
+    """The triangles of a part of a surface of one piece, with known centroid and size."""
 
     def __init__(
         self, surface: vtkPolyData, side: NDArray[np.int8], middle: Array, scale: float
@@ -413,19 +413,19 @@ def sides_of(
         low, high = np.full((2, 4, len(border)), np.inf)
         middle = middles(vectors, piece, border, total)
         for block in _pool.blocks(len(vectors), BLOCK):
-            own, of = _normals_of(vectors, piece, block, border)
-            if not len(own):
+            rows, of = _normals_of(vectors, piece, block, border)
+            if not len(rows):
                 continue
             toward = middle[of] if len(middle) > 1 else middle
-            for i, along in enumerate((np.einsum("ij,ij->i", own, toward), *own.T)):
+            for i, along in enumerate((np.einsum("ij,ij->i", rows, toward), *rows.T)):
                 if len(middle) == 1:
                     low[i] = min(low[i, 0], along.min())
                     high[i] = min(high[i, 0], -along.max())
                     continue
                 np.minimum.at(low[i], of, along)
                 np.minimum.at(high[i], of, -along)
-        found = ((low > 0) | (high > 0)).any(axis=0) & np.isfinite(low[0])
-        side[found] = 2 + np.arange(np.count_nonzero(found))
+        fields = ((low > 0) | (high > 0)).any(axis=0) & np.isfinite(low[0])
+        side[fields] = 2 + np.arange(np.count_nonzero(fields))
     return side
 
 
@@ -433,17 +433,17 @@ def _normals_of(
     vectors: Array, piece: Indices | None, rows: Slice, border: Bools
 ) -> tuple[Array, Indices]:
     """Return the normals of some points of the pieces with a border, and their pieces."""
-    own = vectors[rows]
-    of = np.zeros(len(own), dtype=np.intp) if piece is None else piece[rows]
-    x, y, z = own.T
+    normals = vectors[rows]
+    of = np.zeros(len(normals), dtype=np.intp) if piece is None else piece[rows]
+    x, y, z = normals.T
     has = (x != 0) | (y != 0) | (z != 0)
-    if not np.isfinite(own).all():
-        has &= np.isfinite(own).all(axis=1)
+    if not np.isfinite(normals).all():
+        has &= np.isfinite(normals).all(axis=1)
     if not border.all():
         has &= border[of]
     if not has.all():
-        own, of = own[has], of[has]
-    return own.astype(np.float64), of
+        normals, of = normals[has], of[has]
+    return normals.astype(np.float64), of
 
 
 def middles(
@@ -454,24 +454,24 @@ def middles(
     It begins at their mean, along ``total`` where that is known; some of the vectors that are
     furthest from it draw it to them.
     """
-    known = total is not None
+    is_summed = total is not None
     total = np.zeros((len(border), 3)) if total is None else total
-    for block in () if known else _pool.blocks(len(vectors), BLOCK):
-        own, of = _normals_of(vectors, piece, block, border)
+    for block in () if is_summed else _pool.blocks(len(vectors), BLOCK):
+        rows, of = _normals_of(vectors, piece, block, border)
         if len(border) == 1:
-            total += own.sum(axis=0)
+            total += rows.sum(axis=0)
         else:
-            total += np.stack([np.bincount(of, axis, len(border)) for axis in own.T], axis=1)
+            total += np.stack([np.bincount(of, axis, len(border)) for axis in rows.T], axis=1)
     middle = kernels.unit_rows(total)
     some = slice(None, None, max(len(vectors) // SEARCHED, 1))
-    own, of = _normals_of(vectors, piece, some, border)
+    rows, of = _normals_of(vectors, piece, some, border)
     for _ in range(STEPS):
-        along = np.einsum("ij,ij->i", own, middle[of])
+        along = np.einsum("ij,ij->i", rows, middle[of])
         least = np.zeros(len(border))
         np.minimum.at(least, of, along)
         beyond = (along <= least[of]) & (along <= 0)
         if not beyond.any():
             break
         # The step of a perceptron: what is furthest beyond a right angle draws the direction to it.
-        np.add.at(middle, of[beyond], own[beyond])
+        np.add.at(middle, of[beyond], rows[beyond])
     return middle

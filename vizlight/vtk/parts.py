@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Part(NamedTuple):
-    """What one mesh is lit by, or several at once.
+    """Inputs of the light of one mesh, or of several at once.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ def part_of(
     told: Told | None = None,
     block: Indices | None = None,
 ) -> Part:
-    """Return what one mesh is lit by; an error names the path of its block.
+    """Return the inputs of the light of one mesh; an error names the path of its block.
 
     With ``told`` it is a part of a whole, see :mod:`vizlight.vtk.sides`, and with ``block`` it is
     several, see :func:`parts_of`. Without a view both sides of an open surface are lit alike.
@@ -119,8 +119,8 @@ def part_of(
         # The same kind of error, so that callers tell a wrong type from a wrong value.
         raise type(error)(f"block {path}: {error}") from error
     # Means of cell arrays have a line but no sign.
-    own = options.tangents
-    has_no_sign = isinstance(own, str) and is_of_cells(mesh, own)
+    name = options.tangents
+    has_no_sign = isinstance(name, str) and is_of_cells(mesh, name)
     inputs = ShadingInputs(
         points=points,
         occlusion=share_of(mesh, options.occlusion, path),
@@ -136,7 +136,7 @@ def part_of(
 
 
 def parts_of(batch: Batch, scene: Scene, options: LightOptions) -> Iterator[Part]:
-    """Yield what several meshes that are joined are lit by, see :func:`part_of`."""
+    """Yield the inputs of the light of several joined meshes, see :func:`part_of`."""
 
     def kept(mesh: Foreign) -> Sided:
         return computed_normals(mesh, block=batch.block, owner=batch.owner)
@@ -155,7 +155,7 @@ def parts_of(batch: Batch, scene: Scene, options: LightOptions) -> Iterator[Part
 
 
 def _some(part: Part, batch: Batch, chosen: Bools, *, two_sided: bool) -> Part:
-    """Return what some of several meshes are lit by."""
+    """Return the inputs of the light of some of several meshes."""
     rows = np.flatnonzero(chosen[batch.block])
     arrays: Keywords = {name: x[:][rows] for name, x in part.inputs.arrays().items()}
     inputs = dataclasses.replace(part.inputs, two_sided=two_sided, sides=None, **arrays)
@@ -171,7 +171,7 @@ def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
     Raises
     ------
     TypeError, ValueError
-        If there is no such array.
+        If the mesh has no such array.
     """
     if name is None:
         return None
@@ -186,7 +186,7 @@ def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
 
 
 def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightOptions) -> Sides:
-    """Return normals before they are turned to the side that is seen, and what turns them."""
+    """Return normals before they are turned to the visible side, and their turn."""
     # Which side of a height field is seen is a matter of all of its points.
     averted = sided.averted_fields(points, view)
 
@@ -194,8 +194,8 @@ def _sides(sided: Sided, points: ArraySource, view: View | None, options: LightO
         if options.facing not in ("auto", "eye") or view is None:
             return normals
         # Facts come interpolated, and rounding may have moved the number of a piece.
-        own = Sided(normals, lean=facts[:, 0], open=np.rint(facts[:, 1]).astype(np.intp))
-        return Turned(own, points, view, options.facing, averted)[:]
+        at_point = Sided(normals, lean=facts[:, 0], open=np.rint(facts[:, 1]).astype(np.intp))
+        return Turned(at_point, points, view, options.facing, averted)[:]
 
     return Sides(sided.vectors, sided.facts(), turned)
 
@@ -207,15 +207,15 @@ def _tangents(
     if options.tangents is not None:
         return tangents_of(mesh, options.tangents, n)
     if n == 3 and polylines.has_lines_only(mesh):
-        known = None if kept is None else kept(mesh)
-        return polylines.line_tangents(mesh) if known is None else known
+        kept_rows = None if kept is None else kept(mesh)
+        return polylines.line_tangents(mesh) if kept_rows is None else kept_rows
     return None
 
 
 def _several(mesh: Dataset, sided: Sided) -> tuple[Array | None, Sided, Array | None]:
     """Return tangents, normals and dimensions of the points of a mesh of several kinds of cells.
 
-    What a point is not lit by is a direction of any length but 0.
+    Where a point is not lit by an input, this is a direction of any length but 0.
     """
     carried = np.any(sided.vectors, axis=1) & (not sided.computed)
     kinds = polylines.dimensions(mesh, carried)
@@ -230,7 +230,7 @@ def _several(mesh: Dataset, sided: Sided) -> tuple[Array | None, Sided, Array | 
 
 
 def _check_options(tangents: Array | None, n: int, options: LightOptions) -> None:
-    """Check that the options fit a surface, or tangents if there are any."""
+    """Check that the options fit a surface, or its tangents if any."""
     one_line = tangents is not None and n == 3 and tangents.shape[1:] == (3,)
     if options.model == "cylinder" and not one_line:
         components = "" if tangents is None else f"{n}-space, {tangents.shape[-1]} components"

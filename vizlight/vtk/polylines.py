@@ -38,7 +38,7 @@ def has_several_kinds(mesh: Dataset) -> bool:
 
 
 def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
-    """Return what each point of a mesh of several kinds of cells is, None where all are on faces.
+    """Return the kind of each point of a mesh of several kinds of cells, None if all are on faces.
 
     2 on a face, or where ``carried`` says that a point has a normal of its own, 1 on lines, 0 on
     vertices. A point that a face and a line have in common is the face's.
@@ -46,19 +46,19 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
     surface, origin = _flat(mesh)
     # What is written later counts more: a carried normal than a vertex, a line than both, a face
     # than all.
-    found = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
-    found[connectivity(surface.GetVerts())[0]] = 0.0
-    own = ~carried if origin is None else ~carried[origin]
-    found[~own] = 2.0
-    found[connectivity(surface.GetLines())[0]] = 1.0
+    codes = np.full(surface.GetNumberOfPoints(), 2.0, dtype=np.float32)
+    codes[connectivity(surface.GetVerts())[0]] = 0.0
+    is_own = ~carried if origin is None else ~carried[origin]
+    codes[~is_own] = 2.0
+    codes[connectivity(surface.GetLines())[0]] = 1.0
     for ids, _ in faces(surface):
-        found[ids] = 2.0
+        codes[ids] = 2.0
     if origin is not None:
         # Points that the surface lacks count as on faces, and without a normal are not lit.
         whole = np.full(mesh.GetNumberOfPoints(), 2.0, dtype=np.float32)
-        whole[origin] = found
-        found = whole
-    return found if np.any(found < 2) else None
+        whole[origin] = codes
+        codes = whole
+    return codes if np.any(codes < 2) else None
 
 
 def line_tangents(mesh: Dataset) -> Array:
@@ -74,13 +74,13 @@ def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
 
 
 def of_points(mesh: Dataset, function: Callable[[Array, Indices, Indices], Array], /) -> Array:
-    """Return what a function of points, connectivity and offsets of lines gives for each point.
+    """Return, for each point, a function of points, connectivity and offsets of lines.
 
     Points that no line uses have zero. Consecutive segments are joined first.
     """
     surface, origin = _flat(mesh)
-    found = function(*_joined(surface))
-    return found if origin is None else hull.scattered(found, origin, mesh.GetNumberOfPoints())
+    values = function(*_joined(surface))
+    return values if origin is None else hull.scattered(values, origin, mesh.GetNumberOfPoints())
 
 
 def cells_of(mesh: Dataset, /) -> tuple[Array, Indices, Indices]:

@@ -1,4 +1,4 @@
-"""Told of a surface that is read part by part: what each part tells, and the whole decides."""
+"""Sides of a surface that is read part by part: facts of each part, decisions of the whole."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ AROUND = 64
 CLEAR = 0.8
 
 
-class Look(NamedTuple):
-    """What a part of a surface tells; its pieces are those of :class:`.orientation.Shape`.
+class PartFacts(NamedTuple):
+    """Facts of a part of a surface; its pieces are those of :class:`.orientation.SurfaceShape`.
 
     Attributes
     ----------
     open : ndarray of bool, shape (count,)
-        Pieces with a border, or whose faces have no common side.
+        Pieces with a border, or with faces that have no common side.
     far : ndarray, shape (count, 6, 2)
         Coordinate of the outermost point of each piece along x, -x, y and so on, minus infinity
-        without one, and the component of its normal there.
+        without one, and that component of its normal.
     shown : ndarray, shape (count,)
         Sum of :func:`~vizlight.vtk.normals.facing_of`.
     total : ndarray, shape (count, 3)
@@ -49,7 +49,7 @@ class Look(NamedTuple):
     places, at, along : ndarray, shape (b,), (b,) and (b, 3)
         Numbers of the places of points that other parts have too, their pieces and normals.
     edges : ndarray of int, shape (4,)
-        See :attr:`.orientation.Shape.edges`.
+        See :attr:`.orientation.SurfaceShape.edges`.
     """
 
     open: Bools
@@ -66,12 +66,12 @@ class Look(NamedTuple):
 
 
 def side_of(ghosts: Array) -> NDArray[np.int8]:
-    """Return :attr:`.orientation.Shape.side` of a part, given ``ghosts`` as for :func:`look`."""
+    """Return :attr:`.orientation.SurfaceShape.side` of a part with ``ghosts`` of :func:`look`."""
     return np.where(ghosts < 1, 0, -1).astype(np.int8)
 
 
-def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look | None:
-    """Return what a part of a surface tells, None where it has no surface.
+def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> PartFacts | None:
+    """Return the facts of a part of a surface, None where it has no surface.
 
     Parameters
     ----------
@@ -84,23 +84,23 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
     view : View or None
         Eye that sees it.
     """
-    given = given_normals(mesh, value, 3)
-    found = wound_normals(mesh, side=side_of(ghosts))
-    if found is None:
+    vectors_in = given_normals(mesh, value, 3)
+    wound = wound_normals(mesh, side=side_of(ghosts))
+    if wound is None:
         return None
-    shape, vectors, _, origin = found
+    shape, vectors, _, origin = wound
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
-    if given is not None:
+    if vectors_in is not None:
         # The index -1 takes the normal of the last point, and is left out below.
-        vectors = given[of_mesh]
+        vectors = vectors_in[of_mesh]
         piece, border = np.zeros_like(piece), np.array([shape.open.any()])
     has = np.isfinite(vectors).all(axis=1) & vectors.any(axis=1) & shape.finite
     # Points that are only in cells of other parts are theirs to tell of.
     has &= (of_mesh >= 0) & (ghosts[of_mesh] < 1)
-    own, joint = np.flatnonzero(has), np.flatnonzero(has & (ghosts[of_mesh] > 0))
-    points, at, count = shape.points[own], piece[own], len(border)
-    normals = vectors[own].astype(np.float64)
+    inner, joint = np.flatnonzero(has), np.flatnonzero(has & (ghosts[of_mesh] > 0))
+    points, at, count = shape.points[inner], piece[inner], len(border)
+    normals = vectors[inner].astype(np.float64)
     far = np.tile([-np.inf, 0.0], (count, 6, 1))
     # The outermost point along each half axis, and whether the normal there points outward.
     for i in range(6):
@@ -110,17 +110,17 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Look
         last = np.flatnonzero(along == far[at, i, 0])
         far[at[last], i, 1] = sign * normals[last, i // 2]
     # A point that parts have in common counts once, in shares.
-    share = 1 - ghosts[of_mesh[own]].astype(np.float64)
+    share = 1 - ghosts[of_mesh[inner]].astype(np.float64)
     shown, total = np.zeros(count), np.zeros((count, 3))
     np.add.at(shown, at, share * facing_of(normals, points, view))
     np.add.at(total, at, share[:, np.newaxis] * normals)
     field = sides_of(normals, at, np.ones(count, dtype=np.bool_)) > 1
     outermost, of = _outermost(normals, at, count)
     common = place_numbers(shape.points[joint]), piece[joint], vectors[joint].astype(np.float64)
-    if given is not None:
+    if vectors_in is not None:
         # A place of all parts, with no opinion of its side: what does not touch is one piece too.
         common = np.zeros(1, dtype=np.uint64), np.zeros(1, dtype=np.intp), np.zeros((1, 3))
-    return Look(border, far, shown, total, field, outermost, of, *common, shape.edges)
+    return PartFacts(border, far, shown, total, field, outermost, of, *common, shape.edges)
 
 
 def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indices]:
@@ -133,7 +133,7 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
     size = np.bincount(piece, minlength=count)
     first = np.concatenate([[0], np.cumsum(size)])
     few = order[(size <= AROUND)[piece[order]]]
-    found, of = [normals[few]], [piece[few]]
+    extremes, of = [normals[few]], [piece[few]]
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
@@ -142,8 +142,8 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
         cosine = normals[rows] @ middle[i]
         along = np.column_stack([normals[rows], cosine])
         if cosine.min() <= 0:
-            one = normals[rows[:1]]
-            found += [one, -one]
+            normal = normals[rows[:1]]
+            extremes += [normal, -normal]
             of.append(np.full(2, i))
             continue
         # With the middle, two directions across it: the rows of a singular value decomposition are
@@ -160,22 +160,22 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
             which = np.where(top > most, best + block.start, which)
             most = np.maximum(top, most)
         kept = np.unique([*which, *along.argmin(axis=0), *along.argmax(axis=0)])
-        found.append(normals[rows[kept]])
+        extremes.append(normals[rows[kept]])
         of.append(np.full(len(kept), i))
-    return np.concatenate(found), np.concatenate(of)
+    return np.concatenate(extremes), np.concatenate(of)
 
 
-def decided(looks: Sequence[Look]) -> list[Told]:
-    """Return for each part what the whole decides of its pieces."""
-    count = [len(one.open) for one in looks]
+def decided(looks: Sequence[PartFacts]) -> list[Told]:
+    """Return for each part the decision of the whole about its pieces."""
+    count = [len(each.open) for each in looks]
     start = np.cumsum([0, *count])
     # Pieces that touch across parts are one piece of the whole, with signs that make them agree.
     group, sign, torn = _joined(looks, start[:-1], int(start[-1]))
     whole = int(group.max(initial=-1)) + 1
     border = np.zeros(whole, dtype=np.bool_)
     # One open part makes its whole piece open.
-    border[group[np.concatenate([one.open for one in looks]) | torn]] = True
-    far = np.concatenate([one.far for one in looks])
+    border[group[np.concatenate([each.open for each in looks]) | torn]] = True
+    far = np.concatenate([each.far for each in looks])
     # Closed pieces: turned by the outermost of the outermost points.
     outward = np.zeros(whole)
     for i in range(6):
@@ -187,53 +187,53 @@ def decided(looks: Sequence[Look]) -> list[Told]:
         component[group[there]] = sign[there] * far[there, i, 1]
         outward += component
     sign = sign * np.where(~border & (outward < 0), -1, 1)[group]
-    of = np.concatenate([one.of + first for one, first in zip(looks, start[:-1], strict=True)])
-    normals = np.concatenate([one.normals for one in looks]) * sign[of][:, np.newaxis]
-    sums = sign[:, np.newaxis] * np.concatenate([one.total for one in looks])
+    of = np.concatenate([each.of + first for each, first in zip(looks, start[:-1], strict=True)])
+    normals = np.concatenate([each.normals for each in looks]) * sign[of][:, np.newaxis]
+    sums = sign[:, np.newaxis] * np.concatenate([each.total for each in looks])
     total = np.zeros((whole, 3))
     np.add.at(total, group, sums)
     # What lies in one part is known there, of others no part may know better.
-    found = sides_of(normals, group[of], border, total) > 1
-    field = (np.bincount(group, minlength=whole) == 1) | found
-    np.logical_and.at(field, group, np.concatenate([one.field for one in looks]))
+    fields = sides_of(normals, group[of], border, total) > 1
+    field = (np.bincount(group, minlength=whole) == 1) | fields
+    np.logical_and.at(field, group, np.concatenate([each.field for each in looks]))
     field &= border
     number: Indices = border.astype(np.intp)
     number[field] = 2 + np.arange(np.count_nonzero(field))
-    shown = np.bincount(group, sign * np.concatenate([one.shown for one in looks]), whole)
+    shown = np.bincount(group, sign * np.concatenate([each.shown for each in looks]), whole)
     averted = np.zeros(int(number.max(initial=0)) + 1, dtype=np.bool_)
     averted[number[number > 1]] = shown[number > 1] < 0
-    own = number[group]
+    numbers = number[group]
     return [
-        Told(sign[first : first + n], own[first : first + n], averted)
+        Told(sign[first : first + n], numbers[first : first + n], averted)
         for first, n in zip(start[:-1], count, strict=True)
     ]
 
 
-def _joined(looks: Sequence[Look], start: Indices, total: int) -> tuple[Indices, Array, Bools]:
-    """Return the piece of the whole that each piece of a part belongs to, and the sign there.
+def _joined(looks: Sequence[PartFacts], start: Indices, total: int) -> tuple[Indices, Array, Bools]:
+    """Return the piece of the whole that each piece of a part belongs to, and its sign.
 
     The last is a mask of those that no signs bring to one side, as in a Klein bottle.
     """
-    places = np.concatenate([one.places for one in looks])
-    at = np.concatenate([one.at + first for one, first in zip(looks, start, strict=True)])
-    along = np.concatenate([one.along for one in looks])
+    places = np.concatenate([this.places for this in looks])
+    at = np.concatenate([this.at + first for this, first in zip(looks, start, strict=True)])
+    along = np.concatenate([this.along for this in looks])
     # Of a place in more than two parts each is compared with the next one.
     order = np.argsort(places, kind="stable")
     twice = np.flatnonzero(places[order[1:]] == places[order[:-1]])
-    one, other = order[twice], order[twice + 1]
-    pairs, number = np.unique(at[one] * total + at[other], return_inverse=True)
+    this, other = order[twice], order[twice + 1]
+    pairs, number = np.unique(at[this] * total + at[other], return_inverse=True)
     # Normals of length 0 have no opinion and join their pieces as they are.
-    cosines = kernels.dot(along[one].T, along[other].T)
+    cosines = kernels.dot(along[this].T, along[other].T)
     alike, most = (np.bincount(number, of, len(pairs)) for of in (cosines, CLEAR * abs(cosines)))
     a, b = np.divmod(pairs, max(total, 1))
     # Two pieces that meet at several borders may agree at one and not at another.
     same, turned = alike >= -most, alike < most
-    one, other = np.append(a[same], a[turned]), np.append(b[same], b[turned] + total)
-    up, down = double_cover(one, other, total)
+    this, other = np.append(a[same], a[turned]), np.append(b[same], b[turned] + total)
+    up, down = double_cover(this, other, total)
     group = np.unique(np.minimum(up, down), return_inverse=True)[1].reshape(-1)
     return group, np.where(up <= down, 1.0, -1.0), up == down
 
 
-def creases(looks: Sequence[Look]) -> bool:
+def creases(looks: Sequence[PartFacts]) -> bool:
     """Return whether the sharp edges of the whole are creases."""
-    return bool(crease_share(np.sum([one.edges for one in looks], axis=0)) > 0)
+    return bool(crease_share(np.sum([each.edges for each in looks], axis=0)) > 0)

@@ -1,4 +1,4 @@
-"""What triangles of a surface have in common: one sort of their edges tells borders and pieces."""
+"""Common edges of the triangles of a surface: one sort of them tells borders and pieces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 EDGES, PARTS = 1 << 19, 16
 
 
-class Topology(NamedTuple):
+class SurfaceTopology(NamedTuple):
     """Connected pieces of the points of a surface, and how its triangles are wound.
 
     Attributes
@@ -116,7 +116,7 @@ def sorted_edges(
 def _sorted(
     corners: Indices, same: Indices | None, blocks: list[Slice], ends: tuple[int, int] | None
 ) -> SortedEdges:
-    """Return the edges of some triangles, with a range those whose lower end is in it."""
+    """Return the edges of some triangles, with a range those with their lower end in it."""
     keys, places, forward = [], [], []
     for block in blocks:
         rows = corners[block] if same is None else same[corners[block]]
@@ -147,13 +147,13 @@ def _sorted(
 def topology(
     corners: Indices,
     points: Raw,
-    own: Bools | None = None,
+    inner: Bools | None = None,
     visit: Callable[[SortedEdges], object] = len,
     block: Indices | None = None,
-) -> Topology:
+) -> SurfaceTopology:
     """Return the pieces of a surface.
 
-    With ``own``, a mask of points, only an edge between two of these makes a border. ``visit`` is
+    With ``inner``, a mask of points, only an edge between two of these makes a border. ``visit`` is
     called with all edges, range by range. ``block`` is the number of the block of each point:
     points of two blocks are apart, wherever they are.
     """
@@ -179,14 +179,14 @@ def topology(
         if not alike:
             folded.append(part.folded())
         if same is None:
-            different += _record(part.keys, ends[:, different:], single, own)
+            different += _record(part.keys, ends[:, different:], single, inner)
     # Where points stand twice, the faces on both sides of a seam are neighbours by place alone, so
     # that the edges are sorted again by the first point at each place.
     if same is not None:
         folded.clear()
         for part in sorted_edges(corners, count, same):
             folded.append(part.folded())
-            different += _record(part.keys, ends[:, different:], single, own)
+            different += _record(part.keys, ends[:, different:], single, inner)
     root = components(ends[0, :different], ends[1, :different], count, kind=kind)
     first_of_all = root == np.arange(count)
     if same is not None:
@@ -195,11 +195,11 @@ def topology(
         root = root[same]
     piece = (np.cumsum(first_of_all) - 1)[root]
     borders = np.zeros(int(np.count_nonzero(first_of_all)), dtype=np.bool_)
-    for one in single:
-        borders[piece[one]] = True
+    for points_of_part in single:
+        borders[piece[points_of_part]] = True
     # A triangle that names a point twice has an edge of no length, and no winding to compare.
     alike = alike and edges == 3 * len(corners)
-    return Topology(piece, borders, alike, folded, same)
+    return SurfaceTopology(piece, borders, alike, folded, same)
 
 
 def ends_of(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -215,16 +215,16 @@ def _new(keys: Indices) -> Bools:
 
 
 def _record(
-    keys: NDArray[np.int64], ends: Indices, single: list[Indices], own: Bools | None
+    keys: NDArray[np.int64], ends: Indices, single: list[Indices], inner: Bools | None
 ) -> int:
-    """Write the ends of sorted edges, append those that stand there once, return their number."""
+    """Write the ends of sorted edges, append those that occur once, return their number."""
     new = _new(keys)
     first = keys[new[:-1]]
     into = ends[:, : len(first)]
     into[0], into[1] = ends_of(first)
     # At a cut the faces beyond are missing: an edge there has one face and yet is no border.
     alone = into[:, new[1:][new[:-1]]]
-    single.append(alone[0, own[alone].all(axis=0)] if own is not None else alone[0].copy())
+    single.append(alone[0, inner[alone].all(axis=0)] if inner is not None else alone[0].copy())
     return len(first)
 
 
@@ -252,10 +252,10 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
             root = further
         left_a, left_b = [], []
         for block in _pool.blocks(len(a), EDGES):
-            one, other = root[a[block]], root[b[block]]
-            apart = one != other
-            left_a.append(np.minimum(one[apart], other[apart]))
-            left_b.append(np.maximum(one[apart], other[apart]))
+            start, other = root[a[block]], root[b[block]]
+            apart = start != other
+            left_a.append(np.minimum(start[apart], other[apart]))
+            left_b.append(np.maximum(start[apart], other[apart]))
         a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
         if not len(a):
             return root
@@ -265,7 +265,7 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
 
 
 def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
-    """Return what pairs connect each of some things with, as it is and turned over.
+    """Return the first thing that pairs connect each with, as it is and turned over.
 
     Each thing stands twice, the second time turned over, with its number beyond all others. One
     that is connected with its own turned copy has no sides.
@@ -329,9 +329,9 @@ def are_closed(surface: vtkPolyData, block: Indices, count: int) -> tuple[Bools,
         edges = edge_numbers(a, b)
         # The negative number in two's complement, as these integers have no sign.
         signed = np.where(a < b, edges, ~edges + np.uint64(1))
-        start, own = runs(block[rows[part, 0]])
-        np.bitwise_xor.at(odd, own, np.bitwise_xor.reduceat(edges, 3 * start))
-        np.add.at(sums, own, np.add.reduceat(signed, 3 * start))
+        start, place = runs(block[rows[part, 0]])
+        np.bitwise_xor.at(odd, place, np.bitwise_xor.reduceat(edges, 3 * start))
+        np.add.at(sums, place, np.add.reduceat(signed, 3 * start))
     return odd == 0, sums == 0
 
 
@@ -369,7 +369,7 @@ def edge_numbers(a: NDArray[np.uint64], b: NDArray[np.uint64]) -> NDArray[np.uin
 
 
 def single_edges(lines: list[NDArray[np.uint64]]) -> tuple[NDArray[np.uint64], ...]:
-    """Return the edges along lines at whose place there is no other of them, and all places."""
+    """Return the edges along lines with no other of them at their place, and all places."""
     none = np.empty(0, dtype=np.uint64)
     edges = np.concatenate([none, *(edge_numbers(line[:-1], line[1:]) for line in lines)])
     numbers, times = np.unique(edges, return_counts=True)

@@ -1,4 +1,4 @@
-"""The figure of a plotter as vector graphics: what is drawn, as accurate as its size allows."""
+"""The figure of a plotter as vector graphics, as accurate as its size allows."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def save_graphic(
     *,
     error: float | None = None,
 ) -> Path:
-    """Write what a plotter shows as an SVG or PDF file; see ``plotter.vizlight.save_graphic``.
+    """Write the picture of a plotter as an SVG or PDF file; see ``plotter.vizlight.save_graphic``.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def save_graphic(
     best = drawn.attempt(path.suffix, first)
     if error is None:
         best = _fitting(drawn, path.suffix, best)
-    _note(path, best, asked=error)
+    _note(path, best, error=error)
     return replace_file(path, lambda draft: Path(draft).write_bytes(best.data))
 
 
@@ -85,7 +85,7 @@ class _Attempt(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class _Drawn:
-    """What a plotter draws: samples of its surfaces, and what lies over them."""
+    """Drawing of a plotter: samples of its surfaces, and the lines and words over them."""
 
     size: tuple[int, int]
     background: Color
@@ -105,12 +105,12 @@ class _Drawn:
         scale = int(min(max((SAMPLES / (width * height)) ** 0.5, 1), FINE))
         words, props = words_of(plotter)
         lines, courses = lines_of(plotter, live_of), []
-        with enlarged(plotter, scale, [*props, *(one.actor for one in lines)]):
+        with enlarged(plotter, scale, [*props, *(each.actor for each in lines)]):
             samples = samples_of(plotter)
         if lines:
             with enlarged(plotter, scale, props):
                 whole = samples_of(plotter)
-                courses = [course_of(one, whole, samples, scale) for one in lines]
+                courses = [course_of(each, whole, samples, scale) for each in lines]
         red, green, blue = pv.Color(plotter.background_color).float_rgb
         ground = np.rint(255 * np.array((red, green, blue)))
         shown = np.any(samples.colors != ground[: samples.colors.shape[2]], axis=2)
@@ -157,7 +157,7 @@ class _Drawn:
 
 
 def _in_channels(course: Course, count: int) -> Course:
-    """Return a course whose colours have some channels, all alike where there was one."""
+    """Return a course with some channels of colour, all alike where it had one."""
     return course._replace(color=np.broadcast_to(course.color, (len(course.color), count)))
 
 
@@ -200,22 +200,22 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
     return pixels if len(pixels.data) <= LARGEST else first
 
 
-def _note(path: Path, made: _Attempt, *, asked: float | None) -> None:
+def _note(path: Path, best: _Attempt, *, error: float | None) -> None:
     """Say where a figure is larger or less accurate than is usual."""
-    size = f"{len(made.data) / 1000:.0f} kB"
-    if not np.isfinite(made.error):
+    size = f"{len(best.data) / 1000:.0f} kB"
+    if not np.isfinite(best.error):
         _check.warn(
             f"'{path.name}' holds pixels and words, in {size}: as paths it would be larger than "
             f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; error= makes paths"
         )
-    elif len(made.data) > LARGEST:
+    elif len(best.data) > LARGEST:
         remedy = "a larger error= makes it smaller, and so do fewer details"
         _check.warn(
-            f"'{path.name}' has {size} at an error of {made.error:.1f} of 255, more than "
+            f"'{path.name}' has {size} at an error of {best.error:.1f} of 255, more than "
             f"{LARGEST // 1000} kB: {remedy}"
         )
-    elif asked is None and made.error > UNSAID:
+    elif error is None and best.error > UNSAID:
         _check.warn(
-            f"colours of '{path.name}' are within {made.error:.1f} of 255, so that it has at most "
+            f"colours of '{path.name}' are within {best.error:.1f} of 255, so that it has at most "
             f"{LARGEST // 1000} kB ({size}); error={UNSAID:g} makes a larger file"
         )

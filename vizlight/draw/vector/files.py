@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Color
 
-__all__ = ["Fill", "Item", "Picture", "Sheet", "Stroke", "Words", "figure_of", "pdf_of", "svg_of"]
+__all__ = ["Fill", "Item", "Picture", "Polyline", "Sheet", "Words", "figure_of", "pdf_of", "svg_of"]
 
 #: Steps of a coordinate in a pixel.
 STEPS = 10
@@ -40,7 +40,7 @@ class Fill:
 
 
 @dataclass(frozen=True)
-class Stroke:
+class Polyline:
     """Line of one colour through points in pixels, of a width in pixels."""
 
     color: Color
@@ -91,12 +91,12 @@ class Picture:
     size: tuple[float, float]
 
 
-Item: TypeAlias = "Fill | Stroke | Words | Picture"
+Item: TypeAlias = "Fill | Polyline | Words | Picture"
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What is painted, from the first to the last.
+    """Items in the order of painting.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class Sheet:
     groups : dict
         Items of each group, by its name.
     words : str
-        What a reader should know of the figure.
+        Notes for a reader of the figure.
     """
 
     size: tuple[int, int]
@@ -142,7 +142,7 @@ def _drawn(every: Iterable[Item]) -> Iterable[str]:
     """Yield the elements of items; paths are in tenths of pixels, in whole numbers."""
     small = False
     for item in every:
-        if small != isinstance(item, Fill | Stroke):
+        if small != isinstance(item, Fill | Polyline):
             small = not small
             yield (
                 f'<g transform="scale({1 / STEPS:g})" fill="none" stroke-linejoin="round">\n'
@@ -152,7 +152,7 @@ def _drawn(every: Iterable[Item]) -> Iterable[str]:
         if isinstance(item, Fill):
             if path := _path(item.rings):
                 yield f'<path fill="{_hex(item.color)}" d="{path}"/>\n'
-        elif isinstance(item, Stroke):
+        elif isinstance(item, Polyline):
             cap = ' stroke-linecap="round"' if item.round else ""
             yield (
                 f'<path stroke="{_hex(item.color)}" stroke-width="{STEPS * item.width:.3g}"{cap} '
@@ -232,7 +232,7 @@ def figure_of(sheet: Sheet) -> Figure:
         if isinstance(item, Fill):
             path = Path.make_compound_path(*(Path(ring, closed=False) for ring in _closed(item)))
             patch = PathPatch(path, facecolor=item.color, linewidth=0)
-        elif isinstance(item, Stroke):
+        elif isinstance(item, Polyline):
             cap = "round" if item.round else "butt"
             patch = PathPatch(
                 Path(item.points), fill=False, edgecolor=item.color, capstyle=cap,
@@ -266,7 +266,7 @@ def _closed(item: Fill) -> list[Array]:
 
 
 def pdf_of(sheet: Sheet) -> bytes:
-    """Return a sheet as the bytes of a PDF file, whose text is text.
+    """Return a sheet as the bytes of a PDF file, with its words as text.
 
     Parameters
     ----------

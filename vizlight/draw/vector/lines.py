@@ -1,4 +1,4 @@
-"""Lines of a plotter as strokes: what of them is seen, in which colours and widths."""
+"""Lines of a plotter as strokes: their visible parts, colours and widths."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
 from vizlight.draw.live import in_view, matrix_of
 from vizlight.draw.strokes import LEAST
-from vizlight.draw.vector.files import Stroke
+from vizlight.draw.vector.files import Polyline
 from vizlight.draw.vector.samples import actors_of
 from vizlight.geometry.contours.faces import SEEN, simplified
 from vizlight.geometry.contours.palette import nearest_colors
@@ -77,7 +77,7 @@ class Course(NamedTuple):
     line : ndarray of int, shape (n,)
         Number of the line.
     end : ndarray of bool, shape (n,)
-        Whether the line ends there.
+        Whether the line ends at the point.
     width : ndarray, shape (n,)
         Width in pixels.
     seen : ndarray of bool, shape (n,)
@@ -106,7 +106,7 @@ def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]
     live_of : callable
         Function that returns the live light of an actor, or None.
     """
-    found = []
+    lines = []
     for renderer in plotter.renderers:
         for actor in actors_of(renderer):
             mesh = actor.GetMapper().GetInputDataObject(0, 0)
@@ -120,8 +120,8 @@ def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]
                 continue
             how = Style() if live is None else live.stroke
             colors = _unlit_colors(actor, pv.wrap(mesh), live)
-            found.append(Lines(renderer, actor, how, float(style.GetLineWidth()), colors))
-    return found
+            lines.append(Lines(renderer, actor, how, float(style.GetLineWidth()), colors))
+    return lines
 
 
 def _unlit_colors(actor: vtkActor, mesh: pv.PolyData, live: Live | None) -> Array | None:
@@ -189,19 +189,19 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
     # A surface on which a line lies hides part of its width, and must not make it dashed.
     seen = distance - _distance(_read(samples.depth, place), camera) <= reach
     color: Array = np.zeros((len(place), samples.colors.shape[2]))
-    found = np.zeros(len(place))
+    counts = np.zeros(len(place))
     for part in ACROSS:
         side = place + part * width[:, np.newaxis] * across
         drawn = _read(samples.depth, side)
         near = np.abs(distance - _distance(drawn, camera)) <= reach
         near &= drawn < _read(bare.depth, side)
         color[near] += _read(samples.colors, side)[near]
-        found += near
-    mean = color / np.maximum(found, 1)[:, np.newaxis]
-    color, colored = _continued(mean, found > 0, number[start])
+        counts += near
+    mean = color / np.maximum(counts, 1)[:, np.newaxis]
+    color, colored = _continued(mean, counts > 0, number[start])
     if lines.colors is not None:
-        own = lines.colors[ids][:, : color.shape[1]]
-        color = own[start] + along[:, np.newaxis] * (own[start + 1] - own[start])
+        colors = lines.colors[ids][:, : color.shape[1]]
+        color = colors[start] + along[:, np.newaxis] * (colors[start + 1] - colors[start])
     seen &= colored & (width > THIN)
     return Course(place / scale, distance, number[start], ends, width, seen, color, halo)
 
@@ -214,8 +214,8 @@ def _over_surface(
     hides = np.zeros(len(place), dtype=np.bool_)
     for sign in (-1, 1):
         side = place + sign * away[:, np.newaxis] * across
-        own, other = _read(samples.colors, side), _read(bare.colors, side)
-        covers = np.all(np.abs(own - ground) < SAME, axis=1)
+        color, other = _read(samples.colors, side), _read(bare.colors, side)
+        covers = np.all(np.abs(color - ground) < SAME, axis=1)
         hides |= covers & np.any(np.abs(other - ground) >= SAME, axis=1)
     return hides
 
@@ -229,7 +229,7 @@ def _projected(points: Array, renderer: vtkRenderer) -> Array:
 
 
 def _distance(depth: Array, camera: vtkCamera) -> Array:
-    """Return the distances from the plane of the eye of what has some depth."""
+    """Return the distances from the plane of the eye of some depths."""
     near, far = camera.GetClippingRange()
     if camera.GetParallelProjection():
         return np.asarray(near + depth * (far - near))
@@ -276,12 +276,12 @@ def _across(place: Array, line: Indices) -> Array:
     return across
 
 
-def _continued(color: Array, found: Bools, line: Indices) -> tuple[Array, Bools]:
+def _continued(color: Array, full: Bools, line: Indices) -> tuple[Array, Bools]:
     """Return colours with those of the place before, or of the first after, where none is found."""
-    where = np.where(found, np.arange(len(found)), -1)
+    where = np.where(full, np.arange(len(full)), -1)
     before = np.maximum.accumulate(where) if len(where) else where
-    first = np.append(np.flatnonzero(found), -1)
-    after = first[np.minimum(np.searchsorted(first[:-1], np.arange(len(found))), len(first) - 1)]
+    first = np.append(np.flatnonzero(full), -1)
+    after = first[np.minimum(np.searchsorted(first[:-1], np.arange(len(full))), len(first) - 1)]
     same = (before >= 0) & (line[before] == line)
     chosen = np.where(same, before, after)
     valid = (chosen >= 0) & (line[chosen] == line)
@@ -296,7 +296,7 @@ def _read(picture: Array, place: Array) -> Array:
     return values
 
 
-def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Stroke]:
+def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Polyline]:
     """Yield strokes from the farthest to the nearest, each after its halo.
 
     Parameters
@@ -342,6 +342,6 @@ def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterat
         red, green, blue = (centres[kind[here[0], 0]] / 255).tolist()
         width = float(np.mean(every.width[here]))
         if (halo := float(np.median(every.halo[here]))) > 0:
-            yield Stroke(ground, points, width + 2 * halo)
+            yield Polyline(ground, points, width + 2 * halo)
         whole = bool(every.end[here[0]] and every.end[here[-1]])
-        yield Stroke((red, green, blue), points, width, whole)
+        yield Polyline((red, green, blue), points, width, whole)

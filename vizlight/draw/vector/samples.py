@@ -1,8 +1,8 @@
 """Pictures of a plotter at several samples per pixel, with more than 8 bits per channel.
 
 Colours are read back in three bytes for each channel: a line at the end of the fragment shaders
-writes one channel in the place of the colour. What is drawn otherwise, such as what shines through,
-keeps its 8 bits.
+writes one channel in the place of the colour. Surfaces that are drawn otherwise, such as
+translucent ones, keep their 8 bits.
 """
 
 from __future__ import annotations
@@ -48,14 +48,14 @@ ROUNDING = 0.51
 
 
 class Samples(NamedTuple):
-    """Colours and depths of what a plotter draws.
+    """Colours and depths of the picture of a plotter.
 
     Attributes
     ----------
     colors : ndarray of float32, shape (rows, columns, c)
         Channels from 0 to 255, from the upper left; one where all three are equal everywhere.
     depth : ndarray of float32, shape (rows, columns)
-        Depth from 0, near, to 1, of what is behind all.
+        Depth from 0, near, to 1, behind all.
     """
 
     colors: Array
@@ -83,7 +83,7 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
     scale : int
         Samples for each pixel, along a side.
     hidden : sequence of vtkProp
-        What is not drawn.
+        Props that are not drawn.
     """
     window = plotter.render_window
     assert window is not None
@@ -123,7 +123,7 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
 
 
 def samples_of(plotter: pv.BasePlotter) -> Samples:
-    """Return what a plotter draws now, sample by sample.
+    """Return the present picture of a plotter, sample by sample.
 
     Parameters
     ----------

@@ -43,9 +43,9 @@ def words_of(plotter: pv.BasePlotter) -> tuple[list[Item], list[vtkProp]]:
     -------
     list of Item
     list of vtkProp
-        What they stand for.
+        Props that they stand for.
     """
-    found: list[Item] = []
+    words: list[Item] = []
     props: list[vtkProp] = []
     height = plotter.window_size[1]
     for renderer in plotter.render_window.GetRenderers():  # type: ignore[union-attr]
@@ -61,8 +61,8 @@ def words_of(plotter: pv.BasePlotter) -> tuple[list[Item], list[vtkProp]]:
             else:
                 continue
             props.append(prop)
-            found += every
-    return found, props
+            words += every
+    return words, props
 
 
 def _text(actor: vtkTextActor, renderer: vtkRenderer, height: int) -> Iterator[Words]:
@@ -163,14 +163,14 @@ def _corners(actor: vtkCornerAnnotation, plotter: pv.BasePlotter) -> Iterator[Wo
     actor.SetVisibility(True)
     for i in shown:
         across, up = CORNERS[i]
-        own = changed.copy()
+        pixels = changed.copy()
         if len(shown) > 1:
             # Each has the third of the picture in which it stands.
             for axis, share in enumerate((1 - up, across)):
                 third = (np.arange(changed.shape[axis]) * 3 // changed.shape[axis]) == 2 * share
-                own &= third[:, np.newaxis] if axis == 0 else third
-        if own.any():
-            yield _fitted(texts[i].strip().splitlines(), own, across, actor.GetTextProperty())
+                pixels &= third[:, np.newaxis] if axis == 0 else third
+        if pixels.any():
+            yield _fitted(texts[i].strip().splitlines(), pixels, across, actor.GetTextProperty())
 
 
 def _picture(plotter: pv.BasePlotter) -> Array:

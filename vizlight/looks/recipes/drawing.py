@@ -1,4 +1,4 @@
-"""What a recipe is given and what it returns: one mesh with what is asked of it, and a drawing."""
+"""Input and result of a recipe: one mesh with the wishes for it, and a drawing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from vizlight.files import FORMATS
 from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Eye, eye_of
+from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
@@ -76,7 +76,7 @@ class Layer:
     live : bool
         Whether the plotter's component for light adds it, or PyVista itself.
     quiet : bool
-        Whether what cannot be lit is said elsewhere.
+        Whether points that cannot be lit are reported elsewhere.
     """
 
     mesh: Step
@@ -94,14 +94,14 @@ class Layer:
 
 @dataclass(frozen=True)
 class Doubt:
-    """What is read back from a picture before it is chosen.
+    """Questions that a picture must answer before it is chosen.
 
     Parameters
     ----------
     figures : sequence of str
         Figures of legibility that the picture must have.
     instead : callable
-        Function that draws what is shown where one of them is unreadable.
+        Function that makes another drawing where one of them is unreadable.
     """
 
     figures: Sequence[str]
@@ -110,7 +110,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a recipe makes of a case.
+    """Drawing that a recipe makes of a case.
 
     Parameters
     ----------
@@ -123,13 +123,13 @@ class Drawing:
     lit : Step
         Step that makes the main mesh with its light as point arrays.
     words : str
-        What is shown, as the end of "shown ...".
+        Subject, as the end of "shown ...".
     keys : sequence of dict
         Keywords of ``plotter.vizlight.add_key``, for each key.
     notes : sequence of str
-        What a reader should know.
+        Notes for a reader.
     kind : Step, optional
-        Step whose mesh is of the type of the lit mesh. Default: the surface of a mesh.
+        Step with a mesh of the type of the lit mesh. Default: the surface of a mesh.
     parts : sequence of str
         Names of the blocks of the lit mesh that are written to files of their own.
     alone : Step, optional
@@ -141,7 +141,7 @@ class Drawing:
     background : str, optional
         Colour behind the data, where neither a white nor a dark one suits them.
     doubt : Doubt, optional
-        What the picture may fail to tell.
+        Questions that the picture may fail to answer.
     """
 
     layers: Sequence[Layer]
@@ -186,14 +186,14 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Case:
-    """One mesh, what is asked of it, and the question that a rule or a user chose.
+    """One mesh, the wishes for it, and the question that a rule or a user chose.
 
     Parameters
     ----------
     data : Step
         Step that reads the mesh.
     contents : Contents
-        What it holds.
+        Contents of the mesh.
     wishes : Wishes
         Options that were given.
     question : str
@@ -250,7 +250,7 @@ class Case:
         box : Step
             Step that makes the edges of the box.
         camera : Step
-            Step of the camera, set by :meth:`camera` of what is in a box.
+            Step of the camera, set by :meth:`camera` on the data in the box.
         """
         edges: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
         layers = [Layer(Step("", "render.box_edges", box, camera), edges, live=False)]
@@ -260,7 +260,7 @@ class Case:
             layers.append(Layer(axes, ink | BESIDE, live=False))
         return layers
 
-    def eye(self, mesh: Step) -> Eye:
+    def eye(self, mesh: Step) -> Viewpoint:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
@@ -270,7 +270,7 @@ class Case:
 
     @cached_property
     def frame(self) -> Step | None:
-        """Step that makes what stands around a map, None for what is none or is seen at a slant."""
+        """Step that makes the frame of a map, None for other data and for a map seen at a slant."""
         return map_parts.frame(self.data, self.wishes, self._up) if self._is_above else None
 
     @property
@@ -300,14 +300,14 @@ class Case:
         """Whether the mesh lies on the earth as a ball, and is alone in the picture."""
         return self.wishes.frame is None and globes.is_globe(self.contents.mesh)
 
-    def camera(self, mesh: Step, eye: Eye | None = None, *, boxed: bool = False) -> Step:
-        """Return the step that sets the camera on a mesh, by the options or by what suits it.
+    def camera(self, mesh: Step, eye: Viewpoint | None = None, *, boxed: bool = False) -> Step:
+        """Return the step that sets the camera on a mesh, by the options or as suits it.
 
         Parameters
         ----------
         mesh : Step
             Step of the mesh.
-        eye : Eye, optional
+        eye : Viewpoint, optional
             From where it is seen.
         boxed : bool
             Whether it is a box with numbers along its edges.
@@ -328,7 +328,7 @@ class Case:
         return self.wishes.scene(self.question, camera)
 
     def exposed(self, mesh: Step, camera: Step, question: str = "", **light: object) -> Step:
-        """Return the step that makes the scene of a question, exposed for what is seen of a mesh.
+        """Return the step that makes the scene of a question, exposed for the seen part of a mesh.
 
         A scene that was given is not exposed.
         """
@@ -340,7 +340,7 @@ class Case:
 
     @property
     def map_on_ground(self) -> str:
-        """Colour map of thin lines, of which what is large stands out from the ground."""
+        """Colour map of thin lines, on which large values stand out from the ground."""
         return f"vizlight.on_{self.wishes.style}"
 
     def ranged(self, values: Array, name: str, cmap: str, *, lengths: bool) -> tuple[Keywords, str]:
@@ -351,7 +351,7 @@ class Case:
         values : ndarray
             Values, of which those that are finite count.
         name : str
-            What they are.
+            Name of the values.
         cmap : str
             Colour map where none is asked for.
         lengths : bool
@@ -409,16 +409,16 @@ class Case:
             If there is none.
         """
         if self.array is None:
-            known = [array.name for array in self.contents.arrays]
-            expected = f"the name of an array, {one_of(known)}"
+            names = [array.name for array in self.contents.arrays]
+            expected = f"the name of an array, {one_of(names)}"
             raise ValueError(message("array", expected, None))
         return self.array
 
     @property
     def width(self) -> float:
         """Least width of lines, in pixels."""
-        given = self.wishes.picture.get("line_width")
-        return float(given) if given else round(max(1.5, THIN * max(self.wishes.size)), 1)
+        width = self.wishes.picture.get("line_width")
+        return float(width) if width else round(max(1.5, THIN * max(self.wishes.size)), 1)
 
 
 def _are_borders(edges: pv.PolyData, surface: pv.PolyData) -> bool:
@@ -456,7 +456,7 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
     """Return the words that the names of the components of a vector have in common."""
     arrays = meaning.of(mesh).arrays
     every = [arrays.get(name, {}) for name in names]
-    texts = [one.get("standard_name") or one.get("long_name") or "" for one in every]
+    texts = [array.get("standard_name") or array.get("long_name") or "" for array in every]
     first, *others = (re.split(r"[_ ]+", text) for text in texts)
     left = [word for word in first if all(word in words for words in others)]
     return " ".join(left).replace("component of ", "").replace(" component", "")

@@ -1,6 +1,6 @@
 """Recipes of vectors: on a surface, on a sheet, and in a volume.
 
-What of a field is shown follows from how fast it turns in the picture: strokes with their sense
+The drawing of a field follows from how fast it turns in the picture: strokes with their sense
 where neighbours run alike, hue where strokes would be too fine, else the lengths of vectors alone.
 Where that is in doubt the picture is read back, and the next is drawn if it cannot be read.
 """
@@ -177,8 +177,8 @@ def _bar(mesh: Step, name: str, colors: Keywords, sense: str) -> Keywords:
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
     """Return the finite lengths of vectors."""
-    found: Array = np.linalg.norm(np.asarray(mesh[name], dtype=np.float64), axis=1)
-    return found[np.isfinite(found)]
+    sizes: Array = np.linalg.norm(np.asarray(mesh[name], dtype=np.float64), axis=1)
+    return sizes[np.isfinite(sizes)]
 
 
 def _is_even(mesh: pv.DataSet, name: str) -> bool:
@@ -282,7 +282,7 @@ def flow(case: Case) -> Drawing:
 
 
 def moving(drawing: Drawing) -> Drawing | None:
-    """Return a drawing whose strokes move in a movie, None where it has none with a sense.
+    """Return a drawing with strokes that move in a movie, None without strokes that have a sense.
 
     The key says how much time a movie shows.
     """
@@ -318,12 +318,12 @@ def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Ste
     evenly = evenly and mesh.run().n_cells <= MOST_CELLS and "surface" not in keywords
     for share in SPACINGS_IN_VOLUME:
         spacing = share * float(mesh.run().length)
-        own: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * spacing:.3g}")}
+        usual: Keywords = {"stroke_length": float(f"{LONG_IN_VOLUME * spacing:.3g}")}
         if evenly:
-            own["spacing"] = float(f"{spacing:.3g}")
+            usual["spacing"] = float(f"{spacing:.3g}")
         elif "spacing" not in keywords:
-            own["seeds"] = SEEDS
-        step = _long_lines(case, mesh, scene, own | keywords, float(f"{SHORTEST * spacing:.3g}"))
+            usual["seeds"] = SEEDS
+        step = _long_lines(case, mesh, scene, usual | keywords, float(f"{SHORTEST * spacing:.3g}"))
         if not evenly or _left_out(step) <= step.run().n_lines:
             break
     return step
@@ -373,7 +373,7 @@ def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
 
 
 def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | None:
-    """Return the step that lays evenly spaced strokes on a surface, None where there is none."""
+    """Return the step that lays evenly spaced strokes on a surface, None if none can be laid."""
     surface = mesh.run()
     if has_lines_only(surface) or not surface.n_cells:
         return None

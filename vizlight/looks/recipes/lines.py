@@ -31,8 +31,8 @@ POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 def lines(case: Case) -> Drawing:
     """Draw lines lit by their heading or in the colours of their direction, or of values.
 
-    Values are drawn without light, so that lightness tells them too: hues alone are little seen in
-    what is thin.
+    Values are drawn without light, so that lightness tells them too: hues alone are hard to see on
+    thin lines.
     """
     mesh = case.data
     camera = case.camera(mesh)
@@ -41,8 +41,8 @@ def lines(case: Case) -> Drawing:
     drawn: Keywords = {"scene": scene, "line_width": width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words = "lines by their heading"
-    asked, array = case.wishes.picture.get("scalars"), case.array
-    if asked == DIRECTION or (asked is None and case.wishes.question == "auto" and array is None):
+    name, array = case.wishes.picture.get("scalars"), case.array
+    if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         layer = Layer(_by_direction(lit), {**shown, "line_width": width})
@@ -79,7 +79,7 @@ def _width(case: Case) -> float:
 
 
 def points(case: Case) -> Drawing:
-    """Draw points as small balls, or as discs in the colours of values where there are some."""
+    """Draw points as small balls, or as discs in the colours of values if they have any."""
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)

@@ -1,4 +1,4 @@
-"""What is drawn on and around a map, whatever recipe draws its data."""
+"""Parts drawn on and around a map, whatever recipe draws its data."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     lines, levels, factor = contoured
     inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
     thin = {"line_width": round(case.width / (2.4 if is_relief else 1.5), 1), "halo": False}
-    own = [
+    layers = [
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
         for name, keywords in (("lines", thin), ("numbers", {}), ("extremes", {}))
         if lines.run()[name].n_points
@@ -106,7 +106,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
         of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
         keys = [key | of_bar for key in keys]
-    return replace(drawing, layers=[first, *own, *others], keys=keys)
+    return replace(drawing, layers=[first, *layers, *others], keys=keys)
 
 
 def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: bool) -> list[float]:
@@ -130,7 +130,7 @@ def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: boo
 
 
 def _without_limits(keywords: Keywords) -> Keywords:
-    """Return keywords of a mesh without what a lookup table says."""
+    """Return keywords of a mesh without those that a lookup table replaces."""
     return {name: value for name, value in keywords.items() if name not in ("clim", "nan_color")}
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.looks.framing import Eye
+from vizlight.looks.framing import Viewpoint
 from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of
 from vizlight.looks.steps import Step
 from vizlight.vtk.polylines import has_lines_only
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Light
 
 #: Eye above a map.
-ABOVE = Eye((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
+ABOVE = Viewpoint((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
 #: Points above which a relief has no sky, which would take longer than all the rest.
 MOST_SKY = 250_000
 
@@ -113,7 +113,7 @@ def _level_light(lights: Sequence[Light]) -> float:
 
 
 def _raised(case: Case, array: Named) -> tuple[Keywords, str]:
-    """Return the options of a shadow on heights, and what to say of their factor."""
+    """Return the options of a shadow on heights, and the note on their factor."""
     keywords: Keywords = {"elevation": array.name} | dict(case.wishes.light)
     factor, note = case.wishes.heightened(case.data.run(), array.name)
     return (keywords | {"exaggeration": factor} if factor != 1 else keywords), note

@@ -62,8 +62,8 @@ def values(case: Case) -> Drawing:
     keywords = case.wishes.colors
     note = ""
     if bent and array.role in ("values", "heights"):
-        own = np.asarray(mesh.run()[array.name], dtype=np.float64)
-        keywords, note = case.ranged(own, array.name, ON_SURFACES, lengths=False)
+        rows = np.asarray(mesh.run()[array.name], dtype=np.float64)
+        keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
@@ -142,7 +142,7 @@ def contours(case: Case) -> Drawing:
 
 
 def projection(case: Case) -> Drawing:
-    """Draw a mesh of n-space, projected to 3-space and lit there or before."""
+    """Draw a mesh of n-space, projected to 3-space and lit before or after."""
     mesh, light = case.data, dict(case.wishes.light)
     rows = mesh.run().point_data.get(light.get("positions", POSITION))
     # Light after the projection is in the space of the picture.
@@ -160,8 +160,8 @@ def _tips(mesh: Step, length: object) -> Step:
     skin: pv.PolyData = blocks.surface(mesh.run(), "mesh")
     tip = LENGTH * skin.length
     if isinstance(length, str):
-        known = length in skin.point_data and skin.n_points
-        tip = float(skin.point_data[length].max()) if known else 0.0
+        has_lengths = length in skin.point_data and skin.n_points
+        tip = float(skin.point_data[length].max()) if has_lengths else 0.0
     elif isinstance(length, int | float):
         tip = float(length)
     normals = Step("", ".compute_normals", mesh, auto_orient_normals=True, cell_normals=False)
@@ -169,7 +169,7 @@ def _tips(mesh: Step, length: object) -> Step:
 
 
 def _inside(case: Case, array: Named, kinds: Sequence[float]) -> Step | None:
-    """Return the step that leaves out the only kind that shows, None if there is no other."""
+    """Return the step that leaves out the only visible kind, None if no other is inside."""
     ends = (kinds[0] - 0.5, kinds[0] + 0.5)
     # Cells that have a point of the kind go too.
     inner = Step("inside", ".threshold", case.data, ends, scalars=array.name, invert=True)
@@ -187,7 +187,7 @@ def _of_labels(case: Case, array: Named) -> Step | None:
 
 
 def _by_corner(case: Case, array: Named) -> Step:
-    """Return the step that takes a surface whose cells have the labels of the nearest points."""
+    """Return the step that takes a surface, with the labels of the nearest points on its cells."""
     surface = case.surface
     if array.of_cells or array.name not in surface.run().point_data:
         return surface

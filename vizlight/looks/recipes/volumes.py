@@ -78,12 +78,12 @@ def isosurface(case: Case) -> Drawing:
 
 def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
     """Return the array of a volume, of values or kinds, that changes along an isosurface."""
-    for one in case.contents.arrays:
-        if one.role in ("values", "kinds") and one.name in isosurface.array_names:
-            low, high = range_of(isosurface, one.name)
-            # What is a function of the values of the isosurface has one value on it.
-            if high - low > LEAST_SPREAD * np.subtract(*range_of(case.data.run(), one.name)[::-1]):
-                return one
+    for each in case.contents.arrays:
+        if each.role in ("values", "kinds") and each.name in isosurface.array_names:
+            low, high = range_of(isosurface, each.name)
+            # An array that is a function of the values of the isosurface has one value on it.
+            if high - low > LEAST_SPREAD * np.subtract(*range_of(case.data.run(), each.name)[::-1]):
+                return each
     return None
 
 

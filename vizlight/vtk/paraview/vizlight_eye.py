@@ -1,7 +1,7 @@
 """Script for ParaView that ties the eye of Vizlight's filters to a view: the light follows it.
 
-Run it by Run Script in the Python shell or as a macro, for all filters that are there and the
-active view; in a script of pvpython: ``import vizlight_eye; vizlight_eye.follow(filters, view)``.
+Run it by Run Script in the Python shell or as a macro, for all filters and the active view; in a
+script of pvpython: ``import vizlight_eye; vizlight_eye.follow(filters, view)``.
 """
 
 from paraview.simple import GetActiveViewOrCreate, GetSources
@@ -13,7 +13,7 @@ def follow(filters=None, view=None):
     Parameters
     ----------
     filters : list of proxies, optional
-        Filters Vizlight Illuminate. Default: all that are there.
+        Filters Vizlight Illuminate. Default: all of them.
     view : proxy, optional
         View with a camera. Default: the active one.
 
@@ -24,7 +24,7 @@ def follow(filters=None, view=None):
     """
     view = view or GetActiveViewOrCreate("RenderView")
     if filters is None:
-        filters = [one for one in GetSources().values() if hasattr(one, "ParallelProjection")]
+        filters = [it for it in GetSources().values() if hasattr(it, "ParallelProjection")]
 
     def look(*_):
         camera = view.GetActiveCamera()
@@ -32,13 +32,13 @@ def follow(filters=None, view=None):
         # An eye at infinity is the direction toward it, which runs against the projection's.
         away = [-x for x in camera.GetDirectionOfProjection()]
         eye = away if parallel else [*camera.GetPosition()]
-        late = [one for one in filters if (one.ParallelProjection, [*one.Eye]) != (parallel, eye)]
+        late = [it for it in filters if (it.ParallelProjection, [*it.Eye]) != (parallel, eye)]
         if late:
             # Where the camera was reset, the view takes for new what it has shown already, and a
             # change now would be lost.
             view.SMProxy.Update()
-        for one in late:
-            one.ParallelProjection, one.Eye = parallel, eye
+        for it in late:
+            it.ParallelProjection, it.Eye = parallel, eye
 
     look()
     return view.SMProxy.AddObserver("StartEvent", look)

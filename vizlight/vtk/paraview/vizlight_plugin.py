@@ -23,13 +23,13 @@ BOOLEAN = '<BooleanDomain name="bool"/>'
 
 
 def entries(*texts):
-    """Return the domain of a property whose values are numbers with texts."""
-    found = "".join(f'<Entry value="{i}" text="{text}"/>' for i, text in enumerate(texts))
-    return f'<EnumerationDomain name="enum">{found}</EnumerationDomain>'
+    """Return the domain of a property with numbers as values, each with a text."""
+    text_of_all = "".join(f'<Entry value="{i}" text="{text}"/>' for i, text in enumerate(texts))
+    return f'<EnumerationDomain name="enum">{text_of_all}</EnumerationDomain>'
 
 
 def prop(kind, name, values, words, domain="", *, shown="default"):
-    """Return the description of a property whose method is Put and its name."""
+    """Return the description of a property with the method Put and its name."""
     values = [*values] if isinstance(values, tuple) else [values]
     return (
         f'<{kind}VectorProperty name="{name}" command="Put{name}" panel_visibility="{shown}" '
