@@ -222,6 +222,7 @@ OWN = {
     "coasts.coasts": {"bounds": (-10.0, 40.0, 35.0, 60.0)},
     "globes.globe": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
     "filters.key.key": {"scene": presets.shape(), "levels": [0.2, 0.4], "clim": (0.0, 1.0)},
+    "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "map_frames.graticule": {"mesh": charted, "letters": 2e5},

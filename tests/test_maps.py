@@ -80,8 +80,8 @@ def test_heights_are_blue_below_0_and_lighter_toward_the_coast():
     assert (sea[:, 2] > sea[:, 0]).all()
     assert (land[:-8, 2] < land[:-8, 1]).all()
     assert (np.diff(sea @ (0.2, 0.7, 0.1)) > 0).all()
-    # Light colours, as a shadow dims them.
-    assert (land @ (0.2126, 0.7152, 0.0722)).min() > 150
+    # No dark colours, as a shadow dims them.
+    assert (land @ (0.2126, 0.7152, 0.0722)).min() > 100
     only = np.asarray(maps.heights(10.0, 20.0).values)
     np.testing.assert_allclose(only[0, :3], land[0], atol=4)
     deep = np.asarray(maps.heights(-20.0, -10.0).values, dtype=float)

@@ -81,14 +81,14 @@ for _map in (_surface, _paper, _dark):
 #: Colours of the sea bed from deep to shallow, and of the ground from low to high.
 _SEA = LinearSegmentedColormap.from_list("sea", ["#2f6495", "#78aed3", "#c3e1ee"])
 _GROUND = LinearSegmentedColormap.from_list(
-    "ground", ["#7fb57f", "#c3d29b", "#efe0ad", "#d3b082", "#c09c84", "#fbf8f5"]
+    "ground", ["#4a9058", "#a9c36a", "#ecd07a", "#bf8145", "#935f49", "#f8f4f0"]
 )
 
 
 def heights(low: float, high: float, /) -> pv.LookupTable:
     """Return a lookup table for heights: blue below 0, and green over tan to white above.
 
-    The colours are light, since a shadow on them dims them. The sea is darker where it is deeper.
+    No colour is dark, since a shadow on it dims it. The sea is darker where it is deeper.
 
     Parameters
     ----------

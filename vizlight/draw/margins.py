@@ -39,6 +39,8 @@ BAR_HIGH = 0.8
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
 #: height of its band in letters of keys.
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
+#: Width of a whole title that is not broken, in that of its place by letters of usual width.
+SHORT = 1.3
 #: Least distance of numbers along a bar, in letters.
 APART = 1.5
 #: Sum of the channels of a background above which words on it are black.
@@ -94,7 +96,11 @@ class Margin:
         width, height = int(wide * (right - left)), int(high * (top - bottom))
         if not width or not height:
             return
-        title = "; ".join(dict.fromkeys(key.title for key in self._keys if key.title))
+        named = [key.title for key in self._keys if key.title]
+        if len(self._keys) == 1 and self._keys[0].is_bar and not _is_map(renderer):
+            # Its name stands above the bar already.
+            named = [name for name in named if ";" in name]
+        title = "; ".join(dict.fromkeys(named))
         if (width, height) != self._pixels:
             self._pixels = (width, height)
             share_x, share_y = data_share(
@@ -310,6 +316,7 @@ class MarginKey:
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
         columns = max(columns, min(longest, int(1.4 * columns)))
+        columns = len(head) if len(head) <= SHORT * columns else columns
         self._lines = [line for part in head.splitlines() for line in wrapped(part, columns)]
         words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:

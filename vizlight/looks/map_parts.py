@@ -33,6 +33,8 @@ COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
 #: more are too dense; and their letters as a share of those of the frame.
 MOST_POINTS, LEVELS, SMALL = 4_000_000, (8, 16), 0.7
+#: Points along a side of a map from which on it is drawn as it is, and most steps between points.
+FINE, MOST_FINER = 300, 16
 #: Least distance between isolines, in heights of their letters.
 SPARSE = 1.3
 #: Standard names of arrays whose highs and lows are marked.
@@ -135,6 +137,18 @@ def isolines(
     text_of = dict(zip(shown, words, strict=True))
     step.hold(iso.labelled(mesh.run(), array.name, pieces, size, text_of, shore, unit))
     return step, [*shown.values()], factor
+
+
+def smoothed(mesh: Step, array: Named) -> Step | None:
+    """Return the step that draws a grid of few points as smooth, None for others."""
+    grid = mesh.run()
+    sizes = [size for size in getattr(grid, "dimensions", ()) if size > 1]
+    if len(sizes) != 2 or array.name not in grid.point_data:
+        return None
+    factor = min(FINE // max(sizes), MOST_FINER)
+    if factor < 2 or not np.isfinite(grid.point_data[array.name]).all():
+        return None
+    return Step("smooth", "vizlight.cartography.smoothed", mesh, array.name, factor)
 
 
 def shore() -> Step:

@@ -49,9 +49,9 @@ CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 3.5
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
-#: widths of lines: on surfaces, where wider ones darken what is beside them for the eye, and in
-#: volumes.
-HEAD_WIDTH, WIDTHS, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (4.0, 5.5)
+#: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
+#: that bend, where thinner ones tell as much, and in volumes.
+HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.6, 3.2), (4.0, 5.5)
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
@@ -191,7 +191,8 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     """Return the layer of strokes in black, for grounds that are light in either style."""
     # The lamps of a user are for the ground.
     scene = even_light(camera)
-    wide = _head_width(case, strokes, camera, WIDTHS)
+    flat = case.contents.flat_axis is not None
+    wide = _head_width(case, strokes, camera, WIDTHS if flat else WIDTHS_ON_SURFACE)
     return Layer(
         strokes,
         {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},

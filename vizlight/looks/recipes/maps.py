@@ -83,7 +83,9 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     ends = clim or range_of(case.data.run(), array.name)
     # Lines of a relief are as fine as its ground.
     sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
-    contoured = map_parts.isolines(case.data, array, ends, size, coasts, **sparse)
+    smooth = None if is_relief else map_parts.smoothed(case.data, array)
+    ground = case.data if smooth is None else smooth
+    contoured = map_parts.isolines(ground, array, ends, size, coasts, **sparse)
     if contoured is None:
         return drawing
     lines, levels, factor = contoured
@@ -95,6 +97,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         if lines.run()[name].n_points
     ]
     first, *others = drawing.layers
+    if smooth is not None:
+        first = replace(first, mesh=smooth)
     keys = [
         key | {"title": f"{key['title']}{_every(key['title'], levels)}"} for key in drawing.keys
     ]
