@@ -119,6 +119,8 @@ def test_flow_that_is_asked_for_has_the_colours_of_its_speed_and_its_light_in_fi
     look = vizlight.look(grid, "flow", size=(300, 200))
     assert look.drawing.keys[0]["question"] == "value"
     assert "speed" in look.drawing.words
+    # The names of colour maps are known to a script.
+    assert "import vizlight.maps\n" in look.script()
     assert np.max(look.mesh["luminance"]) < 0.95
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from vizlight._types import Foreign
 
 #: First names of paths: modules in groups, and modules of vizlight.
-MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight",))
+MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight", "vizlight.maps"))
 OWN = ("files", "movie", "paraview", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.
@@ -142,6 +142,9 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
                 lines.append(f"# {step.name}: the {type(step.arguments[0]).__name__} of the look")
             elif step.name or any(step is last for last in job):
                 lines += _statement(step, reported=any(step is other for other in reported))
+    if any('"vizlight.' in line for line in lines):
+        # Its colour maps have names as soon as their module is loaded.
+        heads = heads - {"vizlight"} | {"vizlight.maps"}
     groups = [[f"import {head}" for head in group if head in heads] for group in MODULES]
     if names := [head for head in OWN if head in heads]:
         groups[-1].append(f"from vizlight import {', '.join(names)}")
