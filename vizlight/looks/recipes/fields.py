@@ -247,7 +247,9 @@ def flow(case: Case) -> Drawing:
     without_light = case.wishes.question == "auto" or (
         case.wishes.question == "flow" and case.wishes.make_scene is None
     )
-    by_speed = without_light and "surface" not in keywords
+    # Lines of a line field have no speed.
+    has_speed = "surface" not in keywords and not keywords.get("line_field")
+    by_speed = without_light and has_speed
     by_speed = by_speed and not _is_even(mesh.run(), array.name)
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
     # Lines that are asked for have their light in files.
