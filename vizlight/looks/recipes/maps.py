@@ -92,7 +92,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
     thin = {"line_width": round(case.width / (2.4 if is_relief else 1.5), 1), "halo": False}
     layers = [
-        Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords})
+        # A line of one point has no light, and no place in the picture.
+        Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords}, quiet=True)
         for name, keywords in (("lines", thin), ("numbers", {}), ("extremes", {}))
         if lines.run()[name].n_points
     ]
