@@ -17,7 +17,7 @@ LOOKS = {
     "brain": "brain.vti",
     "earth": "earth_relief.vti",
 }
-SIZE = (720, 480)
+SIZE = (600, 400)
 
 
 def write(app):
@@ -25,7 +25,7 @@ def write(app):
     folder = Path(app.srcdir) / "guide" / "pictures" / "front"
     folder.mkdir(parents=True, exist_ok=True)
     for name, data in LOOKS.items():
-        vizlight.look(vizlight.load_example(data), size=SIZE).save(folder / f"{name}.png")
+        vizlight.look(vizlight.load_example(data), size=SIZE).save(folder / f"{name}.jpg")
     pv.close_all()
 
 
