@@ -11,7 +11,9 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.ticks import even_numbers
+from vizlight.mesh import blocks
 from vizlight.vtk import letters
+from vizlight.vtk.letters import DIGIT
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
@@ -20,8 +22,6 @@ __all__ = ["box_axes", "box_edges"]
 
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
-#: Height of digits in the size of a font.
-DIGIT = 0.73
 #: Least length of an edge, and of the distance between its numbers, in heights of letters.
 SHORTEST, APART = 3.0, 4.0
 #: Most numbers along an edge.
@@ -61,10 +61,7 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
     parts = [part for axis in range(3) for part in _along(box, axis, eye, size)]
     if not parts:
         return pv.PolyData()
-    starts = np.cumsum([0, *(len(points) for points, _ in parts)])
-    ids = np.concatenate([ids + start for (_, ids), start in zip(parts, starts, strict=False)])
-    faces = np.column_stack([np.full(len(ids), 3), ids]).ravel()
-    return pv.PolyData(np.concatenate([points for points, _ in parts]), faces)
+    return blocks.polydata(*letters.union(parts))
 
 
 def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
@@ -94,8 +91,7 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
         for edge in _edges(box, axis)
         if not all(_sides_seen(box, axis, edge, eye))
     ]
-    lines = np.column_stack([np.full(len(ends), 2), np.arange(2 * len(ends)).reshape(-1, 2)])
-    return pv.PolyData(np.concatenate(ends), lines=lines.ravel())
+    return blocks.polydata(np.concatenate(ends), np.arange(2 * len(ends)).reshape(-1, 2))
 
 
 def _box_of(mesh: pv.DataSet) -> Array:

@@ -13,9 +13,10 @@ from matplotlib.path import Path
 from scipy.spatial import cKDTree
 
 from vizlight import _check, _words
-from vizlight.mesh import polylines, records
+from vizlight.mesh import blocks, polylines, records
 from vizlight.vtk import letters as words_of
 from vizlight.vtk.cells import connectivity
+from vizlight.vtk.letters import DIGIT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -48,8 +49,8 @@ ALONG, CLEAR, STEP, NEIGHBOURS = 5, 0.75, 0.4, 12
 REACH, INITIAL, NUMBER, ROOM = 0.1, 1.7, 1.2, 0.15
 #: Neighbours of a point with which it is compared at first.
 AROUND = 9
-#: Height of digits in the size of a font, and name of the array with the level of a line.
-DIGIT, LEVEL = 0.73, "level"
+#: Name of the array with the level of a line.
+LEVEL = "level"
 
 
 def isolines(
@@ -317,14 +318,9 @@ def _numbers(words: list[tuple[Array, Indices, float]], height: float) -> pv.Pol
     """Return the triangles of numbers with their levels as a mesh."""
     if not words:
         return pv.PolyData()
+    flat, corners = words_of.union([(points, faces) for points, faces, _ in words])
+    numbers = blocks.polydata(np.column_stack([flat, np.full(len(flat), height)]), corners)
     sizes = [len(points) for points, _, _ in words]
-    flat = np.concatenate([points for points, _, _ in words])
-    starts = np.cumsum([0, *sizes[:-1]])
-    ids = np.concatenate(
-        [faces + start for (_, faces, _), start in zip(words, starts, strict=True)]
-    )
-    corners = np.column_stack([np.full(len(ids), 3), ids]).ravel()
-    numbers = pv.PolyData(np.column_stack([flat, np.full(len(flat), height)]), corners)
     numbers.point_data[LEVEL] = np.repeat([level for _, _, level in words], sizes)
     return numbers
 

@@ -12,8 +12,9 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import charts, georeference, meaning, polylines
+from vizlight.mesh import blocks, charts, georeference, meaning, polylines
 from vizlight.vtk import letters
+from vizlight.vtk.letters import DIGIT, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,8 +25,8 @@ __all__ = ["frame", "graticule"]
 
 #: Width of lines, length of ticks, and distance of words from them, in heights of letters.
 LINE, TICK, GAP = 0.06, 0.35, 0.3
-#: Height of digits, and distance between words of the bottom and of the left, in these.
-DIGIT, BESIDE, ABOVE = 0.73, 1.6, 3.0
+#: Distance between words of the bottom, in widths of the widest, and of the left, in digits.
+BESIDE, ABOVE = 1.6, 3.0
 #: Steps between ticks in degrees: whole parts of a right angle, or of a degree.
 STEPS = (
     *(s * 10.0**p for p in range(-4, 0) for s in (1, 2, 5)), 1, 2, 5, 10, 15, 20, 30, 45, 60, 90,
@@ -103,13 +104,11 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
             # Below the words of degrees.
             box[2] = min(points[:, 1].min() for points, _ in parts) - GAP * letters
         parts += _bar(box, letters, metres)
-    corners = np.concatenate([np.empty((0, 2)), *(points for points, _ in parts)])
-    starts = np.cumsum([0, *(len(points) for points, _ in parts)])
-    ids = [part + start for (_, part), start in zip(parts, starts, strict=False)]
-    triangles = np.concatenate([np.empty((0, 3), np.intp), *ids])
+    if not parts:
+        return pv.PolyData()
+    corners, triangles = union(parts)
     flat = np.column_stack([corners @ turn, np.full(len(corners), mesh.bounds[5])])
-    faces = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
-    return pv.PolyData(flat, faces) if len(flat) else pv.PolyData()
+    return blocks.polydata(flat, triangles)
 
 
 def graticule(

@@ -16,10 +16,14 @@ from vtkmodules.vtkRenderingFreeType import vtkFreeTypeTools
 from vizlight.vtk import cells
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import Array, Indices
 
 #: Size of the letters whose outlines VTK gives, in pixels.
 SIZE = 100
+#: Height of digits in the size of the font.
+DIGIT = 0.73
 #: Straight steps of a curve of an outline.
 STEPS = 4
 
@@ -67,6 +71,19 @@ def width(word: str) -> float:
     """Return the width of a word, in the size of its font."""
     points, _ = triangles(word)
     return float(np.ptp(points[:, 0])) if len(points) else 0.0
+
+
+def union(parts: Sequence[tuple[Array, Indices]]) -> tuple[Array, Indices]:
+    """Return several sets of points with their triangles, such as words at their places, as one.
+
+    Parameters
+    ----------
+    parts : sequence of (ndarray, ndarray of int)
+        Points, shape (N, d), and the corners of triangles; one at least.
+    """
+    starts = np.cumsum([0, *(len(points) for points, _ in parts)])
+    ids = [ids + start for (_, ids), start in zip(parts, starts, strict=False)]
+    return np.concatenate([points for points, _ in parts]), np.concatenate(ids)
 
 
 def _outlines(word: str) -> list[Array]:

@@ -249,8 +249,7 @@ def flow(case: Case) -> Drawing:
     )
     # Lines of a line field have no speed.
     has_speed = "surface" not in keywords and not keywords.get("line_field")
-    by_speed = without_light and has_speed
-    by_speed = by_speed and not _is_even(mesh.run(), array.name)
+    by_speed = without_light and has_speed and not _is_even(mesh.run(), array.name)
     scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
     # Lines that are asked for have their light in files.
     light = scene if case.wishes.question == "auto" else case.scene(camera)
@@ -362,7 +361,7 @@ def _hull(mesh: Step) -> list[Layer]:
 
 
 def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
-    """Return the layer of the floor of a box that is seen from above, by which heights are told."""
+    """Return the layer of the floor of a box, by which heights are told, if the eye is above it."""
     low = np.array(box.run().bounds).reshape(3, 2)
     if camera.run().position[2] <= low[2, 1]:
         return []
