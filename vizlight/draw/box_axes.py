@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw.cameras import pixel_sizes
+from vizlight.draw.cameras import footprint
 from vizlight.draw.ticks import even_numbers
 from vizlight.mesh import blocks
 from vizlight.vtk import letters
@@ -123,8 +123,7 @@ class _Eye:
 
     def pixel(self, points: Array) -> Array:
         """Return the size of a pixel at points, in the unit of the mesh."""
-        depth = np.atleast_1d((points - self.place) @ self.away)
-        return pixel_sizes(self._camera, depth, self._height)
+        return footprint(self._camera, np.atleast_2d(points), self._height)
 
     def seen(self, points: Array) -> Array:
         """Return columns and rows of points in pixels, from the middle of the picture."""

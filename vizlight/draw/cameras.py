@@ -48,6 +48,20 @@ def pixel_sizes(camera: vtkCamera, distance: Array, height: float) -> Array:
     return np.asarray(2 * distance * np.tan(np.radians(camera.GetViewAngle() / 2)) / height)
 
 
+def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
+    """Return the size of a pixel at points, in the unit of the mesh.
+
+    Parameters
+    ----------
+    camera : pyvista.Camera
+    points : ndarray, shape (N, 3)
+    height : float
+        Height of the picture in pixels.
+    """
+    away = np.array(camera.GetDirectionOfProjection())
+    return pixel_sizes(camera, (points - np.array(camera.GetPosition())) @ away, height)
+
+
 def camera_on(
     bounds: Mesh | ArrayLike,
     direction: Sequence[float] = (1.0, 1.0, 1.0),

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from vizlight import _check
+from vizlight.draw.cameras import footprint
 from vizlight.observers import crossings, readers
 from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
@@ -37,7 +38,7 @@ from vizlight.observers.lines import (
     strokes_of,
     two_sides,
 )
-from vizlight.observers.pixels import Pixels, courses, footprint, visible
+from vizlight.observers.pixels import Pixels, courses, visible
 from vizlight.observers.samples import sample
 from vizlight.shading import display
 

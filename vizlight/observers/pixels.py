@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 from vizlight.draw.backends import choose_backend, window_class
-from vizlight.draw.cameras import pixel_sizes
+from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
@@ -213,12 +213,6 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
         away = np.array(camera.GetDirectionOfProjection())
         return np.broadcast_to(-away, points.shape).copy()
     return unit_rows(np.array(camera.GetPosition()) - points)
-
-
-def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
-    """Return the size of a pixel at points, in the unit of the mesh."""
-    away = np.array(camera.GetDirectionOfProjection())
-    return pixel_sizes(camera, (points - np.array(camera.GetPosition())) @ away, height)
 
 
 def _actor(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.cameras import footprint
 from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
@@ -29,7 +30,6 @@ from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import records
 from vizlight.mesh.strokes import HEAD
-from vizlight.observers.pixels import footprint
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
