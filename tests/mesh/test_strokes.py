@@ -34,9 +34,9 @@ def test_short_lines_are_left_out():
     assert strokes.without_short(lines(), 9.0).n_lines == 0
 
 
-@pytest.mark.parametrize("signed", [True, False])
-def test_strokes_are_equally_long_and_thin_where_they_come_from(signed):
-    cut = strokes.cut(lines(), 1.0, "t", signed=signed)
+@pytest.mark.parametrize("arrow", [strokes.FLAT, strokes.TUBE, None])
+def test_strokes_are_equally_long_and_thin_where_they_come_from(arrow):
+    cut = strokes.cut(lines(), 1.0, "t", arrow)
     # 4, 1 and 2 pieces: 2.5 is rounded to an even number.
     assert cut.n_lines == 7
     assert cut.compute_cell_sizes()["Length"] == pytest.approx([1] * 5 + [1.25] * 2, abs=0.1)
@@ -45,21 +45,21 @@ def test_strokes_are_equally_long_and_thin_where_they_come_from(signed):
         run = np.abs(line.points[:, 0] - line.points[0, 0])
         if line.points[0, 1] == 1:
             widths, run = widths[::-1], run[-1] - run[::-1]
-        if not signed:
+        if arrow is None:
             assert widths[[0, -1]] == pytest.approx([0.3, 0.3], abs=1e-6)
             assert widths.max() == pytest.approx(1.0, abs=0.05)
             continue
         # A shaft that grows, and a head, which is a triangle of one length.
-        head = run >= run[-1] - 0.2 - 1e-6
-        np.testing.assert_allclose(widths[head], (run[-1] - run[head]) / 0.2, atol=1e-5)
+        head = run >= run[-1] - arrow.head - 1e-6
+        np.testing.assert_allclose(widths[head], (run[-1] - run[head]) / arrow.head, atol=1e-5)
         assert np.all(np.diff(widths[~head]) > 0)
-        assert widths[~head][[0, -1]] == pytest.approx([0.17, 0.45], abs=0.005)
+        assert widths[~head][[0, -1]] == pytest.approx(arrow[:2], abs=0.005)
 
 
 def test_short_strokes_have_short_heads_and_new_points_have_the_values_of_their_places():
     mesh = lines()
     mesh["x"], mesh["number"] = mesh.points[:, 0].astype(np.float64), np.arange(mesh.n_points)
-    cut = strokes.cut(mesh, 10.0, "t", signed=True)
+    cut = strokes.cut(mesh, 10.0, "t", strokes.FLAT)
     # Two more on each line, unless one is there already.
     assert mesh.n_points + 5 <= cut.n_points <= mesh.n_points + 6
     np.testing.assert_allclose(cut["x"], cut.points[:, 0], atol=1e-6)
@@ -73,7 +73,7 @@ def test_points_of_moving_heads_are_near_and_lines_keep_theirs():
     mesh = lines()
     fine = strokes.fine(mesh, 0.1)
     parts = strokes.segments_of(fine)
-    assert parts.lengths.max() <= 0.1 * strokes.HEAD / strokes.STEPS + 1e-6
+    assert parts.lengths.max() <= 0.1 * strokes.FLAT.head / strokes.STEPS + 1e-6
     np.testing.assert_allclose(parts.totals(), LENGTHS, rtol=1e-6)
     np.testing.assert_array_equal(strokes.fine(mesh, 10.0).points, mesh.points)
 

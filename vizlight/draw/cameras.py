@@ -123,7 +123,7 @@ def camera_on(
     if isinstance(bounds, Mesh):
         view = _axes(toward, upward), aspect
         points = np.concatenate([_outermost(some, *view) for some in _coordinates(bounds)])
-        shift, distance, height = _fit(points - centre, *view)
+        shift, distance, height = _fit(points - centre, *view, parallel=parallel)
         centre = centre + shift
     camera = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = VIEW_ANGLE
@@ -210,24 +210,27 @@ def _axes(toward: Array, up: Array) -> Array:
     return np.stack([v / np.linalg.norm(v) for v in (right, np.cross(toward, right), toward)])
 
 
-def _fit(points: Array, axes: Array, aspect: float) -> tuple[Array, float, float]:
+def _fit(
+    points: Array, axes: Array, aspect: float, *, parallel: bool
+) -> tuple[Array, float, float]:
     """Return the shift of the centre, the distance and the height at which points fill a view."""
     sides = _sides(axes, aspect)
     rows = np.concatenate([axes, axes[2] + sides, axes[2] - sides])
     low, high = (end(points @ rows.T, axis=0) for end in (np.min, np.max))
-    middle = 0.5 * (low[:3] + high[:3])
     # The centre moves across the view alone; how far the eye is away is a number of its own.
-    middle[2] = 0
+    shift = np.zeros(3)
     half = 0.5 * (high[:2] - low[:2])
     # Half the height of the picture, as VTK's parallel scale is.
     height = MARGIN * float(max(half[0] / aspect, half[1]))
-    # As the centre has moved across the view, the two margins of each side change by this amount,
-    # one up and one down.
-    shift = rows[3:5] @ axes.T @ middle
-    distance = float(max(np.max(high[3:5] - shift), np.max(high[5:] + shift)))
+    shift[:2] = 0.5 * (low[:2] + high[:2])
+    if not parallel:
+        # Both margins of each side are touched at the same distance.
+        shift[:2] = 0.5 * (high[3:5] - high[5:]) / np.linalg.norm(sides, axis=1)
+    moved = shift[:2] * np.linalg.norm(sides, axis=1)
+    distance = float(max(np.max(high[3:5] - moved), np.max(high[5:] + moved)))
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
     size = 0.05 * float(high[2] - low[2]) or (0.0 if height else 1.0)
-    return middle @ axes, max(distance, float(high[2]) + size), max(height, size)
+    return shift @ axes, max(distance, float(high[2]) + size), max(height, size)
 
 
 def _coordinates(mesh: Mesh) -> Iterator[Array]:

@@ -374,8 +374,7 @@ def _moving(live: Live) -> dict[str, object]:
         "phase": _packed(np.rint(phase % 1.0 * NO_VALUE), "u2"),
         "passing": _packed(np.minimum(passing, NO_VALUE), "u2"),
         "grown": _packed(np.rint(255 * grown), "u1"),
-        "tail": strokes.TAIL, "neck": strokes.NECK, "bare": strokes.BARE,
-        "head": strokes.HEAD, "base": strokes.BASE, "seconds": SECONDS,
+        **strokes.FLAT._asdict(), "bare": strokes.BARE, "base": strokes.BASE, "seconds": SECONDS,
     }  # fmt: skip
 
 

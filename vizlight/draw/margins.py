@@ -96,11 +96,7 @@ class Margin:
         width, height = int(wide * (right - left)), int(high * (top - bottom))
         if not width or not height:
             return
-        named = [key.title for key in self._keys if key.title]
-        if len(self._keys) == 1 and self._keys[0].is_bar and not _is_map(renderer):
-            # Its name stands above the bar already.
-            named = [name for name in named if ";" in name]
-        title = "; ".join(dict.fromkeys(named))
+        title = "; ".join(dict.fromkeys(key.title for key in self._keys if key.title))
         if (width, height) != self._pixels:
             self._pixels = (width, height)
             share_x, share_y = data_share(
@@ -120,7 +116,7 @@ class Margin:
                 self._split = split[1]
             elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
                 rows = _box_of(renderer, data=True)[[1, 3]]
-                self._beside(room, min(width, height), rows, alone=_is_map(renderer))
+                self._beside(room, min(width, height), rows)
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
@@ -168,17 +164,17 @@ class Margin:
             text.SetInput("\n".join(lines))
             text.SetPosition(gap, y)
 
-    def _beside(self, room: tuple[float, float], short: int, rows: Array, *, alone: bool) -> None:
+    def _beside(self, room: tuple[float, float], short: int, rows: Array) -> None:
         """Put a single bar beside the data, between their rows as far as room allows."""
         (key,) = self._keys
         letters, gap = LETTERS * short, MARGIN * short
-        wide = key.fit(short, letters, room[0] - gap, 0.0, alone)[0]
+        wide = key.fit(short, letters, room[0] - gap, 0.0, True)[0]
         letters *= min((room[0] - gap) / wide, 1.0)
         low, top = np.clip(rows, gap, room[1] - gap)
         least = LEAST_BAR * room[1]
         if top - low < least:
             low, top = np.mean(rows) - least / 2, np.mean(rows) + least / 2
-        box = key.fit(short, letters, room[0] - gap, top - low, alone)
+        box = key.fit(short, letters, room[0] - gap, top - low, True)
         # What stands above the bar has to have room too.
         over = max(low - letters / 2 + box[1] - room[1], 0.0)
         high = box[1] - over

@@ -331,7 +331,10 @@ def _as_strokes(
             options.travel,
         )
         return lines
-    return strokes.cut(lines, options.stroke_length, tangents, signed=not options.line_field)
+    arrow = strokes.FLAT if options.confined else strokes.TUBE
+    return strokes.cut(
+        lines, options.stroke_length, tangents, None if options.line_field else arrow
+    )
 
 
 def _velocities(

@@ -56,7 +56,7 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     """Return the step of the scene of a question, where a user gives none.
 
     ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
-    ``"shadow"`` a lamp over the left shoulder.
+    ``"shadow"`` a lamp over the left shoulder, ``"tubes"`` one that leaves them their colours.
     """
     if question == "value":
         # Colours of data are read best where a lamp at the eye dims steep places alone, and little.
@@ -75,6 +75,11 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
         plain = Material()
         exposure = round(1 / (plain.ambient + plain.diffuse * toward[2]), 3)
         return Step("scene", "vizlight.Scene", lights=lights, view=view, exposure=exposure)
+    if question == "tubes":
+        lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]
+        glossy = {"ambient": 0.65, "diffuse": 0.45, "specular": 0.1, "shininess": 20.0}
+        material = Step("", "vizlight.Material", **glossy)
+        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.
         lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]

@@ -14,12 +14,11 @@ if TYPE_CHECKING:
 
     from vizlight._types import AnyArray, Array, Bools, Indices
 
-#: Width of a stroke at its tail and before its head, and of both ends of one without a sense, as
-#: shares of its largest width.
-TAIL, NECK, ENDS = 0.17, 0.45, 0.3
-#: Length of a head as a share of that of a stroke, at most as a share of a short one, and the way
-#: in lengths of a head on which the width rises at its base.
-HEAD, MOST_HEAD, BASE = 0.2, 0.4, 0.05
+#: Width of both ends of a stroke without a sense as a share of its largest width.
+ENDS = 0.3
+#: Largest length of a head as a share of that of a short stroke, and the way in lengths of a head
+#: on which the width rises at its base.
+MOST_HEAD, BASE = 0.4, 0.05
 #: Steps from point to point in a head that moves.
 STEPS = 4
 #: Share of the distance from one moving stroke to the next that is bare, and share of it in which
@@ -32,6 +31,26 @@ PHASE, PASSING, GROWN, WIDTH = "phase", "passing", "grown", "width"
 GOLDEN = 0.6180339887
 #: Share of the median speed below which vectors move a stroke no slower, as at the end of a line.
 SLOWEST = 1e-3
+
+
+class Arrow(NamedTuple):
+    """Shape of a stroke with a sense.
+
+    Attributes
+    ----------
+    tail, neck : float
+        Width at the tail and before the head, as shares of the largest.
+    head : float
+        Length of the head as a share of that of the stroke.
+    """
+
+    tail: float
+    neck: float
+    head: float
+
+
+#: Strokes that lie on a surface or move, and those in space, which are drawn as tubes with cones.
+FLAT, TUBE = Arrow(0.17, 0.45, 0.2), Arrow(0.17, 0.36, 0.13)
 
 
 class LineSegments(NamedTuple):
@@ -120,7 +139,7 @@ def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
     return _rebuilt(mesh, segments, (segments.totals() >= least)[segments.lines], segments.lines)
 
 
-def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.PolyData:
+def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) -> pv.PolyData:
     """Return lines cut at their points into strokes of one length, with their widths.
 
     Strokes with a sense get points of their own at the base of their heads.
@@ -133,9 +152,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
         Length of a stroke; those of a line are equally long, as far as its points allow.
     tangents : str
         Name of the point array of the directions of the strokes.
-    signed : bool
-        Whether the directions have a sense: strokes end in a head, a triangle. Otherwise both ends
-        are thin.
+    arrow : Arrow, optional
+        Shape of strokes with a sense, which end in a head. None: both ends are thin.
 
     Returns
     -------
@@ -151,17 +169,17 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, *, signed: bool) -> pv.
     pieces = np.cumsum(np.any(np.diff(places, prepend=0.0), axis=0))
     strokes = _rebuilt(mesh, segments, np.ones(len(pieces), dtype=np.bool_), pieces)
     run, whole = _runs(strokes, tangents)
-    if not signed:
+    if arrow is None:
         thick = 1 - np.abs(2 * run / np.where(whole > 0, whole, 1.0) - 1)
         strokes.point_data[WIDTH] = (ENDS + (1 - ENDS) * thick).astype(np.float32)
         return strokes
-    heads = np.minimum(HEAD * length, MOST_HEAD * whole)
+    heads = np.minimum(arrow.head * length, MOST_HEAD * whole)
     bases = [_crossings(strokes, run - whole + start * heads) for start in (1 + BASE, 1.0)]
     strokes = _divided(strokes, np.concatenate(bases))
     run, whole = _runs(strokes, tangents)
-    heads = np.minimum(HEAD * length, MOST_HEAD * whole)
+    heads = np.minimum(arrow.head * length, MOST_HEAD * whole)
     place, head = (part / np.where(whole > 0, whole, 1.0) for part in (run, heads))
-    strokes.point_data[WIDTH] = _profile(place, head)
+    strokes.point_data[WIDTH] = _profile(place, arrow, head)
     return strokes
 
 
@@ -174,10 +192,10 @@ def _runs(strokes: pv.PolyData, tangents: str) -> tuple[Array, Array]:
     return ages(strokes, strokes.point_data[tangents]), whole
 
 
-def _profile(place: Array, head: Array | float) -> Array:
+def _profile(place: Array, arrow: Arrow, head: Array | float) -> Array:
     """Return the widths of strokes at places from 0 to 1, with heads of a share of their length."""
     from_base = (place - 1) / np.maximum(head, 1e-9) + 1
-    shaft = TAIL + (NECK - TAIL) * place / np.maximum(1 - head, 1e-9)
+    shaft = arrow.tail + (arrow.neck - arrow.tail) * place / np.maximum(1 - head, 1e-9)
     rising = shaft + (1 - shaft) * np.clip(1 + from_base / BASE, 0, 1)
     return np.asarray(
         np.where(from_base > 0, np.maximum(1 - from_base, 0), rising), dtype=np.float32
@@ -228,7 +246,7 @@ def fine(mesh: pv.PolyData, length: float) -> pv.PolyData:
     segments = segments_of(mesh)
     lines = _rebuilt(mesh, segments, np.ones(len(segments.lines), dtype=np.bool_), segments.lines)
     segments = segments_of(lines)
-    parts = np.maximum(np.ceil(segments.lengths * STEPS / (HEAD * length)), 1).astype(np.intp)
+    parts = np.maximum(np.ceil(segments.lengths * STEPS / (FLAT.head * length)), 1).astype(np.intp)
     first = np.repeat(np.cumsum(parts) - parts, parts)
     share = (np.arange(len(first)) - first) / np.repeat(parts, parts)
     return _divided(lines, (np.repeat(segments.starts, parts) + share)[share > 0])
@@ -300,7 +318,7 @@ def moved_widths(mesh: pv.PolyData, share: float) -> Array:
         np.asarray(mesh.point_data[name], dtype=np.float64) for name in (PHASE, PASSING, GROWN)
     )
     place = (phase - passing * share) % 1.0
-    width = _profile((place - BARE) / (1 - BARE), HEAD)
+    width = _profile((place - BARE) / (1 - BARE), FLAT, FLAT.head)
     return np.asarray(np.where(place < BARE, 0.0, grown * width), dtype=np.float32)
 
 

@@ -29,7 +29,7 @@ from vizlight.looks.recipes.drawing import (
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import records
-from vizlight.mesh.strokes import HEAD
+from vizlight.mesh.strokes import FLAT, TUBE
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ LONG = 3.5
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
-HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.6, 3.2), (4.0, 5.5)
+HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.6, 3.2), (4.0, 8.0)
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
@@ -64,7 +64,7 @@ SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
 #: distances: many are cut short where the field is noise.
 LONG_IN_VOLUME, SHORTEST = 5.0, 4
 #: Largest width of those without a sense, and the halo of all.
-WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.25
+WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.15
 #: Colours of the floor of a volume, and how far it is below the box as a share of its size.
 FLOOR, BELOW = {"paper": "#eeeeee", "dark": "#2c2c2c"}, 2e-3
 #: Words of the key for the sense of strokes.
@@ -202,7 +202,8 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
 def _head_width(case: Case, strokes: Step, camera: Step, between: tuple[float, float]) -> float:
     """Return the width of the heads of strokes in pixels."""
     step: Foreign = strokes.keywords["stroke_length"]
-    length = HEAD * step / pixel_of(case, camera)
+    arrow = FLAT if strokes.keywords.get("confined") else TUBE
+    length = arrow.head * step / pixel_of(case, camera)
     low, high = (case.width * end for end in between)
     return round(float(np.clip(HEAD_WIDTH * length, low, high)), 1)
 
@@ -250,7 +251,7 @@ def flow(case: Case) -> Drawing:
     # Lines of a line field have no speed.
     has_speed = "surface" not in keywords and not keywords.get("line_field")
     by_speed = without_light and has_speed and not _is_even(mesh.run(), array.name)
-    scene = case.wishes.scene("none", camera) if by_speed else case.scene(camera)
+    scene = case.wishes.scene("tubes", camera) if by_speed else case.scene(camera)
     # Lines that are asked for have their light in files.
     light = scene if case.wishes.question == "auto" else case.scene(camera)
     lit = _streamlines(case, mesh, light, keywords)
@@ -267,6 +268,8 @@ def flow(case: Case) -> Drawing:
         colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
         notes += [note] if note else []
         drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
+        # Light on tubes tells their course toward the eye.
+        drawn["render_lines_as_tubes"] = True
         keys = [_bar(mesh, array.name, colors, SENSE)]
         words += " in the colours of their speed"
     lines = Layer(lit, {"scene": scene, **drawn})
