@@ -27,6 +27,9 @@ SAMPLE = 20_000
 OPEN = 0.6
 #: Azimuths and altitudes of the eye, in degrees, among which the best one is taken.
 AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
+#: The same around a surface that its box cuts: near the diagonals of the box, from where most of its
+#: openings are seen through.
+DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
 #: How much more a view counts in which vectors run to the right.
 RIGHTWARD = 0.1
 #: Pixels along each side of the picture in which self-occlusion is counted.
@@ -121,7 +124,7 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
-    return _around(corners, normals, areas, _values(surface, shown, faces))
+    return _around(corners, normals, areas, _ways(), _values(surface, shown, faces))
 
 
 def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:
@@ -132,25 +135,30 @@ def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | 
     return rows[faces[:, 0]] if rows.ndim == 1 else None
 
 
-def eye_around(surface: pv.PolyData) -> Viewpoint:
+def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     """Return the eye that sees most of a surface from the side, open or not.
 
     Parameters
     ----------
     surface : pyvista.PolyData
         Surface of a volume, such as an isosurface.
+    cut : bool, default: False
+        Whether its box cuts it.
     """
     _, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return _around(corners, normals, np.linalg.norm(normals, axis=1))
+    ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
+    return _around(corners, normals, np.linalg.norm(normals, axis=1), ways)
 
 
-def _around(corners: Array, normals: Array, areas: Array, values: Array | None = None) -> Viewpoint:
+def _around(
+    corners: Array, normals: Array, areas: Array, ways: list[Array], values: Array | None = None
+) -> Viewpoint:
     """Return the eye from which most of some triangles is seen, and most of their values."""
     places = _places(corners)
-    scores = [(_seen(corners, places, normals, areas, way, values), way) for way in _ways()]
+    scores = [(_seen(corners, places, normals, areas, way, values), way) for way in ways]
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
@@ -269,10 +277,10 @@ def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
     return faces[chosen]
 
 
-def _ways() -> list[Array]:
+def _ways(azimuths: range = AZIMUTHS, altitudes: tuple[float, ...] = ALTITUDES) -> list[Array]:
     """Return directions toward the eye, the usual one of three-quarters first."""
     ways = []
-    for altitude, azimuth in itertools.product(ALTITUDES, AZIMUTHS):
+    for altitude, azimuth in itertools.product(altitudes, azimuths):
         a, b = math.radians(azimuth), math.radians(altitude)
         ways.append(np.array([math.cos(b) * math.cos(a), math.cos(b) * math.sin(a), math.sin(b)]))
     return ways

@@ -20,7 +20,7 @@ from vizlight.files import FORMATS
 from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_of
+from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
@@ -264,6 +264,8 @@ class Case:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
+        if self.box is not None:
+            return eye_around(self.surface.run(), cut=True)
         array = self.array
         shown = None if array is None or array.role in ("kinds", "colors") else array.name
         return eye_of(mesh.run(), self.contents, shown)

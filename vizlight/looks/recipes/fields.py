@@ -51,7 +51,7 @@ LONG = 3.5
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
-HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.6, 3.2), (4.0, 8.0)
+HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.2, 2.6), (4.0, 8.0)
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
