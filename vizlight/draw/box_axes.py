@@ -18,7 +18,7 @@ from vizlight.vtk.letters import DIGIT
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
 
-__all__ = ["box_axes", "box_edges"]
+__all__ = ["box_axes", "box_edges", "names_above"]
 
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
@@ -92,6 +92,36 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
         if not all(_sides_seen(box, axis, edge, eye))
     ]
     return blocks.polydata(np.concatenate(ends), np.arange(2 * len(ends)).reshape(-1, 2))
+
+
+def names_above(
+    blocks_: pv.MultiBlock, camera: pv.Camera, /, height: float, *, size: float
+) -> pv.PolyData:
+    """Return the names of blocks as words above them.
+
+    Parameters
+    ----------
+    blocks_ : pyvista.MultiBlock
+        Blocks with names.
+    camera, height, size
+        As for :func:`box_axes`.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Triangles.
+    """
+    eye = _Eye(camera, _check.positive("height", height))
+    parts = []
+    for name in blocks_.keys():
+        box = _box_of(blocks_[name])
+        corners = np.array(list(itertools.product(*box)))
+        # The highest corner in the picture, above the middle of the box.
+        rows = eye.seen(np.array([*corners, box.mean(axis=1)]))
+        rise = (rows[:-1, 1].max() - rows[-1, 1]) * eye.pixel(box.mean(axis=1))
+        place = box.mean(axis=1) + rise * eye.up
+        parts.append(_word(place, np.array([0.0, 1.0]), GAP, name, eye, size))
+    return blocks.polydata(*letters.union(parts))
 
 
 def _box_of(mesh: pv.DataSet) -> Array:

@@ -21,7 +21,7 @@ from vtkmodules.vtkRenderingCore import (
 from vizlight.draw.live import in_view, items
 from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
 from vizlight.draw.ticks import along_bar, numerals_of
-from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, TITLE, WORDS
+from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, SWATCH, TITLE, WORDS
 from vizlight.filters.tint import RGB
 
 if TYPE_CHECKING:
@@ -252,15 +252,18 @@ class MarginKey:
         self.size, self.lies = size, lying
         self._mesh = mesh.copy()
         self._flat = np.asarray(mesh.points, dtype=np.float64)
+        # A swatch before a bar is a part of its length.
+        start = min(float(self._flat[:, 0].min()), -1.0)
         #: What stands above the data, and above the key: its unit, or all where there are several.
         self._title, self._unit = parted(_first(mesh, TITLE))
         self._whole = written(_first(mesh, TITLE))
         words = [str(word) for word in mesh.field_data[WORDS]]
         #: Words along a bar that stands: numbers or names, and their shares of its height.
-        self._marks = _marks(mesh, words)
+        self._marks = [(1 - 2 * (1 - s) / (1 - start), word) for s, word in _marks(mesh, words)]
         ends = mesh.field_data.get(RANGE)
         low, high = (0.0, 1.0) if ends is None else (float(end) for end in ends)
-        self._zero = -low / ((high - low) or 1.0)
+        self._zero = 1 - 2 * (1 + low / ((high - low) or 1.0)) / (1 - start)
+        self._flat[:, 0] = 1 - 2 * (1 - self._flat[:, 0]) / (1 - start)
         #: Words of a disc, which stand below it.
         self._below = "" if self._marks else words[0]
         self._lines: list[str] = []
@@ -462,7 +465,11 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
         marks = _of_logarithm(low, high)
     if BEYOND in mesh.field_data:
         below, above = mesh.field_data[BEYOND]
-        marks = _with_beyond(marks, f"< {low:g}" * bool(below), f"> {high:g}" * bool(above))
+        # The end of a bar, or the middle of the swatch before it.
+        start = (min(mesh.points[:, 0].min() + SWATCH / 2, -1.0) + 1) / 2
+        marks = _with_beyond(
+            marks, (start, f"< {low:g}" * bool(below)), (1.0, f"> {high:g}" * bool(above))
+        )
     return marks
 
 
@@ -476,13 +483,15 @@ def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
     return [(share, word) for share, word in shares if -1e-9 <= share <= 1 + 1e-9]
 
 
-def _with_beyond(marks: list[tuple[float, str]], below: str, above: str) -> list[tuple[float, str]]:
+def _with_beyond(
+    marks: list[tuple[float, str]], *ends: tuple[float, str]
+) -> list[tuple[float, str]]:
     """Return the words along a bar with those at ends that values lie beyond."""
-    ends = [(share, word) for share, word in ((0.0, below), (1.0, above)) if word]
+    shown = [(share, word) for share, word in ends if word]
     near = [
-        (share, word) for share, word in marks if all(abs(share - end) > CLOSE for end, _ in ends)
+        (share, word) for share, word in marks if all(abs(share - end) > CLOSE for end, _ in shown)
     ]
-    return sorted(near + ends)
+    return sorted(near + shown)
 
 
 def _thinned(places: list[float], zero: float, most: float) -> list[bool]:

@@ -20,7 +20,7 @@ from vizlight.draw.backends import (
     probe,
     window_class,
 )
-from vizlight.draw.box_axes import box_axes, box_edges
+from vizlight.draw.box_axes import box_axes, box_edges, names_above
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
@@ -32,6 +32,7 @@ from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
+from vizlight.mesh.both_sides import both_sides
 from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
@@ -52,12 +53,14 @@ __all__ = [
     "Panel",
     "PlotterKeywords",
     "Probe",
+    "both_sides",
     "box_axes",
     "box_edges",
     "camera_on",
     "canvas",
     "choose_backend",
     "make_plotter",
+    "names_above",
     "over_shoulder",
     "pictures",
     "probe",

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 #: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
 FEW = 5
+#: Most numbers along a bar with other ends.
+USUAL = 7
 #: Most numbers along a bar that has some at its ends, and length of such a bar at most, in that of
 #: its values.
 MOST, WASTE = 10, 1.1
@@ -87,7 +89,7 @@ def along_bar(low: float, high: float) -> list[tuple[float, str]]:
         ticks = even_numbers(low, high, most)
         if ticks and (ticks[0][0], ticks[-1][0]) == (low, high):
             return ticks
-    return even_numbers(low, high, FEW)
+    return even_numbers(low, high, USUAL)
 
 
 def _count(low: float, high: float, step: float) -> int:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import Exponent
 
-__all__ = ["colors_of", "key", "key_picture", "preset_of", "question_of"]
+__all__ = ["color_below", "colors_of", "key", "key_picture", "preset_of", "question_of"]
 
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
@@ -52,6 +52,8 @@ HOLE = 0.3
 BAR = 0.16
 #: Numbers of rings, of points around, and of points along a bar.
 RINGS, AROUND, ALONG = 24, 96, 97
+#: Width of the swatch of values below a bar, which have a colour apart, and its distance from it.
+SWATCH, GAP = 0.1, 0.03
 #: Half of the width of a step of colours, as a share of half of a bar.
 EDGE = 1e-3
 #: Number of places along each side of a pixel of a key's picture.
@@ -80,7 +82,9 @@ def key(
         Content of the key. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
-        ``"value"``: a bar of the colours of data, below in the least light and above in full.
+        ``"value"``: a bar of the colours of data, below in the least light and above in full; a
+        lookup table whose colour of values below its range is another than its first has a swatch
+        of it before the bar.
         Default: the question of the preset with the light of the scene, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
@@ -146,6 +150,8 @@ def key(
             _put_words(mesh, NAMES, names)
         if isinstance(cmap, pv.LookupTable):
             beyond = (cmap.GetUseBelowRangeColor(), cmap.GetUseAboveRangeColor())
+            if (apart := color_below(cmap)) is not None:
+                mesh = _with_swatch(mesh, apart)
             mesh.field_data[SCALE], mesh.field_data[BEYOND] = [cmap.log_scale], beyond
         if clim is not None:
             ends = _check.limits("clim", clim)
@@ -157,6 +163,26 @@ def key(
     if title:
         _put_words(mesh, TITLE, [_check.text("title", title)])
     return mesh
+
+
+def color_below(table: pv.LookupTable) -> Array | None:
+    """Return the colour, 0 to 1, of values below a bar, None where it is that of the bar's end."""
+    color: Array = np.asarray(table.GetBelowRangeColor()[:3], dtype=np.float64)
+    first = np.asarray(table.values)[0, :3] / 255
+    is_apart = table.GetUseBelowRangeColor() and not np.allclose(color, first, atol=0.02)
+    return color if is_apart else None
+
+
+def _with_swatch(bar: pv.PolyData, color: Array) -> pv.PolyData:
+    """Return a bar with a swatch before its lower end."""
+    import pyvista as pv
+
+    right = -1 - GAP
+    x, y = np.array([right - SWATCH, right, right, right - SWATCH]), BAR * np.array([-1, -1, 1, 1])
+    swatch = pv.PolyData(np.stack([x, y, 0 * x], axis=1), [4, 0, 1, 2, 3])
+    swatch[RGB] = np.tile(np.rint(255 * color).astype(np.uint8), (4, 1))
+    both: pv.PolyData = bar.append_polydata(swatch)
+    return both
 
 
 def _put_words(mesh: pv.PolyData, name: str, words: Sequence[str]) -> None:

@@ -40,6 +40,10 @@ ASPECT = 1.2
 SPLATS = 8000
 #: Number of triangles by which the light of the visible surface is measured.
 SEEN = 1000
+#: Thickness of a surface over its middle side up to which it has two sides that are seen as well, and
+#: deviation between their values, in that of all, from which one does not tell the other's. They
+#: are compared in this number of squares each way.
+FLATTENED, DIFFERENT, SQUARES = 0.7, 0.5, 12
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -125,6 +129,51 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
     return _around(corners, normals, areas, _ways(), _values(surface, shown, faces))
+
+
+def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:
+    """Return the eye on one side of a flattened surface with other values on its other side.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Surface.
+    shown : str
+        Name of a point array of values.
+
+    Returns
+    -------
+    Viewpoint or None
+        None for surfaces that are not flattened along x, y or z, that are open, or that have much
+        the same values on both sides.
+    """
+    faces, corners = _triangles(surface)
+    values = _values(surface, shown, faces)
+    if values is None or len(values) < SQUARES**2:
+        return None
+    sizes = np.ptp(corners.reshape(-1, 3), axis=0)
+    axis = int(np.argmin(sizes))
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    is_open = np.linalg.norm(normals.sum(axis=0)) > 0.1 * np.linalg.norm(normals, axis=1).sum()
+    if is_open or sizes[axis] > FLATTENED * np.median(sizes):
+        return None
+    way, places = np.eye(3)[axis], _places(corners)
+    middles = np.delete(places[: len(corners)], axis, axis=1)
+    middles = (middles - middles.min(axis=0)) / np.ptp(middles, axis=0)
+    square = np.minimum((SQUARES * middles).astype(np.int64), SQUARES - 1) @ (SQUARES, 1)
+    means = []
+    for sign in (1, -1):
+        front = _in_front(places, len(corners), sign * way) & np.isfinite(values)
+        count, total = (
+            np.bincount(square[front], weights, SQUARES**2)
+            for weights in (None, values[front])
+        )
+        means.append(total / np.where(count > 0, count, np.nan))
+    deviation = np.sqrt(np.nanmean((means[0] - means[1]) ** 2))
+    if not deviation > DIFFERENT * np.nanstd(values):
+        return None
+    toward = -way if axis == 1 else way
+    return Viewpoint(_vector(toward), (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), True)
 
 
 def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:

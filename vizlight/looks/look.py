@@ -229,7 +229,7 @@ class Look:
 
     def _page(self, path: Path) -> list[Step]:
         """Return the steps that write a page, for which no library needs to draw."""
-        wishes, drawing = self.wishes, self.drawing
+        wishes, drawing = self.wishes, self.drawing.of_turns
         key: Keywords = {} if wishes.picture.get("key", True) else {"key": False}
         if wishes.source:
             key["source"] = list(wishes.source)

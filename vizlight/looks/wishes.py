@@ -56,7 +56,7 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     """Return the step of the scene of a question, where a user gives none.
 
     ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
-    ``"shadow"`` a lamp over the left shoulder, ``"tubes"`` one that leaves them their colours.
+    ``"shadow"`` a lamp over the left shoulder, ``"lamp"`` one that follows the eye and leaves colours much as they are.
     """
     if question == "value":
         # Colours of data are read best where a lamp at the eye dims steep places alone, and little.
@@ -75,9 +75,9 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
         plain = Material()
         exposure = round(1 / (plain.ambient + plain.diffuse * toward[2]), 3)
         return Step("scene", "vizlight.Scene", lights=lights, view=view, exposure=exposure)
-    if question == "tubes":
-        lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]
-        glossy = {"ambient": 0.65, "diffuse": 0.45, "specular": 0.1, "shininess": 20.0}
+    if question == "lamp":
+        lights = [Step("", "vizlight.Light", direction=(-0.6, 0.6, 1.0), follows_view=True)]
+        glossy = {"ambient": 0.55, "diffuse": 0.55, "specular": 0.1, "shininess": 20.0}
         material = Step("", "vizlight.Material", **glossy)
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "shadow":

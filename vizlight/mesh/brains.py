@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Foreign
 
 __all__ = [
-    "SURFACES", "VOLUMES", "is_freesurfer", "overlay", "read", "tracks_of_tt", "volume",
+    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "overlay", "read", "tracks_of_tt", "volume",
 ]  # fmt: skip
 
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
@@ -29,6 +29,12 @@ SURFACES = (".gii", ".gii.gz", ".mz3", ".annot")
 VOLUMES = (
     ".nii", ".nii.gz", ".mgz", ".mgh", ".mnc", ".head", ".brik", ".brik.gz",
 )  # fmt: skip
+#: Sides of the box of one hemisphere of the cortex in mm, least and largest, and how far it reaches
+#: beyond the middle of the brain.
+SIDES, BEYOND = ((50.0, 95.0), (130.0, 205.0), (85.0, 150.0)), 15.0
+#: Numbers of points of common templates, and units of the arrays that FreeSurfer makes.
+TEMPLATES = {2562, 10242, 40962, 163842, 32492}
+UNITS = {"thickness": "mm", "curv": "1/mm", "area": "mm2", "volume": "mm3", "sulc": ""}
 #: Largest cosine between axes that are at right angles: affines are in float32.
 SQUARE = 1e-5
 #: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
@@ -53,6 +59,24 @@ def is_freesurfer(path: Path) -> bool:
     """
     with path.open("rb") as file:
         return file.read(3) in _FREESURFER
+
+
+def hemisphere(surface: pv.DataSet) -> str:
+    """Return which hemisphere of the cortex a surface is, left or right; empty for all else.
+
+    It is known by its size in mm, the side of the middle on which it lies, x to the right, a
+    surface without handles, and the number of its points or the name of an array.
+    """
+    if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
+        return ""
+    is_template = surface.n_points in TEMPLATES
+    if not is_template and UNITS.keys().isdisjoint(surface.point_data.keys()):
+        return ""
+    bounds = np.reshape(surface.bounds, (3, 2))
+    if any(not low < size < high for size, (low, high) in zip(np.ptp(bounds, axis=1), SIDES, strict=True)):
+        return ""
+    left, right = bounds[0]
+    return "left" if right < BEYOND else "right" if left > -BEYOND else ""
 
 
 def read(path: Path) -> pv.PolyData:

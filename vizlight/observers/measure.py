@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt
 
 from vizlight import _check
 from vizlight.draw.cameras import footprint
+from vizlight.filters.key import color_below
 from vizlight.observers import crossings, readers
 from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
@@ -721,11 +722,8 @@ def _shares(table: pv.LookupTable, values: Array) -> Array:
 
 def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
     """Return which values lie below a bar and have a colour that is not that of its end."""
-    first = np.asarray(table.values)[0, :3] / 255
-    is_apart = table.GetUseBelowRangeColor() and not np.allclose(
-        table.GetBelowRangeColor()[:3], first, atol=0.02
-    )
-    return np.asarray((values < table.scalar_range[0]) & bool(is_apart))
+    is_apart = color_below(table) is not None
+    return np.asarray((values < table.scalar_range[0]) & is_apart)
 
 
 def _table(places: SeenPlaces) -> pv.LookupTable:

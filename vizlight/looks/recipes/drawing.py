@@ -15,16 +15,16 @@ from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
-from vizlight.draw.margins import ink_on
+from vizlight.draw.margins import LETTERS, ink_on
 from vizlight.files import FORMATS
 from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
+from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of, side_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
-from vizlight.mesh import globes, meaning, series
+from vizlight.mesh import brains, globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -166,16 +166,23 @@ class Drawing:
 
     @property
     def of_turns(self) -> Drawing:
-        """Drawing for a movie of a turn: with whole boxes, and no words that face one eye."""
-        kept = [
-            dataclasses.replace(layer, mesh=box)
-            if layer.mesh.path == "render.box_edges"
-            and isinstance(box := layer.mesh.arguments[0], Step)
-            else layer
-            for layer in self.layers
-            if layer.mesh.path != "render.box_axes"
-        ]
-        return dataclasses.replace(self, layers=kept)
+        """Drawing that is turned: with whole boxes, one side, and no words that face one eye."""
+        kept, camera = list[Layer](), self.camera
+        for layer in self.layers:
+            step = layer.mesh
+            first = step.arguments[0] if step.arguments else None
+            if step.path == "render.box_edges" and isinstance(first, Step):
+                layer = dataclasses.replace(layer, mesh=first)
+            if isinstance(first, Step) and first.path == "render.both_sides":
+                if step.arguments[1:] != (0,):
+                    continue
+                surface, toward = first.arguments
+                assert isinstance(surface, Step)
+                camera = Step("camera", camera.path, surface, toward, **camera.keywords)
+                layer = dataclasses.replace(layer, mesh=surface)
+            if step.path != "render.box_axes":
+                kept.append(layer)
+        return dataclasses.replace(self, layers=kept, camera=camera)
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -287,11 +294,39 @@ class Case:
         x, y = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
         return x, y
 
+    @cached_property
+    def sides(self) -> Step | None:
+        """Step that makes both sides of a flattened surface whose values differ on them, or None."""
+        mesh, array, wishes = self.surface, self.array, self.wishes
+        is_free = wishes.view is None and wishes.frame is None and not self.on_globe
+        if not is_free or self.contents.flat_axis is not None or array is None:
+            return None
+        if self.contents.dimension != 2 or array.role not in ("values", "heights"):
+            return None
+        if not isinstance(mesh.run(), pv.PolyData):
+            return None
+        eye = side_of(mesh.run(), array.name)
+        if eye is None:
+            return None
+        axis = "xyz"[int(np.argmax(np.abs(eye.toward)))]
+        names = (f"From {axis}", f"From -{axis}")
+        if axis == "y":
+            names = names[::-1]
+        toward = eye.toward
+        if side := brains.hemisphere(mesh.run()):
+            toward = (-1.0 if side == "left" else 1.0, 0.0, 0.0)
+            names = (f"{side.title()} hemisphere, lateral", f"{side.title()} hemisphere, medial")
+        return Step("sides", "render.both_sides", mesh, toward, up=eye.up, names=names)
+
     @property
     def is_wide(self) -> bool:
-        """Whether it is a map so wide that it becomes larger with its key below it."""
+        """Whether it is a map so wide, or two sides, that are larger with their key below them."""
         wide, tall = self.wishes.size
-        if not self._is_above or not self.wishes.picture.get("key", True) or wide < tall:
+        if not self.wishes.picture.get("key", True) or wide < tall:
+            return False
+        if self.sides is not None:
+            return True
+        if not self._is_above:
             return False
         x, y, _ = self.data.run().bounds_size
         right, up = np.abs(self._up)[::-1], np.abs(self._up)
@@ -324,6 +359,21 @@ class Case:
         elif self.box is not None:
             mesh, boxed = self.box, True
         return self.wishes.camera(mesh, eye, boxed=boxed)
+
+    def named_sides(self, sides: Step) -> tuple[Step, list[Layer]]:
+        """Return the step of the camera on both sides of a surface, and the layer of their names."""
+        toward, up = sides.arguments[1], sides.keywords["up"]
+        eye = Viewpoint(toward, up, True, "from both sides")
+        size = round(LETTERS * min(self.wishes.size), 1)
+        height = round(self.wishes.room[1], 1)
+
+        def names(camera: Step) -> Step:
+            return Step("names", "render.names_above", sides, camera, height, size=size)
+
+        around = Step("", "pyvista.MultiBlock", [sides, names(self.wishes.camera(sides, eye))])
+        camera = self.wishes.camera(around, eye)
+        ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
+        return camera, [Layer(names(camera), ink | BESIDE, live=False)]
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""
@@ -443,7 +493,9 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
-    unit = attributes.get("units", "")
+    unit = attributes.get("units", "") or (
+        brains.UNITS.get(name, "") if brains.hemisphere(mesh) else ""
+    )
     title = attributes.get("long_name") or attributes.get("standard_name") or name
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name

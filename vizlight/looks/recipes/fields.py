@@ -251,7 +251,7 @@ def flow(case: Case) -> Drawing:
     # Lines of a line field have no speed.
     has_speed = "surface" not in keywords and not keywords.get("line_field")
     by_speed = without_light and has_speed and not _is_even(mesh.run(), array.name)
-    scene = case.wishes.scene("tubes", camera) if by_speed else case.scene(camera)
+    scene = case.wishes.scene("lamp", camera) if by_speed else case.scene(camera)
     # Lines that are asked for have their light in files.
     light = scene if case.wishes.question == "auto" else case.scene(camera)
     lit = _streamlines(case, mesh, light, keywords)

@@ -55,10 +55,13 @@ def values(case: Case) -> Drawing:
             drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
             note = f"{array.name} {kinds[0]:g}, which is around all else, is left out"
             return replace(drawing, notes=[*drawing.notes, note])
-    camera = case.camera(mesh)
+    sides = case.sides
+    camera, beside = (case.camera(mesh), []) if sides is None else case.named_sides(sides)
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
-    scene = case.exposed(mesh, camera, **light) if bent else case.scene(camera)
+    # Seen along an axis, much of a surface faces the eye, and a lamp there would show no relief.
+    lamp = "" if sides is None else "lamp"
+    scene = case.exposed(mesh, camera, lamp, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
     note = ""
     if bent and array.role in ("values", "heights"):
@@ -78,8 +81,12 @@ def values(case: Case) -> Drawing:
     notes = [note] if note else []
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
+    every = [mesh] if sides is None else [Step("", "[]", sides, i) for i in range(2)]
+    layers = [*(Layer(each, shown) for each in every), *beside]
+    if sides is None:
+        layers += case.edges(camera)
     return Drawing(
-        [Layer(mesh, shown), *case.edges(camera)], camera, scene, lit,
+        layers, camera, scene, lit,
         f"{array.name} in colours", keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip

@@ -1,0 +1,81 @@
+"""Both sides of a flattened surface, beside each other as blocks that are named by the side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista as pv
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight._types import Vector
+
+__all__ = ["both_sides"]
+
+#: Distance between both sides as a share of the width of one.
+APART = 0.08
+#: Width over height from which the second side is below the first.
+WIDE = 2.2
+
+
+def both_sides(
+    surface: pv.PolyData,
+    toward: Sequence[float],
+    /,
+    *,
+    up: Sequence[float] = (0.0, 0.0, 1.0),
+    names: Sequence[str],
+) -> pv.MultiBlock:
+    """Return a surface twice, so that one eye sees both of its sides.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Surface, which is not changed.
+    toward : vector of 3 components
+        Direction toward the eye, from which the first block is seen as it is. The second is turned
+        by half a turn about the direction up.
+    up : vector of 3 components, default: (0, 0, 1)
+        Direction up in the picture, at right angles to ``toward``.
+    names : (str, str)
+        Names of the two blocks.
+
+    Returns
+    -------
+    pyvista.MultiBlock
+        Two blocks: the second at the right of the first, below it where the surface is wide.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+
+    Examples
+    --------
+    >>> import pyvista as pv
+    >>> from vizlight import render
+    >>> render.both_sides(pv.Sphere(), (0, -1, 0), names=("front", "back")).keys()
+    ['front', 'back']
+    """
+    if not isinstance(surface, pv.PolyData):
+        raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
+    back, upward = _check.unit("toward", toward), _check.unit("up", up)
+    if len(names) != 2:
+        raise ValueError(_check.message("names", "two names", f"{len(names)}"))
+    turned = surface.rotate_vector(
+        _vector(upward), 180, point=surface.center, transform_all_input_vectors=True
+    )
+    right = np.cross(upward, back)
+    bounds = np.reshape(surface.bounds, (3, 2))
+    wide, tall = (float(np.abs(way) @ np.ptp(bounds, axis=1)) for way in (right, upward))
+    step = (1 + APART) * wide * right if wide < WIDE * tall else -(1 + APART) * tall * upward
+    turned.translate(_vector(step), inplace=True)
+    return pv.MultiBlock(dict(zip(names, (surface.copy(deep=False), turned), strict=True)))
+
+
+def _vector(values: Sequence[float]) -> Vector:
+    return tuple(float(value) for value in values)
