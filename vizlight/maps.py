@@ -61,10 +61,10 @@ even = ListedColormap(
     np.frombuffer(bytes.fromhex(_EVEN), np.uint8).reshape(-1, 3) / 255, name="vizlight.even"
 )
 colormaps.register(even, force=True)
-#: Pale yellow over green to blue, no darker than a CIELAB lightness of 45, so that black strokes
+#: Pale yellow over green to blue, no darker than a CIELAB lightness of 34, so that black strokes
 #: are seen on all of it: the lighter part of Cynthia Brewer's YlGnBu, named ``"vizlight.speed"``.
 #: It is the map of the lengths of vectors in a look.
-speed = ListedColormap(colormaps["YlGnBu"](0.7 * np.arange(256) / 255), name="vizlight.speed")
+speed = ListedColormap(colormaps["YlGnBu"](0.8 * np.arange(256) / 255), name="vizlight.speed")
 colormaps.register(speed, force=True)
 #: Maps of a look that run in lightness too, as most printed ones, yet not so far that light on them
 #: is taken for another value: violet over green to yellow on surfaces, and the parts of viridis

@@ -165,8 +165,7 @@ def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:
     for sign in (1, -1):
         front = _in_front(places, len(corners), sign * way) & np.isfinite(values)
         count, total = (
-            np.bincount(square[front], weights, SQUARES**2)
-            for weights in (None, values[front])
+            np.bincount(square[front], weights, SQUARES**2) for weights in (None, values[front])
         )
         means.append(total / np.where(count > 0, count, np.nan))
     deviation = np.sqrt(np.nanmean((means[0] - means[1]) ** 2))

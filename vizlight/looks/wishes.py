@@ -43,7 +43,7 @@ VIEWS: dict[str, Vector] = {
     "isometric": (1.0, 1.0, 1.0), "above": (0.0, 0.0, 1.0), "front": (0.0, -1.0, 0.0),
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
-SUN = (315.0, 40.0)
+SUN = (315.0, 30.0)
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
@@ -56,7 +56,8 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     """Return the step of the scene of a question, where a user gives none.
 
     ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
-    ``"shadow"`` a lamp over the left shoulder, ``"lamp"`` one that follows the eye and leaves colours much as they are.
+    ``"shadow"`` a lamp over the left shoulder, ``"lamp"`` one that follows the eye and leaves
+    colours much as they are.
     """
     if question == "value":
         # Colours of data are read best where a lamp at the eye dims steep places alone, and little.

@@ -73,7 +73,10 @@ def hemisphere(surface: pv.DataSet) -> str:
     if not is_template and UNITS.keys().isdisjoint(surface.point_data.keys()):
         return ""
     bounds = np.reshape(surface.bounds, (3, 2))
-    if any(not low < size < high for size, (low, high) in zip(np.ptp(bounds, axis=1), SIDES, strict=True)):
+    if any(
+        not low < size < high
+        for size, (low, high) in zip(np.ptp(bounds, axis=1), SIDES, strict=True)
+    ):
         return ""
     left, right = bounds[0]
     return "left" if right < BEYOND else "right" if left > -BEYOND else ""

@@ -305,18 +305,18 @@ class Case:
             return None
         if not isinstance(mesh.run(), pv.PolyData):
             return None
-        eye = side_of(mesh.run(), array.name)
-        if eye is None:
-            return None
-        axis = "xyz"[int(np.argmax(np.abs(eye.toward)))]
-        names = (f"From {axis}", f"From -{axis}")
-        if axis == "y":
-            names = names[::-1]
-        toward = eye.toward
         if side := brains.hemisphere(mesh.run()):
-            toward = (-1.0 if side == "left" else 1.0, 0.0, 0.0)
-            names = (f"{side.title()} hemisphere, lateral", f"{side.title()} hemisphere, medial")
-        return Step("sides", "render.both_sides", mesh, toward, up=eye.up, names=names)
+            # Of the cortex both sides are always shown.
+            toward, up = (-1.0 if side == "left" else 1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+            names = [f"{side.title()} hemisphere, {view}" for view in ("lateral", "medial")]
+        elif (eye := side_of(mesh.run(), array.name)) is not None:
+            toward, up = eye.toward, eye.up
+            axis = int(np.argmax(np.abs(toward)))
+            signs = ("", "-") if toward[axis] > 0 else ("-", "")
+            names = [f"From {sign}{'xyz'[axis]}" for sign in signs]
+        else:
+            return None
+        return Step("sides", "render.both_sides", mesh, toward, up=up, names=names)
 
     @property
     def is_wide(self) -> bool:

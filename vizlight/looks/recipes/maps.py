@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pyvista as pv
 
 from vizlight.draw.margins import ink_on, parted
-from vizlight.draw.ticks import numerals_of
+from vizlight.draw.ticks import even_levels, numerals_of
 from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
 from vizlight.looks.steps import Step
@@ -33,9 +33,11 @@ UNDER_STROKES = "#9a4f1f"
 GRATICULE = "#555555"
 #: Colour of isolines and their numbers, which is seen on all colours of bands, and on those of the
 #: ground, where lines are brown on maps.
-INK, INK_ON_RELIEF = "#1a1a1a", "#553a1c"
+INK, INK_ON_RELIEF = "#1a1a1a", "#3d2610"
 #: Least distance between isolines of heights, in heights of their letters.
 SPARSE_ON_RELIEF = 0.5
+#: Most classes of lengths of vectors.
+MOST_CLASSES = 15
 #: Most isolines between which colours change too.
 FEW_LINES = 9
 
@@ -46,7 +48,7 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     beside: Keywords = {"scene": even_light(drawing.camera), "pickable": False}
     ink = ink_on(pv.Color(drawing.background or case.wishes.background))
     coasts = map_parts.coasts(case.data) if _has_coasts(case) else None
-    drawing = _with_isolines(case, drawing, beside, coasts)
+    drawing = _with_isolines(case, _with_classes(case, drawing), beside, coasts)
     layers = list(drawing.layers)
     if case.on_globe:
         coasts = map_parts.shore()
@@ -90,7 +92,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         return drawing
     lines, levels, factor = contoured
     inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
-    thin = {"line_width": round(case.width / (2.4 if is_relief else 1.5), 1), "halo": False}
+    thin = {"line_width": round(case.width / (1.4 if is_relief else 1.5), 1), "halo": False}
     layers = [
         # A line of one point has no light, and no place in the picture.
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords}, quiet=True)
@@ -112,6 +114,21 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
         keys = [key | of_bar for key in keys]
     return replace(drawing, layers=[first, *layers, *others], keys=keys)
+
+
+def _with_classes(case: Case, drawing: Drawing) -> Drawing:
+    """Return the drawing of vectors on a map with their lengths in classes of colours."""
+    first, *others = drawing.layers
+    cmap, clim = first.keywords.get("cmap"), first.keywords.get("clim")
+    is_field = case.frame is not None and case.array is not None and case.array.role == "vectors"
+    if not is_field or not isinstance(cmap, str) or clim is None:
+        return drawing
+    edges = even_levels(*clim, MOST_CLASSES)
+    edges = sorted({clim[0], *edges, clim[1]})
+    table = Step("", "vizlight.maps.bands", edges[1:-1], (edges[0], edges[-1]), cmap)
+    first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
+    of_bar: Keywords = {"cmap": table, "levels": edges}
+    return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 
 def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: bool) -> list[float]:
