@@ -102,7 +102,7 @@ def names_above(
     Parameters
     ----------
     blocks_ : pyvista.MultiBlock
-        Blocks with names.
+        Meshes with names.
     camera, height, size
         As for :func:`box_axes`.
 
@@ -110,21 +110,24 @@ def names_above(
     -------
     pyvista.PolyData
         Triangles.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a block has no finite box, or a height is not positive.
     """
     eye = _Eye(camera, _check.positive("height", height))
     parts = []
-    for name in blocks_.keys():
-        box = _box_of(blocks_[name])
-        corners = np.array(list(itertools.product(*box)))
-        # The highest corner in the picture, above the middle of the box.
-        rows = eye.seen(np.array([*corners, box.mean(axis=1)]))
-        rise = (rows[:-1, 1].max() - rows[-1, 1]) * eye.pixel(box.mean(axis=1))
-        place = box.mean(axis=1) + rise * eye.up
-        parts.append(_word(place, np.array([0.0, 1.0]), GAP, name, eye, size))
+    for i, name in enumerate(blocks_.keys()):
+        box = _box_of(blocks_[i])
+        middle = box.mean(axis=1)
+        rows = eye.seen(np.array([middle, *itertools.product(*box)]))[:, 1]
+        place = middle + (rows.max() - rows[0]) * eye.pixel(middle) * eye.up
+        parts.append(_word(place, np.array([0.0, 1.0]), GAP, str(name), eye, size))
     return blocks.polydata(*letters.union(parts))
 
 
-def _box_of(mesh: pv.DataSet) -> Array:
+def _box_of(mesh: object) -> Array:
     """Return the ends of the box of a mesh along x, y and z."""
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))

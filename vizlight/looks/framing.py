@@ -27,8 +27,8 @@ SAMPLE = 20_000
 OPEN = 0.6
 #: Azimuths and altitudes of the eye, in degrees, among which the best one is taken.
 AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
-#: The same around a surface that its box cuts: near the diagonals of the box, from where most of its
-#: openings are seen through.
+#: The same around a surface that its box cuts: near the diagonals of the box, from where it is seen
+#: through most of its openings.
 DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
 #: How much more a view counts in which vectors run to the right.
 RIGHTWARD = 0.1
@@ -40,9 +40,9 @@ ASPECT = 1.2
 SPLATS = 8000
 #: Number of triangles by which the light of the visible surface is measured.
 SEEN = 1000
-#: Thickness of a surface over its middle side up to which it has two sides that are seen as well, and
-#: deviation between their values, in that of all, from which one does not tell the other's. They
-#: are compared in this number of squares each way.
+#: Thickness of a surface over its middle side up to which it has two sides, and deviation between
+#: their values, in that of all, from which one side does not tell of the other. They are compared
+#: in this number of squares each way.
 FLATTENED, DIFFERENT, SQUARES = 0.7, 0.5, 12
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0

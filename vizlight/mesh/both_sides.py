@@ -12,7 +12,7 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Vector
+    from vizlight._types import Array, Vector
 
 __all__ = ["both_sides"]
 
@@ -77,5 +77,6 @@ def both_sides(
     return pv.MultiBlock(dict(zip(names, (surface.copy(deep=False), turned), strict=True)))
 
 
-def _vector(values: Sequence[float]) -> Vector:
-    return tuple(float(value) for value in values)
+def _vector(values: Array) -> Vector:
+    x, y, z = values.tolist()
+    return x, y, z

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Foreign
 
 __all__ = [
-    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "overlay", "read", "tracks_of_tt", "volume",
+    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "overlay", "read",
+    "tracks_of_tt", "volume",
 ]  # fmt: skip
 
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.

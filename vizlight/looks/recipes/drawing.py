@@ -15,12 +15,12 @@ from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
-from vizlight.draw.margins import LETTERS, ink_on
+from vizlight.draw.margins import ink_on
 from vizlight.files import FORMATS
-from vizlight.looks import map_parts
+from vizlight.looks import map_parts, two_sides
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of, side_of
+from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Named
+    from vizlight.looks.two_sides import TwoSides
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
@@ -262,10 +263,13 @@ class Case:
         edges: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
         layers = [Layer(Step("", "render.box_edges", box, camera), edges, live=False)]
         if self.wishes.frame is None:
-            axes = self.wishes.box_axes(box, camera)
-            ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
-            layers.append(Layer(axes, ink | BESIDE, live=False))
+            layers.append(self.words(self.wishes.box_axes(box, camera)))
         return layers
+
+    def words(self, letters: Step) -> Layer:
+        """Return the layer of letters that a step makes."""
+        ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
+        return Layer(letters, ink | BESIDE, live=False)
 
     def eye(self, mesh: Step) -> Viewpoint:
         """Return from where a mesh is seen, if no view is given in its place."""
@@ -295,28 +299,17 @@ class Case:
         return x, y
 
     @cached_property
-    def sides(self) -> Step | None:
-        """Step that makes both sides of a flattened surface whose values differ on them, or None."""
-        mesh, array, wishes = self.surface, self.array, self.wishes
+    def sides(self) -> TwoSides | None:
+        """Both sides of a flattened surface whose values differ on them, None for all else."""
+        array, wishes = self.array, self.wishes
         is_free = wishes.view is None and wishes.frame is None and not self.on_globe
-        if not is_free or self.contents.flat_axis is not None or array is None:
+        has_values = array is not None and array.role in ("values", "heights")
+        is_surface = self.contents.dimension == 2 and self.contents.flat_axis is None
+        if not (
+            is_free and has_values and is_surface and isinstance(self.surface.run(), pv.PolyData)
+        ):
             return None
-        if self.contents.dimension != 2 or array.role not in ("values", "heights"):
-            return None
-        if not isinstance(mesh.run(), pv.PolyData):
-            return None
-        if side := brains.hemisphere(mesh.run()):
-            # Of the cortex both sides are always shown.
-            toward, up = (-1.0 if side == "left" else 1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-            names = [f"{side.title()} hemisphere, {view}" for view in ("lateral", "medial")]
-        elif (eye := side_of(mesh.run(), array.name)) is not None:
-            toward, up = eye.toward, eye.up
-            axis = int(np.argmax(np.abs(toward)))
-            signs = ("", "-") if toward[axis] > 0 else ("-", "")
-            names = [f"From {sign}{'xyz'[axis]}" for sign in signs]
-        else:
-            return None
-        return Step("sides", "render.both_sides", mesh, toward, up=up, names=names)
+        return two_sides.of_surface(self.surface, self.needed_array.name)
 
     @property
     def is_wide(self) -> bool:
@@ -359,21 +352,6 @@ class Case:
         elif self.box is not None:
             mesh, boxed = self.box, True
         return self.wishes.camera(mesh, eye, boxed=boxed)
-
-    def named_sides(self, sides: Step) -> tuple[Step, list[Layer]]:
-        """Return the step of the camera on both sides of a surface, and the layer of their names."""
-        toward, up = sides.arguments[1], sides.keywords["up"]
-        eye = Viewpoint(toward, up, True, "from both sides")
-        size = round(LETTERS * min(self.wishes.size), 1)
-        height = round(self.wishes.room[1], 1)
-
-        def names(camera: Step) -> Step:
-            return Step("names", "render.names_above", sides, camera, height, size=size)
-
-        around = Step("", "pyvista.MultiBlock", [sides, names(self.wishes.camera(sides, eye))])
-        camera = self.wishes.camera(around, eye)
-        ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
-        return camera, [Layer(names(camera), ink | BESIDE, live=False)]
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""

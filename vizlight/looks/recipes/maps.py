@@ -123,8 +123,8 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     is_field = case.frame is not None and case.array is not None and case.array.role == "vectors"
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
-    edges = even_levels(*clim, MOST_CLASSES)
-    edges = sorted({clim[0], *edges, clim[1]})
+    low, high = clim
+    edges = sorted({low, *even_levels(low, high, MOST_CLASSES), high})
     table = Step("", "vizlight.maps.bands", edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
     of_bar: Keywords = {"cmap": table, "levels": edges}

@@ -56,7 +56,10 @@ def values(case: Case) -> Drawing:
             note = f"{array.name} {kinds[0]:g}, which is around all else, is left out"
             return replace(drawing, notes=[*drawing.notes, note])
     sides = case.sides
-    camera, beside = (case.camera(mesh), []) if sides is None else case.named_sides(sides)
+    if sides is None:
+        camera = case.camera(mesh)
+    else:
+        camera, names = sides.camera_and_names(case.wishes)
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
     # Seen along an axis, much of a surface faces the eye, and a lamp there would show no relief.
@@ -81,10 +84,10 @@ def values(case: Case) -> Drawing:
     notes = [note] if note else []
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
-    every = [mesh] if sides is None else [Step("", "[]", sides, i) for i in range(2)]
-    layers = [*(Layer(each, shown) for each in every), *beside]
     if sides is None:
-        layers += case.edges(camera)
+        layers = [Layer(mesh, shown), *case.edges(camera)]
+    else:
+        layers = [*(Layer(side, shown) for side in sides.layers()), case.words(names)]
     return Drawing(
         layers, camera, scene, lit,
         f"{array.name} in colours", keys,
