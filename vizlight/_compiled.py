@@ -44,7 +44,7 @@ ROUNDING = frozenset({"contract", "arcp", "nsz"})
 #: Seconds of processor time to import numba, to prepare its compiler for the first kernel of a
 #: process, to read a kernel from the disk, and to compile one of the engine, as measured with numba
 #: 0.68. Other kernels state their own.
-IMPORT, PREPARE, READ, COMPILE = 0.2, 0.28, 0.02, 1.2
+IMPORT, PREPARE, READ, COMPILE = 0.45, 0.5, 0.02, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result. With a
 #: half, a call that the kernel saves so much takes at most twice the time of NumPy.
 SHARED = 1 / 2

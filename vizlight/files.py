@@ -450,7 +450,7 @@ def _found(
     """Return the data of the first reader that knows a file."""
     contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     contents = series.read(path, time) if contents is None else contents
-    contents = _by_vtk(path) if contents is None else contents
+    contents = _by_package(path) if contents is None else contents
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -508,12 +508,8 @@ def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
-def _by_vtk(path: Path) -> pv.DataObject:
-    """Return the data of PyVista's reader; ``pyvista.read`` would log messages of VTK."""
-    reader = series.reader_of(path)
-    if reader is not None:
-        data: pv.DataObject = series.unchecked(reader)
-        return data
+def _by_package(path: Path) -> pv.DataObject:
+    """Return the data of a file that VTK has no reader for, but a package such as meshio."""
     try:
         return pv.read(path, validate=False)
     except OSError as error:

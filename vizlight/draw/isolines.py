@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+import scipy
 from matplotlib.path import Path
-from scipy.spatial import cKDTree
 
 from vizlight import _check, _words
 from vizlight.mesh import blocks, polylines, records
@@ -208,7 +208,7 @@ def _extremes(
     rings = [(Path(piece), level) for piece, level in pieces if np.allclose(piece[0], piece[-1])]
     if not rings or len(points) < AROUND:
         return []
-    tree, reach = cKDTree(points), REACH * float(np.ptp(points, axis=0).max())
+    tree, reach = scipy.spatial.cKDTree(points), REACH * float(np.ptp(points, axis=0).max())
     marks: list[Mark] = []
     for sign, letter in ((1.0, "H"), (-1.0, "L")):
         for at in _peaks(tree, sign * values, reach):
@@ -226,7 +226,7 @@ def _extremes(
     return marks
 
 
-def _peaks(tree: cKDTree, rows: Array, reach: float) -> list[int]:
+def _peaks(tree: scipy.spatial.cKDTree, rows: Array, reach: float) -> list[int]:
     """Return the points with the largest value within a distance, one of those with equal ones."""
     _, near = tree.query(tree.data, AROUND)
     peaks: list[int] = []
@@ -286,7 +286,7 @@ def _lines_apart(
     owners = np.repeat(np.arange(len(points)), [len(part) for part in points])
     if not points:
         return lambda _, places: np.zeros(len(places), np.bool_)
-    tree = cKDTree(np.concatenate(points))
+    tree = scipy.spatial.cKDTree(np.concatenate(points))
 
     def near(number: int, places: Array) -> Bools:
         distance, at = tree.query(places, NEIGHBOURS, distance_upper_bound=CLEAR * letters)

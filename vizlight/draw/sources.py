@@ -26,7 +26,7 @@ from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import GHOSTS
 from vizlight.vtk.corners import MANY_SHARP, SHARP
-from vizlight.vtk.normals import Sided, computed_normals, piece_numbers
+from vizlight.vtk.normals import Sided, are_of_faces, computed_normals, creases, piece_numbers
 from vizlight.vtk.parts import uses_normals
 
 if TYPE_CHECKING:
@@ -138,12 +138,17 @@ def with_sharp_edges(mesh: pv.DataSet, light: LightOptions) -> pv.DataSet:
         surface = blocks.outer_surface(bare)[0]
     if not isinstance(surface, pv.PolyData):
         return mesh
+    is_auto = light.feature_angle == "auto"
+    if carried and is_auto:
+        vectors = np.asarray(surface.point_data[carried])
+        if are_of_faces(surface, vectors) or not creases(surface, has_normals=True):
+            return mesh
     split = split_where_computed(surface, light.feature_angle)
     if split is surface:
         return mesh
     # Known as long as the mesh is there, though the split points are made for each picture.
     computed_normals(split, owner=surface)
-    averaged = carried is None or light.feature_angle != "auto" or _fit_no_face(split, carried)
+    averaged = carried is None or not is_auto or _fit_no_face(split, carried)
     return split if averaged else mesh
 
 

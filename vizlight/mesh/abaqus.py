@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.spatial.transform import Rotation
+import scipy
 
 from vizlight import _check
 
@@ -202,7 +202,8 @@ def _placed(grid: pv.UnstructuredGrid, rows: list[list[str]]) -> pv.Unstructured
             raise ValueError(f"{len(numbers[1])} of 7 numbers of the turn of an *INSTANCE")
         start, end = np.reshape(numbers[1][:6], (2, 3))
         axis = (end - start) / np.linalg.norm(end - start)
-        points = Rotation.from_rotvec(np.radians(numbers[1][6]) * axis).apply(points - start)
+        turn = scipy.spatial.transform.Rotation.from_rotvec(np.radians(numbers[1][6]) * axis)
+        points = turn.apply(points - start)
         points += start
     grid.points = points
     return grid

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.spatial import cKDTree
+import scipy
 
 from vizlight import _check
 from vizlight.mesh import georeference, meaning, polylines
@@ -184,7 +184,7 @@ def _whole(ball: pv.PolyData) -> pv.PolyData:
     if not edges.n_lines:
         return surface
     ends = edges.lines.reshape(-1, 3)[:, 1:]
-    _, nearest = cKDTree(np.asarray(surface.points)).query(np.asarray(edges.points))
+    _, nearest = scipy.spatial.cKDTree(np.asarray(surface.points)).query(np.asarray(edges.points))
     at: Indices = np.asarray(nearest)
     for side in (1.0, -1.0):
         high = side * np.asarray(edges.points)[:, 2] > math.cos(math.radians(NEAR_POLE))

@@ -6,7 +6,6 @@ import threading
 from typing import TYPE_CHECKING
 
 import pyvista as pv
-from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
 
 from vizlight import _check
 
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign
 
-_IMPORTERS = {".wrl": vtkVRMLImporter, ".vrml": vtkVRMLImporter, ".3ds": vtk3DSImporter}
-SUFFIXES = tuple(_IMPORTERS)
+SUFFIXES = (".wrl", ".vrml", ".3ds")
 #: VTK's parser of VRML keeps its state in variables of the process.
 _LOCK = threading.Lock()
 
@@ -29,7 +27,10 @@ def read(path: Path) -> pv.MultiBlock:
     path : pathlib.Path
         Path of a file with a suffix among ``SUFFIXES``.
     """
-    importer: Foreign = _IMPORTERS[path.suffix.lower()]()
+    from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
+
+    of_3ds = path.suffix.lower() == ".3ds"
+    importer: Foreign = vtk3DSImporter() if of_3ds else vtkVRMLImporter()
     importer.SetFileName(str(path))
     shapes, empty = pv.MultiBlock(), 0
     with _LOCK:

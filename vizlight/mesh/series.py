@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
-from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from vizlight import _check
 from vizlight.mesh import blocks, meaning
@@ -282,6 +280,8 @@ def reader_of(path: Path) -> Foreign:
     whole = (case / "constant" / "polyMesh").is_dir()
     if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
         # PyVista's reader looks for the whole first, and reports that it is missing.
+        from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
+
         decomposed = vtkPOpenFOAMReader()
         decomposed.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
         return _OfVtk(decomposed, path)
@@ -291,6 +291,8 @@ def reader_of(path: Path) -> Foreign:
         return None
     except TypeError:
         # PyVista's reader of XDMF fails without times, as in a mesh that FEniCS writes.
+        from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+
         return _OfVtk(vtkXdmfReader(), path)
     return reader
 
@@ -358,7 +360,7 @@ def unchecked(reader: Foreign) -> Foreign:
 
 
 def read(path: Path, time: object) -> pv.DataObject | None:
-    """Return the mesh of a step of a file, None where the file has no steps or no reader.
+    """Return the mesh of a file, of a step if it has steps; None where VTK has no reader.
 
     Parameters
     ----------
@@ -377,7 +379,8 @@ def read(path: Path, time: object) -> pv.DataObject | None:
         # Of a single mesh the first step and the last one are the mesh itself.
         if time not in (None, "first", "last"):
             raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
-        return None
+        whole: pv.DataObject | None = None if reader is None else unchecked(reader)
+        return whole
     index = chosen(times, time)
     mesh: pv.DataObject = marked(at(reader, times[index]), times, index)
     return mesh

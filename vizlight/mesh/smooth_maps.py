@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from vizlight import _check
 from vizlight.mesh import blocks
@@ -73,7 +73,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     for axis in (0, 1):
         at = np.arange(table.shape[axis])
         finer = np.linspace(0, at[-1], factor * at[-1] + 1)
-        table = PchipInterpolator(at, table, axis=axis)(finer)
+        table = scipy.interpolate.PchipInterpolator(at, table, axis=axis)(finer)
     high, wide = table.shape[:2]
     ids = np.arange(high * wide).reshape(high, wide)
     a, b, c, d = ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]

@@ -8,7 +8,6 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
 
 from vizlight import _check
 from vizlight.geometry.lines import even, evenness, fur, tracing
@@ -53,6 +52,8 @@ def in_space(
 
     ``report`` takes the share that is done, out of 100.
     """
+    from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
+
     tracer = vtkStreamTracer()
     tracer.SetInputDataObject(mesh)
     tracer.SetSourceData(pv.PolyData(seeds))

@@ -18,9 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
-from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
-from vtkmodules.vtkImagingCore import vtkExtractVOI
 
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.bezier import as_lagrange
@@ -279,17 +277,18 @@ def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
     return cropped(bare, extent)
 
 
-#: Filters that take a part of a grid.
-_EXTRACT = (
-    (vtkImageData, vtkExtractVOI),
-    (vtkRectilinearGrid, vtkExtractRectilinearGrid),
-    (vtkStructuredGrid, vtkExtractGrid),
-)
-
-
 def cropped(mesh: Foreign, extent: Sequence[int]) -> Foreign:
     """Return a part of a grid, with its arrays."""
-    take: Foreign = next(extract for kind, extract in _EXTRACT if isinstance(mesh, kind))()
+    # Libraries of VTK that few meshes need take longer to load than a small mesh to light.
+    from vtkmodules.vtkFiltersExtraction import vtkExtractGrid, vtkExtractRectilinearGrid
+    from vtkmodules.vtkImagingCore import vtkExtractVOI
+
+    filters = (
+        (vtkImageData, vtkExtractVOI),
+        (vtkRectilinearGrid, vtkExtractRectilinearGrid),
+        (vtkStructuredGrid, vtkExtractGrid),
+    )
+    take: Foreign = next(extract for kind, extract in filters if isinstance(mesh, kind))()
     take.SetVOI(extent)
     take.SetInputData(mesh)
     take.Update()

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
 from vizlight import _check
 from vizlight.model import kernels
@@ -30,6 +29,7 @@ from vizlight.vtk.cells import (
     used,
 )
 from vizlight.vtk.corners import (
+    MANY_SHARP,
     SHARP,
     all_slivers,
     common_normals,
@@ -43,10 +43,12 @@ from vizlight.vtk.corners import (
 from vizlight.vtk.hull import dimension, scattered, surface_of
 from vizlight.vtk.memory import once
 from vizlight.vtk.orientation import (
+    CORNERS,
     MOST_LEAN,
     PartShape,
     Sums,
     SurfaceShape,
+    lean_of,
     sides_of,
     toward_eye,
 )
@@ -70,7 +72,6 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import Facing
     from vizlight.vtk.hull import Grid
-
 
 #: Least number of points, where there are as many, by which the side of a height field is found.
 SEEN = 1 << 16
@@ -332,7 +333,7 @@ def sided_normals(
         )
     lean = None
     if np.any(number > 1):
-        lean = _lean_of_given(SurfaceShape(surface, block=of), on_surface)
+        lean = lean_of_given(surface, on_surface)
         lean = lean if origin is None else scattered(lean, origin, len(vectors))
         lean = lean if block is None else np.where(number[block] > 1, lean, 0)
     side = int(number[0]) if block is None else number[block]
@@ -354,10 +355,21 @@ def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tu
     return closed & _inward(places(surface)[ids], normals[ids], of[ids], count), ~closed
 
 
-def _lean_of_given(shape: SurfaceShape, normals: Array) -> Array:
-    """Return the sine of the largest angle between normals and faces, however these are wound."""
-    # Against normals of the wrong sign all faces look averted, and the lean is 1.
-    return np.minimum(*(np.abs(shape.survey(sign * normals)[1]) for sign in (1, -1)))
+def lean_of_given(surface: vtkPolyData, normals: Array) -> Array:
+    """Return :func:`.orientation.lean_of`, computed once for a surface and its normals."""
+    return once(surface, f"lean {digest(normals)}", lambda: lean_of(surface, normals))
+
+
+def are_of_faces(surface: vtkPolyData, normals: Array) -> bool:
+    """Return whether normals fit the faces around all but few corners of a surface of triangles.
+
+    Points that are split at sharp edges would then have normals near those that they have.
+    """
+    if surface.GetNumberOfStrips() or surface.GetPolys().IsHomogeneous() != CORNERS:
+        return False
+    apart = lean_of_given(surface, normals) > np.sin(np.radians(SHARP / 2))
+    # A point is split into at most as many as it has corners.
+    return int(np.count_nonzero(apart[triangles(surface)])) <= MANY_SHARP * len(normals)
 
 
 def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
@@ -393,10 +405,8 @@ def _sided_grid(mesh: Grid, vectors: Array) -> Sided:
             return Sided(vectors, open=side)
         lean = np.zeros(len(vectors), dtype=np.float32)
         for part in hull.parts(mesh):
-            # A lean is an angle, which needs neither the centroid of the whole nor its size.
-            shape = PartShape(part.surface, part.side, np.zeros(3), 1.0)
             on = part.side == 0
-            lean[part.origin[on]] = _lean_of_given(shape, vectors[part.origin])[on]
+            lean[part.origin[on]] = lean_of(part.surface, vectors[part.origin])[on]
         return Sided(vectors, lean, open=side)
     points, normals = [], []
     for part in hull.parts(mesh):
@@ -650,18 +660,19 @@ def outer_shape(
     return Outer(SurfaceShape(skin, side, block), skin, origin)
 
 
-def creases(mesh: vtkPolyData) -> float:
+def creases(mesh: vtkPolyData, *, has_normals: bool = False) -> float:
     """Return the share of edges that are creases, see :func:`~.corners.crease_share`.
 
-    Without any, normals are computed beside it, and found by :func:`computed_normals`.
+    Without any, normals are computed beside it, and found by :func:`computed_normals`, unless the
+    mesh ``has_normals``.
     """
-    return once(mesh, "creases", lambda: _creases(mesh))
+    return once(mesh, "creases", lambda: _creases(mesh, has_normals))
 
 
-def _creases(mesh: vtkPolyData) -> float:
+def _creases(mesh: vtkPolyData, has_normals: bool) -> float:
     outer = outer_shape(mesh)
     share = 0.0 if outer is None else float(crease_share(outer.shape.edges))
-    if not share:
+    if not share and not has_normals:
         once(mesh, "normals", lambda: _frozen(_computed(mesh, outer=outer)))
     return share
 
@@ -702,6 +713,8 @@ def is_scan(mesh: Dataset) -> bool:
 
 def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     """Return normals of planes through neighbouring points, which face the eye."""
+    from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
+
     estimate = vtkPCANormalEstimation()
     estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)

@@ -182,15 +182,9 @@ class SurfaceShape:
             return
         for block in _pool.blocks(len(self.triangles), FEW):
             rows = self.triangles[block]
-            corners = [self.points.take(at, axis=0).T for at in rows.T]
-            a, b, c = (at.astype(np.float64) for at in corners)
-            sides = a - c, b - a, c - b
+            self._unit[:, block], self._full[block], squares = _directions(self.points, rows)
             with np.errstate(all="ignore"):
-                self._unit[:, block], size = kernels.unit(kernels.cross(sides[1], c - a))
-                squares = [kernels.dot(side, side) for side in sides]
-                longest = np.maximum.reduce(squares)
-                self._full[block] = size > NARROWEST * longest
-                self.slivers.append(slivers_of(rows, squares, longest))
+                self.slivers.append(slivers_of(rows, squares, np.maximum.reduce(squares)))
 
     def _count(self, edges: SortedEdges) -> None:
         """Count edges of two faces, and sharp ones.
@@ -358,6 +352,57 @@ class SurfaceShape:
                 good &= self.side[block] == 0
             scores += np.bincount(self.piece[block][good], score[good], self.count)
         return scores
+
+
+def _directions(points: Raw, triangles: Indices) -> tuple[Array, Bools, list[Array]]:
+    """Return the directions of triangles, which of them have one, and the squares of their sides.
+
+    The first is of shape (3, n); squares are those of the sides that end at each corner.
+    """
+    a, b, c = (points.take(at, axis=0).T.astype(np.float64) for at in triangles.T)
+    sides = a - c, b - a, c - b
+    with np.errstate(all="ignore"):
+        unit, size = kernels.unit(kernels.cross(sides[1], c - a))
+        squares = [kernels.dot(side, side) for side in sides]
+        return unit, size > NARROWEST * np.maximum.reduce(squares), squares
+
+
+def lean_of(surface: vtkPolyData, normals: Array) -> Array:
+    """Return the sine of the largest angle between normals and the faces around each point.
+
+    Parameters
+    ----------
+    surface : vtkPolyData
+        Faces, wound in any way.
+    normals : ndarray, shape (n_points, 3)
+        Normals of any length and of either side.
+
+    Returns
+    -------
+    ndarray of float32, shape (n_points,)
+        1 from a right angle on, and where neighbouring faces are wound against each other; 0 where
+        a normal is not finite.
+    """
+    rows, points = triangles(surface), places(surface)
+    # Row by row in memory, of which single rows are taken below.
+    vectors = np.ascontiguousarray(kernels.unit_rows(normals))
+    least = np.ones(len(points), dtype=np.float32)
+    along, against = np.zeros((2, len(points)), dtype=np.bool_)
+    for block in _pool.blocks(len(rows), FEW):
+        unit, is_full, _ = _directions(points, rows[block])
+        for at in rows[block].T:
+            normal = np.ascontiguousarray(vectors.take(at, axis=0).T)
+            # The direction of a sliver is rounding.
+            corner, cosine = at[is_full], kernels.dot(normal, unit)[is_full]
+            np.minimum.at(least, corner, np.abs(cosine).astype(np.float32))
+            along[corner[cosine > 0]] = True
+            against[corner[cosine < 0]] = True
+    sine = np.sqrt(np.clip(1 - least * least, 0, 1))
+    sine[along & against] = 1
+    sine[~np.isfinite(normals).all(axis=1)] = 0
+    # It may be kept for others.
+    sine.setflags(write=False)
+    return sine
 
 
 def toward_eye(view: View, points: Raw) -> Array:

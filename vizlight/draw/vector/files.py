@@ -5,8 +5,8 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass
+from html import escape
 from typing import TYPE_CHECKING, TypeAlias
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from PIL import Image
@@ -126,13 +126,13 @@ def svg_of(sheet: Sheet) -> str:
     width, height = sheet.size
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-        f'viewBox="0 0 {width} {height}">\n<desc>{escape(sheet.words)}</desc>\n'
+        f'viewBox="0 0 {width} {height}">\n<desc>{escape(sheet.words, quote=False)}</desc>\n'
         f'<rect width="100%" height="100%" fill="{_hex(sheet.background)}"/>\n'
     )
     parts = [head]
     for name, every in sheet.groups.items():
         if every:
-            parts.append(f"<g id={quoteattr(name)}>\n")
+            parts.append(f'<g id="{escape(name)}">\n')
             parts += _drawn(every)
             parts.append("</g>\n")
     return "".join([*parts, "</svg>\n"])
@@ -188,7 +188,7 @@ def _path(rings: Sequence[Array], *, closed: bool = True) -> str:
 def _text(item: Words) -> Iterable[str]:
     anchor = {0.0: "start", 0.5: "middle", 1.0: "end"}[item.across]
     spans = "".join(
-        f'<tspan x="{item.place[0]:.1f}" y="{y:.1f}">{escape(line)}</tspan>'
+        f'<tspan x="{item.place[0]:.1f}" y="{y:.1f}">{escape(line, quote=False)}</tspan>'
         for line, y in item.baselines()
     )
     yield (

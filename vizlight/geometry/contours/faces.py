@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.ndimage import binary_erosion
+import scipy
 
 from vizlight.geometry.contours.palette import JUMP, Palette
 
@@ -107,7 +107,7 @@ def faces(palette: Palette, samples: Array, scale: int) -> Iterator[Face]:
     """
     if not np.any(palette.labels):
         return
-    inner = binary_erosion(palette.labels > 0, iterations=scale)
+    inner = scipy.ndimage.binary_erosion(palette.labels > 0, iterations=scale)
     if palette.error >= 0 and inner.any():
         # Specks between three faces show the mean colour in place of the background's.
         mean = np.mean(palette.colors[palette.labels[inner]], axis=0)

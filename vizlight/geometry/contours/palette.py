@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -172,7 +172,7 @@ def _net(samples: Array, error: float) -> tuple[Array, Indices]:
     middles = (unique + base + 0.5) * size
     # The half diagonal of a bin is added to the distance of its middle.
     centres = middles[_cover(middles, error - np.sqrt(3) / 2 * size)]
-    tree = cKDTree(centres)
+    tree = scipy.spatial.cKDTree(centres)
     away, nearest = (np.asarray(a) for a in tree.query(middles, k=[1, min(2, len(centres))]))
     number = nearest[inverse, 0]
     # Samples of a bin that is not on one side of all bisectors have each their own.
@@ -191,7 +191,7 @@ def _cover(points: Array, reach: float) -> Indices:
     chosen: list[int] = []
     if len(points) < 2:
         return np.arange(len(points))
-    tree = cKDTree(points)
+    tree = scipy.spatial.cKDTree(points)
     _, _, axes = np.linalg.svd(np.cov(points.T))
     for first in np.argsort(points @ axes[0], kind="stable"):
         if not left[first]:
