@@ -120,7 +120,7 @@ class Margin:
                 self._split = split[1]
             elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
                 rows = _box_of(renderer, data=True)[[1, 3]]
-                self._beside(room, min(width, height), rows, alone=_is_map(renderer))
+                self._beside(room, min(width, height), rows, alone=bool(title))
             else:
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
