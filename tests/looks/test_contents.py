@@ -27,6 +27,7 @@ def rising(n):
         ("skin", lambda n: np.arange(3 * n, dtype=np.uint8).reshape(n, 3), "colors"),
         ("part", lambda n: np.arange(n) % 3, "kinds"),
         ("counts", np.arange, "values"),
+        ("far", lambda n: 1e6 * (np.arange(n) % 3), "values"),
     ],
 )
 def test_roles(name, values, role):

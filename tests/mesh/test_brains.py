@@ -175,6 +175,12 @@ def test_a_volume_is_where_its_affine_says(signs, axes, tmp_path):
         np.testing.assert_allclose(mesh.points[mesh.find_closest_point(place)], place, atol=1e-4)
 
 
+def test_a_pair_of_a_header_and_an_image(tmp_path):
+    nibabel.save(nibabel.Nifti1Pair(np.ones((4, 5, 6), np.float32), np.eye(4)), tmp_path / "a.img")
+    for name in ("a.img", "a.hdr"):
+        assert vizlight.read(tmp_path / name).dimensions == (4, 5, 6)
+
+
 def test_an_oblique_and_a_sheared_volume(tmp_path):
     turn = scipy.spatial.transform.Rotation.from_euler("xyz", [5, -8, 12], degrees=True).as_matrix()
     affine = np.eye(4)

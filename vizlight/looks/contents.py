@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 import pyvista as pv
 
+from vizlight.maps import MOST_SPAN
 from vizlight.mesh import blocks, meaning, records
 from vizlight.vtk.arrays import are_colors
 
@@ -297,7 +298,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if low == high and named:
         return None
     distinct = len(np.unique(finite))
-    whole = bool(np.all(finite == np.round(finite)))
+    whole = high - low < MOST_SPAN and bool(np.all(finite == np.round(finite)))
     if whole and (distinct <= meaning.MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:

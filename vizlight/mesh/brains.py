@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Foreign
 
 __all__ = [
-    "SURFACES", "VOLUMES", "is_freesurfer", "overlay", "read", "tracks_of_tt", "volume",
+    "SURFACES", "VOLUMES", "is_freesurfer", "is_pair", "overlay", "read", "tracks_of_tt", "volume",
 ]  # fmt: skip
 
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
@@ -36,6 +36,8 @@ SQUARE = 1e-5
 _FREESURFER, _CURV = (b"\xff\xff\xfe", b"\xff\xff\xfd", b"\xff\xff\xff"), b"\xff\xff\xff"
 #: Codes of GIFTI for points and for triangles.
 _POINTS, _TRIANGLES = 1008, 1009
+#: Length of the header of Analyze and of NIfTI-1, with which it begins.
+_HEADER = 348
 #: Frames of the transforms of GIFTI, by their codes.
 _SPACES = {1: "scanner", 2: "another image", 3: "Talairach", 4: "MNI 152"}
 #: Contents of a .mz3 file, bit by bit: type and numbers for each face or point.
@@ -56,6 +58,21 @@ def is_freesurfer(path: Path) -> bool:
     """
     with path.open("rb") as file:
         return file.read(3) in _FREESURFER
+
+
+def is_pair(path: Path) -> bool:
+    """Return whether a file is one of the two of Analyze or NIfTI, of a header and its image.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
+    header = path.with_suffix(".hdr")
+    if path.suffix.lower() not in (".hdr", ".img") or not header.is_file():
+        return False
+    with header.open("rb") as file:
+        size = file.read(4)
+    return _HEADER in (int.from_bytes(size, "little"), int.from_bytes(size, "big"))
 
 
 def read(path: Path) -> pv.PolyData:

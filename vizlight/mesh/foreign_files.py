@@ -44,6 +44,7 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
+    ".img": ("nibabel", "tracts"),
     ".las": ("laspy", "formats"),
     ".laz": ("laspy", "formats"),
 } | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
@@ -102,7 +103,7 @@ def read(
         return _polylines(*brains.tracks_of_tt(path), {}, {})
     if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
         return brains.read(path)
-    if path.name.lower().endswith(brains.VOLUMES):
+    if path.name.lower().endswith(brains.VOLUMES) or brains.is_pair(path):
         return brains.volume(path, time)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path, nodata)
