@@ -702,8 +702,8 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
         Mesh, which is not changed.
     names : str or sequence of str
         Names of two or three arrays of one component, separated by commas, such as ``"u,v"``,
-        which is the name of the vectors too. A third component that is missing is 0. Arrays of
-        cells are averaged to the points.
+        which is the name of the vectors too; or that of vectors of two components. A third
+        component that is missing is 0. Arrays of cells are averaged to the points.
 
     Returns
     -------
@@ -720,8 +720,8 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     if isinstance(names, list | tuple):
         names = ",".join(map(str, names))
     names = _check.text("names", names, expected="names of arrays, separated by commas")
-    if names in mesh.point_data:
-        return mesh
+    if names in mesh.array_names:
+        return meaning.with_named(mesh, names)[0]
     every = names.split(",")
     if len(every) not in (2, 3):
         raise ValueError(_check.message("names", "two or three names", repr(names)))

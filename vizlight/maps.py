@@ -6,6 +6,7 @@ alone, which dimming does not change, so that a value can still be read by the n
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -209,13 +210,14 @@ def bands(
     return table
 
 
-def kinds(values: Sequence[float], /) -> pv.LookupTable:
+def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
     """Return a lookup table that gives each of some whole numbers a colour of its own.
 
     Parameters
     ----------
-    values : sequence of float
-        Kinds, such as the materials or labels of a mesh, in any order; colours repeat after 16.
+    values : sequence of float, or mapping of float to str
+        Kinds, such as the materials or labels of a mesh, in any order; of a mapping with their
+        names in keys. Colours repeat after 16.
 
     Returns
     -------
@@ -237,7 +239,8 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     import numpy as np
     import pyvista as pv
 
-    rows = np.unique(_check.floats("values", values))
+    names = values if isinstance(values, Mapping) else {}
+    rows = np.unique(_check.floats("values", list(values)))
     whole = rows.size and np.all(rows == np.round(rows)) and np.ptp(rows) < MOST_SPAN
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"
@@ -254,7 +257,7 @@ def kinds(values: Sequence[float], /) -> pv.LookupTable:
     table.values = colors
     table.nan_color = MISSING
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
-    table.annotations = {float(value): f"{value:g}" for value in rows}
+    table.annotations = {float(value): names.get(value, f"{value:g}") for value in rows}
     return table
 
 

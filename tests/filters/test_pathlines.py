@@ -57,6 +57,16 @@ def test_steady_rotation_gives_circles(kind, mesh):
     np.testing.assert_allclose(np.mod(angle - turned + 1, 2 * np.pi), 1, atol=1e-5)
 
 
+def test_vectors_of_two_components_are_those_of_a_plane():
+    seeds, times = [[1.0, 0, 0]], [0, 1]
+    series = steps(rotation, times)
+    whole = list(vizlight.pathlines(series, SCENE, times=times, tangents="V", seeds=seeds))
+    for mesh in series:
+        mesh["V"] = np.asarray(mesh["V"])[:, :2]
+    flat = list(vizlight.pathlines(series, SCENE, times=times, seeds=seeds))
+    np.testing.assert_array_equal(flat[0].points, whole[0].points)
+
+
 def _error(kind, count):
     """Error of the line from (-2, 0): y = sin t, and on the streak y = sin T - sin tau."""
     lines = last(gust, count, [[-2.0, 0, 0]], kind=kind)

@@ -27,6 +27,7 @@ def rising(n):
         ("skin", lambda n: np.arange(3 * n, dtype=np.uint8).reshape(n, 3), "colors"),
         ("part", lambda n: np.arange(n) % 3, "kinds"),
         ("counts", np.arange, "values"),
+        ("far", lambda n: 1e6 * (np.arange(n) % 3), "values"),
     ],
 )
 def test_roles(name, values, role):
@@ -43,6 +44,7 @@ def test_roles(name, values, role):
         ("nothing", lambda n: np.full(n, np.nan)),
         ("vtkValidPointMask", lambda n: np.arange(n) % 2),
         ("no flow", lambda n: np.zeros((n, 3))),
+        ("rgb", lambda n: np.tile([1.0, 0, 0.5], (n, 1))),
     ],
 )
 def test_what_is_no_datum(name, values):
@@ -84,9 +86,20 @@ def test_clouds_and_layers_are_no_ground():
     mesh = pv.Plane(i_resolution=3, j_resolution=3)
     mesh.clear_data()
     names = {"cloud_top_height": "values", "snow_depth": "values", "surface_height": "heights"}
+    names |= {"geopotential_height": "values", "sea_surface_height": "values"}
+    names |= {"surface_geopotential_height": "heights", "water_table_depth": "values"}
     for name in names:
         mesh[name] = np.linspace(0, 1, mesh.n_points) ** 2
     assert {array.name: array.role for array in Contents(mesh).arrays} == names
+
+
+def test_two_components_are_vectors_in_a_plane_alone():
+    flat = pv.Plane(i_resolution=3, j_resolution=3)
+    rows = np.asarray(flat.points)[:, :2]
+    flat.point_data["flow"] = rows
+    (array,) = Contents(flat).arrays
+    assert (array.name, array.role) == ("flow", "vectors")
+    assert of(flow=lambda n: np.ones((n, 2))).arrays == ()
 
 
 def test_labels_may_be_floats_with_holes():

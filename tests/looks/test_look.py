@@ -116,7 +116,8 @@ def globe(**options):
 def test_a_globe_is_a_closed_ball_with_coasts_and_a_part_of_the_earth_is_none():
     _, look = globe()
     assert (look.question, look.shown, look.array) == ("none", "globe", "warmth")
-    assert [layer.mesh.path for layer in look.drawing.layers][1:] == [".scale", "pyvista.Icosphere"]
+    layers = [layer.mesh.path for layer in look.drawing.layers]
+    assert layers[1:] == [".scale", ".scale", "pyvista.Icosphere"]
     assert look.mesh.n_open_edges == 0
     for mesh in (chart(warmth=lambda x, y: x), sheet(warmth=lambda x, y: x)):
         with pytest.raises(ValueError, match="globe: expected a map of the whole earth"):

@@ -52,6 +52,18 @@ def test_maps_have_what_suits_them(mesh, options, parts):
     assert paths(vizlight.look(mesh, size=SIZE, **options))[1:] == parts
 
 
+def test_a_globe_of_a_smooth_field_has_isolines_on_the_ball():
+    earth = chart(360, 180, -180, -90)
+    earth["warmth"] = np.cos(np.radians(np.asarray(earth.points)[:, 1]))
+    look = vizlight.look(earth, globe=True, size=SIZE)
+    meshes = [layer.mesh for layer in look.drawing.layers]
+    curves = next(mesh.run() for mesh in meshes if mesh.name == "isolines")
+    points = np.asarray(curves.points, dtype=float)
+    latitudes = np.degrees(np.arcsin(points[:, 2] / np.linalg.norm(points, axis=1)))
+    np.testing.assert_allclose(np.cos(np.radians(latitudes)), curves["warmth"], atol=0.01)
+    assert "lines every" in look.drawing.keys[0]["title"]
+
+
 def test_two_maps_in_one_picture_have_no_frame_of_one():
     assert (
         paths(vizlight.look([chart(60, 40), chart(60, 40, south=70.0)], size=SIZE))

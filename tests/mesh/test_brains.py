@@ -11,6 +11,7 @@ import scipy
 
 import vizlight
 from vizlight import files
+from vizlight.mesh import meaning
 
 nibabel = pytest.importorskip("nibabel")
 
@@ -81,6 +82,23 @@ def test_values_alone_say_how_they_are_given(name, tmp_path):
     mesh = vizlight.read(tmp_path / "lh.vtp", overlay=path)
     (key,) = {*mesh.point_data} - {*BALL.point_data}
     np.testing.assert_array_equal(mesh[key], values)
+
+
+def test_frames_other_than_that_of_the_points_are_noted(tmp_path):
+    header = {"head": [2, 0, 20], "valid": "1", "filename": "a.mgz", "volume": [9, 9, 9]}
+    header |= {"voxelsize": [1.0] * 3, "xras": [-1.0, 0, 0], "yras": [0, 0, -1.0]}
+    header |= {"zras": [0, 1.0, 0], "cras": [5.0, -18, 12]}
+    faces, path = BALL.regular_faces, tmp_path / "lh.white"
+    nibabel.freesurfer.write_geometry(path, BALL.points, faces, volume_info=header)
+    mesh = vizlight.read(path)
+    assert "c_ras (5, -18, 12)" in meaning.line(mesh)
+    np.testing.assert_allclose(mesh.points, BALL.points, atol=1e-6)
+    gifti(tmp_path / "a.surf.gii", surface=True)
+    image = nibabel.load(tmp_path / "a.surf.gii")
+    assert meaning.line(vizlight.read(tmp_path / "a.surf.gii")) == ""
+    image.darrays[0].coordsys = nibabel.gifti.GiftiCoordSystem(1, 3, 2 * np.eye(4))
+    nibabel.save(image, tmp_path / "b.surf.gii")
+    assert "to Talairach, not applied" in meaning.line(vizlight.read(tmp_path / "b.surf.gii"))
 
 
 def test_values_for_another_surface_are_an_error(tmp_path):
@@ -155,6 +173,12 @@ def test_a_volume_is_where_its_affine_says(signs, axes, tmp_path):
         place = (affine @ [*ijk, 1])[:3]
         assert mesh["NIFTI"][mesh.find_closest_point(place)] == values[ijk]
         np.testing.assert_allclose(mesh.points[mesh.find_closest_point(place)], place, atol=1e-4)
+
+
+def test_a_pair_of_a_header_and_an_image(tmp_path):
+    nibabel.save(nibabel.Nifti1Pair(np.ones((4, 5, 6), np.float32), np.eye(4)), tmp_path / "a.img")
+    for name in ("a.img", "a.hdr"):
+        assert vizlight.read(tmp_path / name).dimensions == (4, 5, 6)
 
 
 def test_an_oblique_and_a_sheared_volume(tmp_path):

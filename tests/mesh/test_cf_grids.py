@@ -227,6 +227,55 @@ def test_times_that_xarray_has_decoded():
     assert np.diff(mesh.field_data["TimeSteps"]).tolist() == [2]
 
 
+def test_dates_of_steps_and_of_an_only_time():
+    clock = {"units": "days since 2001-01-01", "calendar": "360_day"}
+    data = {"t": (("time", "y", "x"), np.arange(2.0).reshape(2, 1, 1) * np.ones((2, 4, 5)))}
+    coords = axes_of(time=([0.0, 59.0], clock))
+    assert meaning.date(59, meaning.of(grid(data, coords)).time) == "2001-02-30 00:00"
+    assert grid(data, coords, time="2001-01-01")["t"][0] == 0
+    with pytest.raises(ValueError, match="expected a time of a step"):
+        grid(data, coords, time="2001-01-02")
+    moment = xr.Dataset(data, coords).isel(time=1)
+    assert vizlight.read(moment).field_data["TimeValue"][0] == 59
+
+
+@pytest.mark.parametrize("kind", ["f2", "longdouble", "O", ">f4"])
+def test_numbers_of_types_that_vtk_lacks(kind):
+    rows = np.arange(20.0).reshape(4, 5)
+    mesh = grid({"t": (("y", "x"), rows.astype(kind))}, axes_of())
+    np.testing.assert_array_equal(mesh["t"], rows.ravel())
+
+
+def test_durations_are_numbers_and_complex_numbers_are_left_out():
+    spans = (np.arange(20) * 86_400 * 10**9).astype("m8[ns]").reshape(4, 5)
+    data = {"t": (("y", "x"), spans, {"units": "K"}), "z": (("y", "x"), np.full((4, 5), 1j))}
+    mesh = grid(data, axes_of())
+    np.testing.assert_array_equal(mesh["t"], np.arange(20))
+    assert "complex numbers: z" in meaning.line(mesh)
+    with pytest.raises(ValueError, match=r"no variable .* \(left out, complex numbers: z"):
+        grid({"z": data["z"]}, axes_of())
+
+
+@pytest.mark.parametrize(
+    "lon", [np.arange(0, 411, 10.0), np.r_[np.arange(0, 181, 10.0), np.arange(-180, 1, 10.0)]]
+)
+def test_a_second_turn_and_a_meridian_that_stands_twice_are_one(lon):
+    rows = np.cos(np.radians(lon)) * np.ones((3, 1))
+    mesh = grid({"t": (("lat", "lon"), rows)}, {"lat": [0.0, 1, 2], "lon": lon})
+    assert mesh.bounds_size[0] == 360
+    x = np.asarray(mesh.points)[:, 0]
+    np.testing.assert_allclose(mesh["t"], np.cos(np.radians(x)), atol=1e-6)
+
+
+def test_places_of_zero_are_none():
+    y, x = np.mgrid[20:30, 5:17] + 0.0
+    lon, lat = x + 0.1 * y, y + 0.1 * x
+    lon[2:4, 3:6] = lat[2:4, 3:6] = 0
+    data = {"t": (("j", "i"), x), "lon": (("j", "i"), lon), "lat": (("j", "i"), lat)}
+    mesh = vizlight.read(xr.Dataset(data))
+    assert mesh.compute_cell_sizes()["Area"].max() < 1.1
+
+
 def test_two_files_of_one_wind(tmp_path):
     for name in "uv":
         data = {name: (("lat", "lon"), np.ones((ROWS, COLUMNS)))}
@@ -249,7 +298,7 @@ def test_a_range_that_the_file_states():
 def test_a_store_of_zarr(tmp_path):
     pytest.importorskip("zarr")
     data = xr.Dataset({"t": (("y", "x"), HEIGHTS)}, coords={"y": LAT, "x": LON})
-    data.to_zarr(tmp_path / "a.zarr")
+    data.to_zarr(tmp_path / "a.zarr", consolidated=False)
     data.to_netcdf(tmp_path / "a.nc")
     one, other = (vizlight.read(tmp_path / name) for name in ("a.zarr", "a.nc"))
     np.testing.assert_allclose(one.points, other.points)

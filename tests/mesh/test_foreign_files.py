@@ -416,3 +416,10 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
     assert np.isnan(heights[-1, :4]).all()
     np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
     assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+def test_a_mesh_of_tetgen_without_numbers_is_refused(tmp_path):
+    for name in ("a.node", "a.ele"):
+        (tmp_path / name).write_text("# written by a program\n\n")
+    with pytest.raises(ValueError, match=r"'a.node' has no numbers"):
+        vizlight.read(tmp_path / "a.ele")

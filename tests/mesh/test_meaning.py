@@ -29,6 +29,8 @@ def mesh_with(*names, **standard):
         ("B_x", "B_y", "B_z"),
         ("ugos", "vgos"), ("uwnd", "vwnd"), ("vozocrtx", "vomecrty"), ("Velocity_X", "Velocity_Y"),
         ("east_wind", "north_wind"), ("U10M", "V10M"), ("u_rho", "v_rho"), ("ux", "uy"),
+        ("10u", "10v"), ("tauu", "tauv"), ("siu", "siv"), ("xwind", "ywind"), ("uEast", "vNorth"),
+        ("u_eastward", "v_northward"), ("ewind", "nwind"), ("vel_e", "vel_n"), ("iews", "inss"),
     ],
 )  # fmt: skip
 def test_components_by_usual_names(group):
@@ -63,6 +65,24 @@ def test_standard_names_come_first():
         u10="eastward_wind", v10="northward_wind", u100="eastward_wind", v100="northward_wind"
     )
     assert meaning.components(heights) == [("u10", "v10"), ("u100", "v100")]
+
+
+def test_components_by_long_names():
+    mesh, said = mesh_with("var165", "var166"), Meaning()
+    for name, letter in (("var166", "V"), ("var165", "U")):
+        said.add_array(name, {"long_name": f"10 metre {letter} wind component"})
+    meaning.attach(mesh, said)
+    assert meaning.components(mesh) == [("var165", "var166")]
+
+
+def test_flags_have_names_unless_they_are_bits():
+    mesh, said = mesh_with("cover", "bits"), Meaning()
+    words = {"flag_values": np.array([1, 4], np.int8), "flag_meanings": "bare_land sea"}
+    said.add_array("cover", words)
+    said.add_array("bits", words | {"flag_masks": np.array([1, 4], np.int8)})
+    meaning.attach(mesh, said)
+    assert meaning.flags(mesh, "cover") == {1.0: "bare land", 4.0: "sea"}
+    assert meaning.flags(mesh, "bits") == {}
 
 
 def test_components_become_vectors():
@@ -122,13 +142,16 @@ def test_a_mesh_without_meaning():
     ("time", "unit", "expected"),
     [
         (0, "hours since 1900-01-01", "1900-01-01 00:00"),
-        (1054152, "hours since 1900-01-01 00:00:0.0", ""),
+        (1054152, "hours since 1900-1-1 00:00:0.0", "2020-04-04 00:00"),
         (1054152, "hours since 1900-01-01 00:00:00.0", "2020-04-04 00:00"),
         (1.5e9, "seconds since 1970-1-1T0:00:00Z", "2017-07-14 02:40"),
         (0.5, "days since 2000-02-28 18:30", "2000-02-29 06:30"),
-        (3, "days since 0001-01-01", ""),
+        (1 / 3, "days since 0001-01-01", "0001-01-01 08:00"),
         (3, "months since 2000-01-01", ""),
-        (3, "days since 2000-01-01, noleap calendar", ""),
+        (60, "days since 2000-01-01, noleap calendar", "2000-03-02 00:00"),
+        (59, "days since 2001-01-01, 360_day calendar", "2001-02-30 00:00"),
+        (20010215.5, "day as %Y%m%d.%f", "2001-02-15 12:00"),
+        (3, "days since 2000-01-01, lunar calendar", ""),
         (1e12, "days since 2000-01-01", ""),
         (3, "", ""),
     ],

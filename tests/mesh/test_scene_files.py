@@ -42,3 +42,10 @@ def test_a_shape_without_points_does_not_refuse_the_others(tmp_path):
 def test_a_scene_without_points_is_refused(tmp_path):
     with pytest.raises(vizlight.files.FileError, match="no points"):
         vizlight.read(written(tmp_path, EMPTY))
+
+
+def test_colors_of_points(tmp_path):
+    colors = "color Color { color [1 0 0, 0 1 0, 0 0 1, 1 1 1] } } }"
+    (shape,) = scene_files.read(written(tmp_path, TETRAHEDRON.removesuffix("} }") + colors))
+    expected = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]
+    np.testing.assert_array_equal(shape["color"], expected)

@@ -116,3 +116,16 @@ def test_a_table_alone_is_no_image(tmp_path):
     xr.Dataset(data).to_netcdf(tmp_path / "a.nc")
     with pytest.raises(files.FileError, match="'elements' seems a table of the nodes of faces"):
         vizlight.read(tmp_path / "a.nc")
+
+
+def test_meshes_of_fewer_faces_than_corners():
+    places = {"lon": ("node", [0.0, 1, 0, 1, 2]), "lat": ("node", [0.0, 0, 1, 1, 0])}
+    table = {"ikle": (("face", "three"), [[0, 1, 2], [1, 4, 3]])}
+    mesh = vizlight.read(xr.Dataset({"h": ("node", np.arange(5.0)), **table, **places}))
+    assert mesh.n_cells == 2
+    np.testing.assert_array_equal(mesh["h"], np.arange(5))
+    table = {"faces": (("face", "four"), [[0, 1, 3, 2], [1, 4, 3, -1]])}
+    values = {"v": ("face", [5.0, 6]), "mesh": ((), 0, UGRID)}
+    mesh = vizlight.read(xr.Dataset({**values, **table, **places}))
+    np.testing.assert_allclose(mesh.compute_cell_sizes()["Area"], [1, 0.5])
+    np.testing.assert_array_equal(mesh["v"], [5, 6])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 import pyvista as pv
 
+from vizlight.maps import MOST_SPAN
 from vizlight.mesh import blocks, meaning, records
 from vizlight.vtk.arrays import are_colors
 
@@ -47,6 +48,8 @@ _KIND_WORDS = {
     "mat", "material", "materials", "part", "parts", "phase", "region", "regions", "segment",
     "zone",
 }  # fmt: skip
+#: Words in the names of colours.
+_COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
 #: Words in the names of vectors that are no flow: what moves or loads a solid.
 _LOAD_WORDS = {
     "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
@@ -60,6 +63,9 @@ _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 #: What else has heights and depths that are no ground: clouds, waves, layers, snow, trees.
 _NO_GROUND = re.compile(
     r"cloud|wave|swell|layer|snow|canop|tree|tropopause|mixing|mixed|optical|melt|penetration|mld|pbl"
+    r"|(?<!surface[ _])geopotential(?!.*(surface|orog))|sea[ _]surface|free[ _-]surface|tid(e|al)"
+    r"|anomaly|dynamic[ _]topography|flood|water[ _]table|isotherm|thermocline|soil|freezing"
+    r"|condensation"
 )
 #: What describes the grid of a model, and changes with none of its steps.
 _OF_GRID = re.compile(
@@ -201,7 +207,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     of light are left out.
     """
     outputs = records.all_made(mesh)
-    described = []
+    described, texture = [], mesh.point_data.active_texture_coordinates_name
     for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
         for name in data:
             if name in outputs:
@@ -209,6 +215,11 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             values = np.asarray(data[name])
             array = _described(name, values, of_cells=of_cells, named=True)
             said = _words_of(mesh, name)
+            if array is not None and array.role == "values" and meaning.flags(mesh, name):
+                array = replace(array, role="kinds")
+            if meaning.is_planar(values) and (name == texture or mesh.bounds_size[2]):
+                # Two components are vectors in a plane alone.
+                continue
             if array is not None and array.role == "values" and _HEIGHTS.search(said):
                 array = replace(array, role="heights")
             if array is not None and array.role == "heights" and _NO_GROUND.search(said):
@@ -272,6 +283,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         # A file whose colours are all alike has none to show.
         plain = named and not np.any(values != values[:1])
         return None if plain else Named(name, "colors", of_cells)
+    if named and _are_shares(words, values):
+        return None
     if values.dtype.kind not in "fiub" or values.ndim > 2 or not len(values):
         return None
     sample = np.asarray(values[:: max(len(values) // SAMPLE, 1)], dtype=np.float64)
@@ -279,19 +292,27 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if not len(finite):
         return None
     if values.ndim == 2 and values.shape[1] > 1:
-        is_vector = values.shape[1] == 3 and values.dtype.kind == "f" and np.any(finite)
+        is_vector = values.shape[1] in (2, 3) and values.dtype.kind == "f" and np.any(finite)
         return Named(name, "vectors", of_cells) if is_vector else None
     low, high = float(finite.min()), float(finite.max())
     if low == high and named:
         return None
     distinct = len(np.unique(finite))
-    whole = bool(np.all(finite == np.round(finite)))
+    whole = high - low < MOST_SPAN and bool(np.all(finite == np.round(finite)))
     if whole and (distinct <= meaning.MOST_KINDS or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
         ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
         role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _are_shares(words: list[str], values: Raw) -> bool:
+    """Return whether rows are colours in numbers from 0 to 1, which are no vectors."""
+    if _COLOR_WORDS.isdisjoint(words) or values.ndim != 2 or values.dtype.kind != "f":
+        return False
+    rows: Array = np.asarray(values, dtype=np.float64)
+    return bool(np.all((rows >= 0) & (rows <= 1)))
 
 
 def _words(name: str) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +42,8 @@ SPARSE = 1.3
 WITH_EXTREMES = {
     "air_pressure_at_sea_level", "air_pressure_at_mean_sea_level", "geopotential_height",
 }  # fmt: skip
+#: Function that puts a flat map on a ball.
+GLOBE = "vizlight.cartography.globe"
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -151,11 +154,29 @@ def smoothed(mesh: Step, array: Named) -> Step | None:
     return Step("smooth", "vizlight.cartography.smoothed", mesh, array.name, factor)
 
 
+def flat(mesh: Step) -> Step | None:
+    """Return the step of the map that a step has put on a ball, None for other balls."""
+    source = mesh.arguments[0] if mesh.path == GLOBE else None
+    return source if isinstance(source, Step) else None
+
+
+def degrees(wishes: Wishes) -> float:
+    """Return the height of letters on a ball in degrees at its middle, as large as in keys."""
+    radius = min(wishes.room) / MARGIN / 2
+    return math.degrees(LETTERS * min(wishes.size) / radius)
+
+
+def curves(ball: Step, array: Named, values: Sequence[float]) -> Step:
+    """Return the step that makes isolines on a ball, without numbers, which its limb would bend."""
+    contour = Step("", ".contour", ball, [*values], scalars=array.name)
+    return Step("isolines", ".scale", contour, ABOVE_BALL)
+
+
 def shore() -> Step:
     """Return the step that makes the coasts of a globe."""
     flat = Step("", "vizlight.cartography.coasts", (-180.0, 180.0, -90.0, 90.0))
     # Sides of cells are chords of the ball, which would hide lines on it.
-    return Step("coasts", ".scale", Step("", "vizlight.cartography.globe", flat), ABOVE_BALL)
+    return Step("coasts", ".scale", Step("", GLOBE, flat), ABOVE_BALL)
 
 
 def ball() -> Step:

@@ -15,7 +15,7 @@ from vizlight.draw.keywords import LIGHT
 from vizlight.draw.margins import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
-from vizlight.mesh import georeference, records
+from vizlight.mesh import georeference, meaning, records
 from vizlight.scene.material import Material
 from vizlight.scene.presets import PRESETS
 
@@ -277,8 +277,10 @@ class Wishes:
 
     def joined(self, mesh: Step, array: Named) -> Step:
         """Return the step that joins components to vectors, or the mesh that has them."""
-        if "," not in array.name or array.name in mesh.run().array_names:
-            return mesh
+        data = mesh.run()
+        if "," not in array.name or array.name in data.array_names:
+            planar = array.name in data.array_names and meaning.is_planar(data[array.name])
+            return Step("padded", "files.with_vectors", mesh, array.name) if planar else mesh
         return Step("joined", "files.with_vectors", mesh, array.name)
 
     def isosurface(self, mesh: Step) -> Step:

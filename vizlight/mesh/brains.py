@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import re
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Foreign
 
 __all__ = [
-    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "overlay", "read",
+    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
     "tracks_of_tt", "volume",
 ]  # fmt: skip
 
@@ -42,6 +43,10 @@ SQUARE = 1e-5
 _FREESURFER, _CURV = (b"\xff\xff\xfe", b"\xff\xff\xfd", b"\xff\xff\xff"), b"\xff\xff\xff"
 #: Codes of GIFTI for points and for triangles.
 _POINTS, _TRIANGLES = 1008, 1009
+#: Length of the header of Analyze and of NIfTI-1, with which it begins.
+_HEADER = 348
+#: Frames of the transforms of GIFTI, by their codes.
+_SPACES = {1: "scanner", 2: "another image", 3: "Talairach", 4: "MNI 152"}
 #: Contents of a .mz3 file, bit by bit: type and numbers for each face or point.
 _MZ3 = {"faces": ("<i4", 3), "points": ("<f4", 3), "rgb": ("u1", 4), "values": ("<f4", 1)}
 _MAGIC = b"MZ"
@@ -83,6 +88,21 @@ def hemisphere(surface: pv.DataSet) -> str:
     return "left" if right < BEYOND else "right" if left > -BEYOND else ""
 
 
+def is_pair(path: Path) -> bool:
+    """Return whether a file is one of the two of Analyze or NIfTI, of a header and its image.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
+    header = path.with_suffix(".hdr")
+    if path.suffix.lower() not in (".hdr", ".img") or not header.is_file():
+        return False
+    with header.open("rb") as file:
+        size = file.read(4)
+    return _HEADER in (int.from_bytes(size, "little"), int.from_bytes(size, "big"))
+
+
 def read(path: Path) -> pv.PolyData:
     """Return the surface of a file, with the arrays of its points.
 
@@ -99,15 +119,19 @@ def read(path: Path) -> pv.PolyData:
 
     name = path.name.lower()
     arrays: dict[str, AnyArray] = {}
+    notes: list[str] = []
     if name.endswith(".mz3"):
         arrays = _mz3(path)
         points, faces = arrays.pop("points", None), arrays.pop("faces", None)
     elif name.endswith((".gii", ".gii.gz")):
-        points, faces, arrays = _gifti(path)
+        points, faces, arrays, notes = _gifti(path)
     elif name.endswith(".annot") or path.read_bytes()[:3] == _CURV:
         points = faces = None
     else:
-        points, faces = nibabel.freesurfer.read_geometry(path)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "No volume information|Unknown extension")
+            points, faces, header = nibabel.freesurfer.read_geometry(path, read_metadata=True)
+        notes = _shift(header.get("cras", (0.0, 0.0, 0.0)))
     if points is None or faces is None:
         raise ValueError(NO_SURFACE)
     # Native float32 stays; all else, such as bytes in another order, becomes float64.
@@ -115,7 +139,17 @@ def read(path: Path) -> pv.PolyData:
     mesh: pv.PolyData = pv.PolyData.from_regular_faces(points.astype(kind), faces)
     for key, rows in arrays.items():
         mesh.point_data[key] = rows
+    if notes:
+        meaning.attach(mesh, meaning.Meaning(notes=notes))
     return mesh
+
+
+def _shift(centre: Sequence[float]) -> list[str]:
+    """Return the note on a surface of FreeSurfer, which has its origin at a volume's centre."""
+    if not np.any(centre):
+        return []
+    numbers = ", ".join(f"{number:g}" for number in centre)
+    return [f"points as in the file; plus its c_ras ({numbers}), not added, they fit its volume"]
 
 
 def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
@@ -222,7 +256,7 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
         # Such a file may have a surface beside its values.
         arrays = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
     elif name.endswith(".gii"):
-        arrays = _gifti(path)[2]
+        _, _, arrays, _ = _gifti(path)
     elif name.endswith(".annot"):
         # Indices of regions in the table of colours, -1 for none; colours and names are left out.
         arrays = {"values": nibabel.freesurfer.read_annot(path)[0]}
@@ -241,16 +275,19 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     return {f"{stem}_{key}": rows for key, rows in arrays.items()}
 
 
-def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray]]:
-    """Return points, triangles and other arrays of a GIFTI file."""
+def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str]]:
+    """Return points, triangles and other arrays of a GIFTI file, and the note on their frame."""
     import nibabel
 
     image: Foreign = nibabel.load(path)
     parts: dict[int, Foreign] = {}
     arrays: dict[str, AnyArray] = {}
+    notes: list[str] = []
     for i, part in enumerate(image.darrays):
         if part.intent in (_POINTS, _TRIANGLES):
             parts[part.intent] = np.asarray(part.data)
+            if part.intent == _POINTS:
+                notes = _transform(part)
         else:
             kind = nibabel.nifti1.intent_codes.label[part.intent]
             name = part.meta.get("Name") or kind.removeprefix("NIFTI_INTENT_").lower()
@@ -259,7 +296,17 @@ def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray]]:
     if points is not None:
         # Arrays of another length are those of faces, or of another surface.
         arrays = {key: rows for key, rows in arrays.items() if len(rows) == len(points)}
-    return points, parts.get(_TRIANGLES), arrays
+    return points, parts.get(_TRIANGLES), arrays, notes
+
+
+def _transform(part: Foreign) -> list[str]:
+    """Return the note on a frame in which a GIFTI file says that its points can be put."""
+    system = part.coordsys
+    if system is None or system.xform is None or np.allclose(system.xform, np.eye(4)):
+        return _shift([float(part.meta.get(f"VolGeomC_{axis}", 0)) for axis in "RAS"])
+    space = _SPACES.get(int(system.xformspace), "another frame")
+    rows = "; ".join(" ".join(f"{number:g}" for number in row) for row in system.xform[:3])
+    return [f"points as in the file; its transform to {space}, not applied, is [{rows}]"]
 
 
 def _mz3(path: Path) -> dict[str, AnyArray]:

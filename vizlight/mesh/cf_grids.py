@@ -6,6 +6,7 @@ import math
 import re
 import warnings
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -162,6 +163,8 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
+        # A store of Zarr without a summary of its metadata takes longer to open, no more.
+        warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
         if path.suffix.lower() in GRIB:
             group, along, note = grib_groups.opened(path, at or {})
             with group as file:
@@ -278,7 +281,11 @@ class _Reader:
     """Reader of one dataset, which notes what the grid means."""
 
     def __init__(self, data: Foreign, notes: Sequence[str] = ()) -> None:
-        self.file, self.said = _with_numbers(data), Meaning(notes=[*notes])
+        self.said = Meaning(notes=[*notes])
+        self.file = _with_numbers(data)
+        if left := [str(name) for name, one in data.data_vars.items() if one.dtype.kind == "c"]:
+            words = f"left out, complex numbers: {', '.join(left)}; take numpy.abs or numpy.angle"
+            self.said.notes.append(words)
         self.topology = unstructured.topology(self.file, _node_letter)
         self.listed = listed.listed(self.file, _node_letter)
         self.tables = unstructured.tables(self.file)
@@ -324,8 +331,10 @@ class _Reader:
             if self.letters[self.listed.dim][0] == "t":
                 return mesh
         else:
-            raise ValueError("no variable on a grid of two or three axes")
-        return series.marked(mesh, ticking, step) if len(ticking) > 1 else mesh
+            reasons = "; ".join(self.said.notes)
+            lacking = "no variable on a grid of two or three axes"
+            raise ValueError(f"{lacking} ({reasons})" if reasons else lacking)
+        return series.marked(mesh, ticking, step) if len(ticking) > 1 or self.said.time else mesh
 
     def _on_axes(
         self,
@@ -548,19 +557,38 @@ class _Reader:
         # A file may have several clocks: the one with most steps tells them.
         clock = max(clocks, key=lambda dim: int(sizes[dim]), default=None)
         single = dict.fromkeys(clocks, 0)
-        if clock is None or sizes[clock] < 2:
-            if time not in (None, "first", "last"):
-                series.chosen([0.0], time)
-            return [0.0], 0, single
-        along = self._coordinate(clock)
-        ticks = np.arange(sizes[clock]) if along is None else along.values
+        along = self._moment() if clock is None else self._coordinate(clock)
+        ticks = np.arange(sizes.get(clock, 1)) if along is None else np.ravel(along.values)
         ticking = [float(tick) for tick in ticks]
         self.said.time = "" if along is None else str(along.attrs.get("units", ""))
         calendar = "" if along is None else str(along.attrs.get("calendar", ""))
-        if calendar not in ("", "standard", "gregorian", "proleptic_gregorian"):
+        if calendar not in ("", "standard", "gregorian"):
             self.said.time += f", {calendar} calendar"
-        single[clock] = series.chosen(ticking, time)
-        return ticking, single[clock], single
+        step = self._dated(ticking, time)
+        if clock is not None:
+            single[clock] = step
+        return ticking, step, single
+
+    def _moment(self) -> Foreign:
+        """Return the only time of a file without an axis of time, None without one."""
+        moments = [
+            one
+            for one in self.file.variables.values()
+            if one.ndim == 0
+            and one.dtype.kind in "iuf"
+            and " since " in str(one.attrs.get("units"))
+        ]
+        # A forecast has the time of its start too.
+        return moments[-1] if moments else None
+
+    def _dated(self, ticking: list[float], time: object) -> int:
+        """Return the index of a step, by its time or by its date."""
+        if isinstance(time, str) and re.match(r"\d{4}-\d", time):
+            dates = [meaning.date(tick, self.said.time) for tick in ticking]
+            steps = [i for i, date in enumerate(dates) if date.startswith(time.replace("T", " "))]
+            if steps:
+                return steps[0]
+        return series.chosen(ticking, time)
 
     def _chosen(self, at: dict[str, object]) -> dict[str, int]:
         """Return the index along each axis of which a value is chosen."""
@@ -870,13 +898,15 @@ def _up(name: str, attributes: Mapping[str, Foreign], ticks: Array, by: str) -> 
 
 def _set_ticks(axis: _Axis, ticks: Array, kind: str, *, around: bool = False) -> None:
     """Set the coordinates of an axis so that they rise, its order of values, and its kind."""
-    axis.kind = kind
+    axis.kind, written = kind, ticks
     if around and np.all(np.isfinite(ticks)):
         # Across the meridian at which counting begins anew longitudes go on.
         ticks = np.unwrap(ticks, period=360.0)
         middle = (ticks.min() + ticks.max()) / 2
         ticks = ticks - 360.0 * np.ceil((middle - 180.0) / 360.0)
     order = np.argsort(ticks, kind="stable")
+    if around and len(ticks) > 2:
+        order = _once_around(ticks, order, written)
     ticks = ticks[order]
     if not np.all(np.diff(ticks) > 0):
         raise ValueError(f"the axis of {axis.words} has coordinates twice, or none")
@@ -887,6 +917,18 @@ def _set_ticks(axis: _Axis, ticks: Array, kind: str, *, around: bool = False) ->
             ticks, order = np.append(ticks, ticks[0] + 360.0), np.append(order, order[0])
             axis.words += ", closed around the earth"
     axis.ticks, axis.order = ticks, order
+
+
+def _once_around(ticks: Array, order: Indices, written: Array) -> Indices:
+    """Return the order of longitudes without those that begin a second turn, or stand twice.
+
+    ``written`` are the longitudes of the file, of which -180 and 180 are one.
+    """
+    rising = ticks[order]
+    step = EQUAL * (rising[-1] - rising[0]) / (len(rising) - 1)
+    again = np.append(False, (np.diff(rising) < step) & (np.diff(written[order]) != 0))
+    kept: Indices = order[~again & (rising <= rising[0] + 360.0 + step)]
+    return kept
 
 
 def _straight(lon: Array, lat: Array) -> tuple[Array, Array] | None:
@@ -919,21 +961,33 @@ def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
 
 
 def _with_numbers(data: Foreign) -> Foreign:
-    """Return a dataset whose times are numbers, as they are in files."""
+    """Return a dataset whose times are numbers, as they are in files, of types that VTK has."""
     import xarray
 
-    dated = {
-        name: xarray.conventions.encode_cf_variable(one, name=name)
-        for name, one in data.variables.items()
-        if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,))
-    }
-    return data.assign_coords(dated) if dated else data
+    numbers = {}
+    for name, one in data.variables.items():
+        if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,)):
+            # Attributes that say the unit of a date would be overwritten, which xarray refuses.
+            kept = {key: one.attrs[key] for key in one.attrs if key not in ("units", "calendar")}
+            numbers[name] = xarray.conventions.encode_cf_variable(
+                xarray.Variable(one.dims, one.data, kept, one.encoding), name=name
+            )
+        elif one.dtype in (np.float16, np.longdouble) and one.dtype != np.float64:
+            numbers[name] = one.astype(np.float32 if one.dtype == np.float16 else np.float64)
+        elif one.dtype.kind == "O" and all(isinstance(value, Real) for value in one.values.flat):
+            numbers[name] = one.astype(np.float64)
+    places = {name: one for name, one in numbers.items() if name in data.coords}
+    values = {name: one for name, one in numbers.items() if name not in places}
+    return data.assign_coords(places).assign(values) if numbers else data
 
 
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:
     """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
     missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
+    # So do those of models where they compute nothing: nodes have a place of their own.
+    empty = (lon == 0) & (lat == 0)
+    missing |= empty & (empty.sum() > 1)
     # Files fill the places that they have not with one number, such as -999.
     lon, lat = (height_field.filled(np.where(missing, np.nan, part)) for part in (lon, lat))
     for along in (1, 0):

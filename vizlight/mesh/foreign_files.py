@@ -44,6 +44,7 @@ PACKAGES = {
     ".gii": ("nibabel", "tracts"),
     ".nii": ("nibabel", "tracts"),
     ".mgz": ("nibabel", "tracts"),
+    ".img": ("nibabel", "tracts"),
     ".las": ("laspy", "formats"),
     ".laz": ("laspy", "formats"),
 } | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
@@ -102,7 +103,7 @@ def read(
         return _polylines(*brains.tracks_of_tt(path), {}, {})
     if path.name.lower().endswith(brains.SURFACES) or brains.is_freesurfer(path):
         return brains.read(path)
-    if path.name.lower().endswith(brains.VOLUMES):
+    if path.name.lower().endswith(brains.VOLUMES) or brains.is_pair(path):
         return brains.volume(path, time)
     if suffix in georeference.SUFFIXES:
         return georeference.read(path, nodata)
@@ -142,6 +143,8 @@ def _of_meshio(path: Path) -> pv.DataSet:
 
     # The class is replaced for the whole process: meshio makes a console for each message.
     meshio._common.Console, _SAID.texts = _Console, []
+    if path.suffix.lower() in _TETGEN:
+        _refuse_comments(path)
     kinds = meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
         reader = getattr(meshio, kind)
@@ -161,6 +164,18 @@ def _of_meshio(path: Path) -> pv.DataSet:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
+
+
+#: Ends of names of the two files of a mesh of TetGen.
+_TETGEN = (".node", ".ele")
+
+
+def _refuse_comments(path: Path) -> None:
+    """Raise ValueError for a mesh of TetGen without numbers, in which meshio seeks without end."""
+    for part in map(path.with_suffix, _TETGEN):
+        lines = map(str.strip, part.read_text(encoding="latin-1").splitlines())
+        if not any(line and not line.startswith("#") for line in lines):
+            raise ValueError(f"'{part.name}' has no numbers")
 
 
 #: Messages of meshio, by thread.

@@ -7,7 +7,7 @@ import math
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
-from datetime import datetime, timedelta
+from datetime import timedelta
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -52,7 +52,7 @@ class Meaning:
     axes : list of str
         Words for x, y and z, such as "x longitude in degrees by standard_name".
     arrays : dict
-        Standard name, unit and long name of each point array, as far as the file has them.
+        Standard name, unit, long name and flags of each array, as far as the file has them.
     notes : list of str
         What is missing, and what was assumed or left out.
     time : str
@@ -70,8 +70,26 @@ class Meaning:
         # Models of the weather say in a description what others say in a long name.
         attributes = {"long_name": attributes.get("description")} | dict(attributes)
         kept = {key: str(attributes[key]) for key in KEPT if attributes.get(key)}
+        # Flags with masks are bits, of which several may be set.
+        numbers = np.ravel(attributes.get("flag_values", ()))
+        names = str(attributes.get("flag_meanings", "")).split()
+        if 0 < len(numbers) == len(names) and "flag_masks" not in attributes:
+            kept["flags"] = " ".join(map("{}:{}".format, numbers, names))
         if kept:
             self.arrays[name] = kept
+
+
+def flags(mesh: pv.DataSet, name: str) -> dict[float, str]:
+    """Return the names of the kinds of an array by their numbers, none where its file has none.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    """
+    words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get("flags", "").split()]
+    return {float(number): text.replace("_", " ") for number, _, text in words}
 
 
 def attach(mesh: pv.DataSet, meaning: Meaning) -> None:
@@ -129,7 +147,9 @@ def line(mesh: pv.DataSet) -> str:
 _STANDARD = (
     ("grid_eastward", "grid_northward", "grid_upward"),
     ("eastward", "northward", "upward"),
+    ("zonal", "meridional"),
     ("x_", "y_", "z_"),
+    ("u_", "v_", "w_"),
 )
 #: Names such as urot, with whatever word, of which both must have one unit; uv is u times v.
 _ANY = r"(|.*[_\-. ])([uvw])([a-tx-z]\w+)"
@@ -138,8 +158,10 @@ _ANY = r"(|.*[_\-. ])([uvw])([a-tx-z]\w+)"
 _USUAL = (
     # Velocity_x, vx, B_z, VelX
     (r"(.+)([xyz])()", "x y z"),
-    # x_wind
-    (r"()([xyz])([_\-. ].+)", "x y z"),
+    # x_wind, xwind
+    (r"()([xyz])([_\-. ].+|wind|vel\w*|curr\w*)", "x y z"),
+    # 10u, tauu, siu, ssu, sivelu
+    (r"(\d+|tau|si|ss|sivel)([uv])()", "u v"),
     # u, u10, uo, uas, UGRD_10m, water_u, 10m_u_component_of_wind
     (
         r"(|.*[_\-. ])([uvw])(|[\d_\-. ].*|[oasgbte]|as|os|ice|bar|surf|sfc"
@@ -149,7 +171,14 @@ _USUAL = (
     # NEMO's vozocrtx and vomecrty
     (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
     (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
+    # uEast and v_northward
+    (r"()[uv]_?(east|north)(.*)", "east north"),
     (r"(.*)(east|north)(.*)", "east north"),
+    # ewind, vel_e
+    (r"()([en])(wind|vel\w*|curr\w*)", "e n"),
+    (r"((?:.*_)?(?:wind|vel\w*|curr\w*)_)([en])()", "e n"),
+    # ewss and inss, stresses of ECMWF
+    (r"(i?)(ew|ns)(ss?)", "ew ns"),
     (_ANY, "u v w"),
 )
 
@@ -192,8 +221,8 @@ def components(mesh: pv.DataSet, /) -> list[tuple[str, ...]]:
 def _by_standard(
     names: Sequence[str], table: dict[str, dict[str, str]]
 ) -> Iterator[tuple[str, ...]]:
-    """Yield groups of names by their standard names."""
-    standard = {name: table.get(name, {}).get("standard_name", "").lower() for name in names}
+    """Yield groups of names by their standard names, or their long names where they have none."""
+    standard = {name: _described(table.get(name, {})) for name in names}
     counts = Counter(standard.values())
     # Winds at several heights have one standard name: their own names tell them apart.
     by_name = {value: name for name, value in standard.items() if value and counts[value] == 1}
@@ -206,6 +235,12 @@ def _by_standard(
             if like[0] in by_name:
                 yield (name, *(by_name[one] for one in like if one in by_name))
                 break
+
+
+def _described(attributes: Mapping[str, str]) -> str:
+    """Return the standard name of an array, else its long name in the form of one."""
+    text = attributes.get("standard_name") or attributes.get("long_name", "")
+    return re.sub(r"[^a-z0-9]+", "_", text.lower())
 
 
 def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterator[tuple[str, ...]]:
@@ -264,11 +299,32 @@ def only_vectors(mesh: pv.DataSet) -> str | None:
     data = (mesh.point_data, mesh.cell_data)
     if any(np.shape(part[key])[1:] == (3,) for part in data for key in part):
         return None
-    names = [",".join(group) for group in components(mesh)]
+    names = [*(",".join(group) for group in components(mesh)), *_planar(mesh)]
     if len(names) > 1:
         expected = f"the name of an array, or names of components ({' or '.join(names)})"
         raise ValueError(_check.message("tangents", expected, None))
     return names[0] if names else None
+
+
+def _planar(mesh: pv.DataSet) -> list[str]:
+    """Return the names of the vectors of two components, as those of a flow in a plane."""
+    texture = mesh.point_data.active_texture_coordinates_name
+    return [
+        name
+        for data in (mesh.point_data, mesh.cell_data)
+        for name in data
+        if is_planar(data[name]) and name != texture
+    ]
+
+
+def is_planar(rows: Raw) -> bool:
+    """Return whether rows are vectors of two components.
+
+    Parameters
+    ----------
+    rows : ndarray
+    """
+    return np.shape(rows)[1:] == (2,) and np.asarray(rows).dtype.kind == "f"
 
 
 def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | None]:
@@ -297,7 +353,7 @@ def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | N
     """
     if named is None:
         named = only_vectors(mesh)
-    if isinstance(named, str) and named in mesh.array_names and np.shape(mesh[named])[1:] == (2,):
+    if isinstance(named, str) and named in mesh.array_names and is_planar(mesh[named]):
         mesh = records.averaged(mesh, named).copy(deep=False)
         flat = np.asarray(mesh.point_data[named])
         mesh.point_data[named] = np.pad(flat, ((0, 0), (0, 1)))
@@ -369,11 +425,8 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     return 1.0, given
 
 
-#: Unit of times from a day on.
-_SINCE = re.compile(
-    r"(\w+) since (\d{4})-(\d\d?)-(\d\d?)"
-    r"(?:[T ](\d\d?):(\d\d)(?::\d\d(?:\.\d+)?)?)?(?: ?(?:UTC|Z))?"
-)
+#: Unit of times that are dates themselves, such as 20010215.5.
+_ABSOLUTE = "day as %Y%m%d"
 #: Names of degrees Celsius, in lower case and in the singular.
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
@@ -400,8 +453,6 @@ def written(unit: str) -> str:
     return " ".join(above) + "".join(f"/{name}" for name in below)
 
 
-#: First year in which all dates are those of the Gregorian calendar.
-GREGORIAN = 1583
 #: Seconds of the units of times, by their first letters.
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 
@@ -419,25 +470,28 @@ def seconds(unit: str) -> float:
 
 
 def date(time: float, unit: str) -> str:
-    """Return the date of a time in words, empty where the unit names no day of our calendar.
+    """Return the date of a time in words, empty where its unit names no day, or cftime is missing.
 
     Parameters
     ----------
     time : float
         Time.
     unit : str
-        Its unit, such as "hours since 1900-01-01 06:00".
+        Its unit and calendar, such as "hours since 1900-01-01 06:00, noleap calendar".
     """
-    known = _SINCE.fullmatch(unit.strip())
-    # Before 1583 the calendars of files differ.
-    if known is None or int(known[2]) < GREGORIAN or not known[1].startswith(tuple(_SECONDS)):
-        return ""
-    year, month, day, hour, minute = (int(part or 0) for part in known.groups()[1:])
+    text, _, calendar = unit.strip().partition(", ")
+    if text.startswith(_ABSOLUTE):
+        digits = f"{int(time):08}"
+        text, time = f"days since {digits[:4]}-{digits[4:6]}-{digits[6:]}", time % 1
     try:
-        start = datetime(year, month, day, hour, minute)
-        return f"{start + timedelta(seconds=time * seconds(unit)):%Y-%m-%d %H:%M}"
-    except (ValueError, OverflowError):
+        import cftime
+
+        when = cftime.num2date(time, text, calendar.removesuffix(" calendar") or "standard")
+        # To the nearest minute: a third of a day has no end in binary digits.
+        when += timedelta(seconds=30)
+    except (ImportError, ValueError, OverflowError):
         return ""
+    return f"{when.year:04}-{when.month:02}-{when.day:02} {when.hour:02}:{when.minute:02}"
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from vizlight import _check
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vizlight._types import Foreign
+    from vizlight._types import Foreign, Raw
 
 SUFFIXES = (".wrl", ".vrml", ".3ds")
 #: VTK's parser of VRML keeps its state in variables of the process.
@@ -56,8 +58,26 @@ def _placed(actor: Foreign) -> pv.PolyData | None:
     shape = mapper.GetInput()
     if shape is None or not shape.GetNumberOfPoints():
         return None
+    colors = _colors(shape, mapper.GetLookupTable())
+    if colors is not None:
+        shape.GetPointData().SetScalars(None)
     # Normals are turned as normals, which a scale of unequal factors leaves upright.
     placed: pv.PolyData = pv.wrap(shape).transform(
         pv.array_from_vtkmatrix(actor.GetMatrix()), transform_all_input_vectors=False, inplace=False
     )
+    if colors is not None:
+        placed.point_data["color"] = colors
     return placed
+
+
+def _colors(shape: Foreign, table: Foreign) -> Raw | None:
+    """Return the colours of the points of a shape, which VTK numbers, one or more too many."""
+    scalars = shape.GetPointData().GetScalars()
+    # Without colours in the file the table is empty.
+    colors = vtk_to_numpy(table.GetTable())
+    if scalars is None or not 0 < shape.GetNumberOfPoints() <= scalars.GetNumberOfTuples():
+        return None
+    numbers = vtk_to_numpy(scalars)[: shape.GetNumberOfPoints()].astype(np.intp)
+    if numbers.ndim > 1 or not 0 <= numbers.min() <= numbers.max() < len(colors):
+        return None
+    return np.asarray(colors[numbers, :3])

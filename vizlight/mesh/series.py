@@ -134,7 +134,7 @@ class Series:
             If the step has no such point array of 3 components.
         """
         mesh, name = self.mesh(step), f"tangents, {self.name(step)}"
-        mesh = meaning.with_named(mesh, array)[0] if "," in array else mesh
+        mesh = meaning.with_named(mesh, array)[0]
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"

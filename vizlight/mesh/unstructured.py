@@ -92,14 +92,14 @@ def _of_ugrid(
     x, y = by_letter.get("x", places[0]), by_letter.get("y", places[1])
     dims = [str(dim) for dim in file[table].dims]
     face_dim = str(attributes.get("face_dimension", ""))
-    faces = face_dim if face_dim in dims else _longer(file, dims)
+    faces = face_dim if face_dim in dims else _of_faces(file, dims)
     return Topology(x, y, str(table), str(file[x].dims[0]), faces, "UGRID")
 
 
-def _longer(file: Foreign, dims: list[str]) -> str:
-    """Return the dimension of the faces of a table, which are more than the nodes of one."""
+def _of_faces(file: Foreign, dims: list[str]) -> str:
+    """Return the dimension of the faces of a table: the first, unless the second is too long."""
     first, second = dims
-    return first if file.sizes[first] >= file.sizes[second] else second
+    return first if file.sizes[second] in _CORNERS else second
 
 
 def _guessed(
@@ -124,9 +124,9 @@ def _guessed(
     meshes, tables = [], []
     for key, variable in file.variables.items():
         name, dims = str(key), [str(dim) for dim in variable.dims]
-        if len(dims) != 2 or min(variable.shape) not in _CORNERS:
+        if len(dims) != 2 or not any(size in _CORNERS for size in variable.shape):
             continue
-        faces = _longer(file, dims)
+        faces = _of_faces(file, dims)
         # The corners of a face have no coordinates.
         if {*dims} - {faces} & {*map(str, file.variables)}:
             continue
@@ -152,7 +152,7 @@ def _numbers(variable: Foreign, count: int) -> bool:
     if variable.dtype.kind not in "iuf":
         return False
     values = np.asarray(variable.values, dtype=np.float64)
-    values = values if values.shape[0] >= values.shape[1] else values.T
+    values = values if values.shape[1] in _CORNERS else values.T
     numbers = values[np.isfinite(values) & (values >= 0)]
     if not numbers.size or np.any(numbers != np.round(numbers)) or numbers.max() > count:
         return False

@@ -514,7 +514,9 @@ def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     # Numbers of parts that are no whole numbers have no colours of their own.
     if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
         return keywords
-    table = Step("", "vizlight.maps.kinds", list(kinds))
+    names = meaning.flags(mesh.run(), array.name)
+    named = {kind: names.get(kind, f"{kind:g}") for kind in kinds}
+    table = Step("", "vizlight.maps.kinds", named if names else list(kinds))
     return keywords | {"cmap": table}
 
 

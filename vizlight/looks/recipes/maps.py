@@ -74,19 +74,22 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     Other drawings are returned as they are.
     """
     array, cmap = case.array, case.wishes.colors.get("cmap")
-    if case.frame is None or array is None or array.of_cells or case.contents.dimension != 2:
+    flat = map_parts.flat(case.data) if case.on_globe else case.data
+    if array is None or array.of_cells or case.contents.dimension != 2:
+        return drawing
+    if flat is None or not (case.frame or case.on_globe):
         return drawing
     is_relief = case.question == "relief" and case.wishes.light.get("lit", True)
     if not is_relief and (case.question != "none" or array.role != "values"):
         return drawing
-    size = case.frame.keywords["letters"]
+    size = case.frame.keywords["letters"] if case.frame else map_parts.degrees(case.wishes)
     assert isinstance(size, float)
     clim = case.wishes.colors.get("clim")
     ends = clim or range_of(case.data.run(), array.name)
     # Lines of a relief are as fine as its ground.
     sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
-    smooth = None if is_relief else map_parts.smoothed(case.data, array)
-    ground = case.data if smooth is None else smooth
+    smooth = None if is_relief else map_parts.smoothed(flat, array)
+    ground = flat if smooth is None else smooth
     contoured = map_parts.isolines(ground, array, ends, size, coasts, **sparse)
     if contoured is None:
         return drawing
@@ -100,6 +103,10 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         if lines.run()[name].n_points
     ]
     first, *others = drawing.layers
+    if case.on_globe:
+        smooth = Step("smooth", map_parts.GLOBE, ground)
+        curves = map_parts.curves(smooth, array, [factor * level for level in levels])
+        layers = [Layer(curves, {**beside, **inks, **thin}, quiet=True)]
     if smooth is not None:
         first = replace(first, mesh=smooth)
     keys = [
