@@ -10,6 +10,7 @@ processor time, most of it to compile. ``tests/shading/test_compiled.py`` runs a
 from __future__ import annotations
 
 import csv
+import dataclasses
 import math
 import sys
 from collections import defaultdict
@@ -47,6 +48,45 @@ class Case(NamedTuple):
     options: ShadingOptions
 
 
+#: How to draw the value of a field, by the text of its type, where no number below is passed.
+BY_TYPE = {
+    "float": lambda random: random.random(),
+    "float | None": lambda random: 0.3 + 2 * random.random(),
+    "bool": lambda random: bool(random.random() < 0.5),
+    "Color | None": lambda random: tuple(random.random(3)),
+}
+#: Probability that a form leaves a field of a type at the default of its class.
+PLAIN = {"float": 0.2, "float | None": 0.8, "bool": 0.5, "Color | None": 0.8}
+
+
+def drawn(kind, random, plain=frozenset(), **values):
+    """Return a part of a scene with a random value of each field that has none here.
+
+    Fields are those of the class itself, so that a new one is drawn as soon as it is there. Those
+    in ``plain``, such as ``"Material.color"``, keep the default of the class.
+    """
+    for field in dataclasses.fields(kind):
+        name = f"{kind.__name__}.{field.name}"
+        if field.name in values or name in plain:
+            continue
+        assert field.type in BY_TYPE, (
+            f"tests/differential.py draws no {name} of type {field.type}: add the type to BY_TYPE, "
+            f"or pass a value where drawn({kind.__name__}, ...) is called"
+        )
+        values[field.name] = BY_TYPE[field.type](random)
+    return kind(**values)
+
+
+def plain_fields(random):
+    """Return the fields of parts of a scene that a form leaves at their defaults."""
+    return frozenset(
+        f"{kind.__name__}.{field.name}"
+        for kind in (Light, Material, DepthCue, Scene)
+        for field in dataclasses.fields(kind)
+        if random.random() < PLAIN.get(field.type, 0)
+    )
+
+
 class Frame(NamedTuple):
     """What of a case its form depends on."""
 
@@ -55,11 +95,11 @@ class Frame(NamedTuple):
     k: int
     base: int
     types: tuple[type, ...]
-    lights: tuple[tuple[bool, bool, bool], ...]
+    lights: tuple[tuple[bool, bool, frozenset[str]], ...]
     near_eye: bool
     cue: str
     axis: bool
-    material_color: bool
+    plain: frozenset[str]
     whole: bool
     repeat: int
     two_sided: bool
@@ -80,7 +120,9 @@ def frame(random) -> Frame:
     chosen = [types[random.integers(3)] for _ in range(4)]
     if kind == "based":
         chosen[3] = chosen[1]
-    lights = [tuple(map(bool, random.random(3) < (0.6, 0.4, 0.3))) for _ in range(count)]
+    lights = [
+        (*map(bool, random.random(2) < (0.6, 0.4)), plain_fields(random)) for _ in range(count)
+    ]
     return Frame(
         kind=kind, n=n, k=k, base=base,
         types=tuple(chosen),
@@ -88,7 +130,7 @@ def frame(random) -> Frame:
         near_eye=bool(random.random() < 0.6),
         cue=str(random.choice(["", "", "linear", "smooth"])),
         axis=bool(random.random() < 0.5),
-        material_color=bool(random.random() < 0.2),
+        plain=plain_fields(random),
         whole=bool(random.random() < 0.5),
         repeat=int(random.choice([1, 1, 1, 4])),
         two_sided=sided,
@@ -112,46 +154,46 @@ def case(form: Frame, random) -> Case:
     def near():
         return tuple(offset + size * random.normal(size=n) * random.choice([1.5, 3]))
 
-    direction = View(direction=random.normal(size=n)).direction
-    view = View(position=near()) if form.near_eye else View(direction=direction)
-    if form.cue and form.axis and form.near_eye:
-        view = View(position=view.position, direction=direction)
-        if view.parallel:
-            view = View(position=near())
-    lights = [_light(kind, near, random, n, view) for kind in form.lights]
+    direction = tuple(random.normal(size=n))
+    axis = not form.near_eye or (form.axis and bool(form.cue))
+    view = drawn(
+        View, random, position=near() if form.near_eye else None,
+        direction=direction if axis else None, parallel=not form.near_eye,
+        up=tuple(random.normal(size=n)),
+    )  # fmt: skip
+    lights = [_light(kind, near, random, n, axis) for kind in form.lights]
     powers = [p for p in POWERS if (p in (1, 2, 20, 31, 63)) == form.whole]
     power = float(random.choice(powers))
     if form.options.model == "blinn" and form.whole:
         power *= 2
-    material = Material(
-        ambient=random.random(), diffuse=random.random(), specular=random.random(),
-        shininess=power, color=tuple(random.random(3)) if form.material_color else None,
-    )  # fmt: skip
     cue = None
     if form.cue:
         front = float(random.normal() * size)
-        cue = DepthCue(
-            front=front, back=front + size * float(random.choice([-3, 1, 4])),
-            front_scale=random.random(), back_scale=random.random(), cue=random.random(),
-            smooth=form.cue == "smooth",
-        )  # fmt: skip
-    scene = Scene(lights=lights, material=material, view=view, depth_cue=cue)
+        back = front + size * float(random.choice([-3, 1, 4]))
+        cue = drawn(
+            DepthCue, random, form.plain, front=front, back=back, smooth=form.cue == "smooth"
+        )
+    scene = drawn(
+        Scene, random, form.plain, lights=lights, view=view, depth_cue=cue,
+        material=drawn(Material, random, form.plain, shininess=power),
+    )  # fmt: skip
     return Case(form.kind, scene, _inputs(form, scene, offset, size, random), form.options)
 
 
-def _light(kind, near, random, n, view):
-    placed, faded, colored = kind
-    color = tuple(random.random(3)) if colored else None
-    intensity = float(random.choice([0.3, 1.0, 2.0]))
-    if not placed:
-        return Light(direction=random.normal(size=n), intensity=intensity, color=color)
-    attenuation = tuple(random.random(3) * (1, 1, 0.3)) if faded else NO_ATTENUATION
-    place = near()
-    if random.random() < 0.1:
+def _light(kind, near, random, n, axis):
+    placed, faded, plain = kind
+    attenuation = tuple(random.random(3) * (1, 1, 0.3)) if placed and faded else NO_ATTENUATION
+    place = near() if placed else None
+    if placed and random.random() < 0.1:
         # Out of the range of float32, or of that of its squares.
         scale = float(random.choice([1e-42, 1e-25, 1e15, 1e25, 1e39, 1e120]))
         place = tuple(scale * random.normal(size=n))
-    return Light(position=place, intensity=intensity, color=color, attenuation=attenuation)
+    turning = not placed and axis and n == 3 and "Light.follows_view" not in plain
+    return drawn(
+        Light, random, plain, position=place, attenuation=attenuation,
+        direction=None if placed else tuple(random.normal(size=n)),
+        intensity=float(random.choice([0.3, 1.0, 2.0])), follows_view=turning,
+    )  # fmt: skip
 
 
 def _inputs(form, scene, offset, size, random):
@@ -323,7 +365,15 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
     dark = plan.ambient * np.where(np.isnan(share), 1, share)
     unlit = {"luminance": dark, "diffuse": 0 * dark, "specular": 0 * dark}
     color = np.multiply(scene.material.color or (1, 1, 1), scene.ambient_color or (1, 1, 1))
-    unlit["rgb"] = dark[:, np.newaxis] * color
+    unlit["rgb"] = np.array(
+        [
+            oracles.digits.exposed(row, scene.exposure)
+            for row in (dark[:, np.newaxis] * color).tolist()
+        ],
+        float,
+    )
+    # Exposure multiplies light and its error; its knee moves the other channels along with one.
+    scales = {"rgb": 2 * max(scene.exposure or 1, 1)}
     for name, ambient in unlit.items():
         found = getattr(output, name)
         if found is None:
@@ -332,6 +382,7 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
         np.testing.assert_allclose(found[~good], ambient[~good], rtol=4 * np.finfo(plan.dtype).eps)
         off = np.abs(found[good].astype(float) - getattr(true, name)[good])
         limit = bound[good] if off.ndim == 1 else bound[good, np.newaxis]
+        limit = limit * scales.get(name, 1)
         worst = max(worst, float((off / limit).max(initial=0.0)))
     return worst, int(good.sum())
 
@@ -372,8 +423,14 @@ def _bound(plan, inputs):
     if scene.view is not None:
         wo = _way(scene.view.position, scene.view.direction, points, far=scene.view.parallel)
     total = np.full(count, 4 * eps * plan.ambient)
+    strengths = {f.name: getattr(material, f.name) for f in dataclasses.fields(material)}
+    others = sum(
+        value for name, value in strengths.items()
+        if isinstance(value, float) and name not in ("ambient", "diffuse", "specular", "shininess")
+    )  # fmt: skip
     for light, highlight in zip(scene.lights, plan.highlights, strict=True):
-        wi = _way(light.position, light.direction, points, far=light.position is None)
+        seen = light.seen_from(scene.view)
+        wi = _way(seen.position, seen.direction, points, far=seen.position is None)
         factors = 8.0 * (2 + (light.attenuation != NO_ATTENUATION) + plan.conditioned)
         if plan.base:
             factors = factors + oracles.diffuse_bound(plan.base_exponent, eps) / eps * spread
@@ -402,6 +459,8 @@ def _bound(plan, inputs):
             s = np.where(cosine < 8 * eps, 1, s)
         total += light.intensity * material.diffuse * np.minimum(d, 1)
         total += light.intensity * material.specular * np.minimum(s, 1)
+        # A term of which nothing is said here has the bound of both.
+        total += light.intensity * others * np.minimum(d + s, 1)
         total += 4 * eps * light.intensity * (material.diffuse + material.specular)
     cue = scene.depth_cue
     if cue is not None:

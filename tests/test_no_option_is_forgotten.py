@@ -26,6 +26,8 @@ from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.shading.plan import decide
+from vizlight.verify import report
+from vizlight.verify.between import columns
 
 CUE = DepthCue(front=2, back=9, front_scale=0.9, back_scale=0.3, cue=0.1)
 FAR = Light(direction=(1, 2, 3))
@@ -208,6 +210,60 @@ def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
         else:
             one, other = (place(SCENE, options, tmp_path) for options in two_options(name))
     assert (one == other) == ignored, f"{place.__name__} and {kind.__name__}.{name}"
+
+
+_random = np.random.default_rng(4)
+PLACES, LINES, NORMALS = _random.normal(size=(3, 12, 3))
+PLANES = _random.normal(size=(12, 2, 4))
+#: Points of each kind of manifold, on which a part of a scene may have a path of its own.
+MANIFOLDS = {
+    "surface": {"normals": NORMALS},
+    "surface in a cos-theta shadow": {"normals": NORMALS, "shadow": _random.random((12, 2))},
+    "lines": {"tangents": LINES},
+    "lines on a surface": {"tangents": LINES, "normals": NORMALS},
+    "mixed": {"tangents": LINES, "normals": NORMALS, "dimensions": np.arange(12) % 3},
+    "n-space": {"points": _random.normal(size=(12, 4)), "tangents": PLANES},
+}
+
+
+def lifted(scene):
+    """Return a scene of 4-space: each place and direction with a fourth component."""
+
+    def longer(end):
+        vectors = {name: getattr(end, name) for name in ("position", "direction")}
+        vectors = {name: (*v, 0.5) for name, v in vectors.items() if v is not None}
+        return dataclasses.replace(end, **vectors)
+
+    return scene.replace(lights=list(map(longer, scene.lights)), view=longer(scene.view))
+
+
+@pytest.mark.parametrize(
+    ("manifold", "model"), list(zip(MANIFOLDS, 3 * ["phong", "blinn"], strict=True))
+)
+@pytest.mark.parametrize(
+    ("kind", "name"), [(kind, field.name) for kind in BASES for field in dataclasses.fields(kind)]
+)
+def test_a_field_means_on_each_manifold_what_it_means_to_the_oracle(kind, name, manifold, model):
+    scenes = two_scenes(kind, name)
+    if manifold == "n-space":
+        if name == "follows_view":
+            return  # such a light is in the frame of the eye, which 3-space alone has
+        scenes = map(lifted, scenes)
+    options, lit = ShadingOptions(model=model, precision="float64"), []
+    for scene in scenes:
+        inputs = {"points": PLACES} | MANIFOLDS[manifold]
+        if "shadow" in inputs:
+            inputs["shadow"] = inputs["shadow"][:, : len(scene.lights)]
+        inputs = ShadingInputs(**inputs)
+        true = [report.reference(inputs, i, scene, options, 1e-14) for i in range(inputs.count)]
+        lit.append([[light.luminance, *light.rgb] for light in true])
+        plan = decide(scene, inputs.layout, options)
+        for algebra in (by_numpy, by_text):
+            output = Shading.of(plan, inputs.count)
+            with np.errstate(all="ignore"):
+                algebra(plan, inputs, output)
+            np.testing.assert_allclose(columns(output), lit[-1], rtol=1e-9)
+    assert lit[0] != lit[1]
 
 
 def live(scene, then=None):

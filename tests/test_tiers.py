@@ -20,6 +20,7 @@ TIERS = [
         "_context",
         "_pool",
         "_progress",
+        "_questions",
         "_supervise",
         "_types",
         "_version",

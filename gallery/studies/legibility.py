@@ -15,8 +15,9 @@ import numpy as np
 from studies import Row, Study
 from studies._readable import LINES, VIEWS, known
 from vizlight import Light, Material, Scene, View, legibility
-from vizlight.filters.key import preset_of
-from vizlight.scene.presets import OF_TANGENTS, PRESETS, brightest_normal
+from vizlight._questions import QUESTIONS
+from vizlight.filters.key import question_of
+from vizlight.scene.presets import PRESETS, brightest_normal
 
 #: Noise of the eye in CIELAB, as the meter has it.
 NOISE = 2.3
@@ -65,7 +66,7 @@ def errors(data, scene, view, samples, noise):
             "heading": found.heading and found.heading.median,
         }
     along = ask(tangents=data.tangents).direction
-    if preset_of(scene) in OF_TANGENTS:
+    if QUESTIONS[question_of(scene)].of_tangents:
         # A surface without tangents is refused in such a light.
         return {"direction": along and 1 - along.within_10}
     bare, shape = ask(scalars=data.scalars), ask().shape

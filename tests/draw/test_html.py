@@ -23,9 +23,9 @@ from shapes import torus, winding
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
+from vizlight._questions import QUESTIONS
 from vizlight.draw import html
 from vizlight.files import FileError
-from vizlight.filters import key
 from vizlight.mesh.strokes import moved_widths
 
 pytestmark = pytest.mark.opengl
@@ -364,7 +364,7 @@ def test_light_by_question_is_that_of_the_preset(question, shown):
     page = shown(mesh, Scene(lights=FAR), camera=camera, **how)
     page.evaluate("(name) => vizlight.look(name)", question)
     np.testing.assert_allclose(shot(page), shot(expected), atol=1)
-    assert page.evaluate("vizlight.page.looks")[question]["key"] == list(key.TEXTS[question])
+    assert page.evaluate("vizlight.page.looks")[question]["key"] == list(QUESTIONS[question].words)
 
 
 def test_arrays_colour_the_mesh_as_in_the_plotter(shown):

@@ -1,5 +1,10 @@
 """Presets: no brighter than white, of equal luma, and the same from all sides."""
 
+import os
+import shutil
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -148,3 +153,36 @@ def test_the_lamps_of_the_ring_go_round_from_above_as_hues_do():
     np.testing.assert_allclose(azimuths, [90, 210, 330], atol=1e-9)
     for (_, own), color in zip(ring, hues(3, 0.6), strict=True):
         np.testing.assert_allclose(own / own.sum(), color / color.sum(), atol=1e-12)
+
+
+def test_a_preset_added_by_the_recipe_is_taken_by_looks_pages_and_the_command_line(tmp_path):
+    """In a copy of the package, by the three steps of the page of recipes."""
+    package = tmp_path / "vizlight"
+    shutil.copytree(vizlight.__path__[0], package, ignore=shutil.ignore_patterns("__pycache__"))
+    preset = "def dusk(view=None, /):\n    return Scene(view=_view(view))"
+    row = '    "dusk": Question("Dusk", "Light of dusk.", ("low",)),'
+    for name, before, step in (
+        ("scene/presets.py", "#: The presets by", preset),
+        ("_questions.py", "}  # fmt: skip", row),
+        ("presets.py", "__all__ = [", "from vizlight.scene.presets import dusk"),
+    ):
+        text = (package / name).read_text("utf-8")
+        assert text.count(before) == 1
+        (package / name).write_text(text.replace(before, f"{step}\n{before}"), "utf-8")
+    pv.Sphere().save(tmp_path / "ball.vtp")
+    code = f"""
+import vizlight
+from vizlight import cli
+from vizlight.draw import html
+assert vizlight.__path__ == [{str(package)!r}]
+assert vizlight.look("ball.vtp", "dusk").question == "dusk"
+assert html._looks(lines=False)["dusk"]["title"] == "Dusk"
+assert vizlight.presets.key("dusk", question="dusk").field_data["words"] == ["low"]
+raise SystemExit(cli.main(["light", "ball.vtp", "--for", "dusk", "-o", "lit.vtp"]))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert pv.read(tmp_path / "lit.vtp")["luminance"].size

@@ -106,7 +106,7 @@ def test_a_cylinder_of_low_shininess_has_the_light_of_the_oracle(shininess):
         assert ratio <= 1, made
 
 
-@pytest.mark.parametrize("seed", [1001, pytest.param(1002, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", [1007, pytest.param(1013, marks=pytest.mark.slow)])
 def test_compiled_light_is_that_of_the_oracle_within_the_stated_bounds(seed):
     pytest.importorskip("numba")
     form = differential.frame(np.random.default_rng(seed))

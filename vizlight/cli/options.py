@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Union, get_type_hints
 from cyclopts import App, Group, Parameter
 
 from vizlight import _words
+from vizlight._questions import QUESTIONS
 from vizlight._version import __version__
 from vizlight._words import message
 
@@ -32,7 +33,10 @@ if TYPE_CHECKING:
 
 
 Backend = Literal["egl", "osmesa"]
-Question = Literal["direction", "slope", "heading", "shape", "value"]
+if TYPE_CHECKING:
+    Question = str
+else:
+    Question = Literal[(*QUESTIONS,)]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 import vizlight
+from vizlight._questions import QUESTIONS
 from vizlight._words import message
 from vizlight.cli import options
 from vizlight.cli.options import SurfacePart
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from vizlight.cli.options import Color, Common, FilePart, Finish, Lights
     from vizlight.looks.wishes import SceneMaker, Wishes
     from vizlight.scene import Scene
-
-#: Questions whose hues the colours of data would hide.
-HUES = ("direction", "heading", "shape")
 
 
 def wishes_of(
@@ -71,7 +69,8 @@ def wishes_of(
     if color is not None:
         array = color.array
         picture |= given_options(scalars=color.scalars, cmap=color.cmap)
-        if lights.question in HUES and color.scalars is not None:
+        asked = QUESTIONS.get(lights.question or "")
+        if asked is not None and asked.by_hue and color.scalars is not None:
             expected = "no --scalars beside it, whose hues would hide the hues of the light"
             raise ValueError(
                 message(f"--for {lights.question}", expected, f"--scalars {color.scalars}")

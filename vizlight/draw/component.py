@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import ColorLike, Foreign, Given, Keywords
     from vizlight.filters.relight import Source
-    from vizlight.scene.presets import AnyScene, Question
+    from vizlight.scene.presets import AnyScene
 
 __all__ = ["Component", "add_recorded"]
 
@@ -242,7 +242,7 @@ class Component:
         scene: AnyScene | None = None,
         /,
         *,
-        question: Question | None = None,
+        question: str | None = None,
         size: float = 0.15,
         color: ColorLike | None = None,
         lying: bool = False,
@@ -259,7 +259,7 @@ class Component:
             Scene with the light that the key explains. Default: the scene of the first mesh of
             :meth:`add_mesh`, with the exponent of its light, and its colour map where it is
             coloured by values.
-        question : {"direction", "slope", "heading", "shape", "value"}, optional
+        question : str, optional
             Content of the key. Default: the question of the preset, see
             :func:`vizlight.presets.key`.
         size : float, default: 0.15
@@ -345,9 +345,7 @@ class Component:
             self._margins[_address(renderer)] = Margin(renderer, ink)
         self._margins[_address(renderer)].add(mesh, size, lying=lying)
 
-    def _first_light(
-        self, plotter: pv.BasePlotter, question: Question | None
-    ) -> tuple[Scene, Keywords]:
+    def _first_light(self, plotter: pv.BasePlotter, question: str | None) -> tuple[Scene, Keywords]:
         """Return the scene of the first mesh with live light, and its options of a key."""
         for actor in items(plotter.renderer.GetActors()):
             live = self._live_of(actor)

@@ -21,6 +21,7 @@ import pyvista as pv
 from PIL import Image
 
 from vizlight import _check
+from vizlight._questions import QUESTIONS
 from vizlight.draw import backends, dialects, glsl
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
@@ -28,13 +29,13 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
-from vizlight.filters.key import TEXTS, preset_of
+from vizlight.filters.key import preset_of
 from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.polylines import backdrop
-from vizlight.scene import DepthCue, Light, Scene, View, presets
+from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
-from vizlight.scene.presets import optional_scene
+from vizlight.scene.presets import PRESETS, optional_scene
 from vizlight.shading.display import NO_DATA_NAME, numerals
 from vizlight.shading.plan import decide
 from vizlight.shading.results import DEFAULT_NAME
@@ -64,16 +65,6 @@ MOST_ARRAYS, MOST_VALUES = 6, 4_000_000
 NO_VALUE = 65535
 #: Seconds in which a page shows a period of strokes that move, as a movie of 72 frames does.
 SECONDS = 3.0
-#: What the panel calls light by question, and says of it.
-LOOKS = {
-    "direction": ("Direction", "Hue is the direction on the screen, as the key shows."),
-    "heading": ("Heading", "Hue tells the direction and which end is near."),
-    "slope": ("Slope", "Bright is across your view, dark is along it."),
-    "shape": ("Shape", "Hue and lightness are the normal, as on the ball of the key."),
-    "value": ("Value", "Soft light without highlight: colours are read by the bar."),
-}
-#: Looks that answer a question about a surface without a field.
-_OF_SURFACES = ("slope", "shape", "value")
 #: Lamps that stand for any of their kind.
 _NEAR = Light(position=(0, 0, 1), attenuation=(1, 0.1, 0.1))
 _FAR = Light(direction=(0, 0, 1))
@@ -408,19 +399,21 @@ def _lamp(light: Light, value: list[float], *, at: bool, follows: bool) -> dict[
 def _looks(*, lines: bool) -> dict[str, object]:
     """Return light by question: lamps of the eye, material, and the words of the key."""
     by_name: dict[str, object] = {}
-    for name, (title, says) in LOOKS.items():
-        if not (lines or name in _OF_SURFACES):
+    for name, question in QUESTIONS.items():
+        # Hues of tangents answer nothing on a surface without a field.
+        if question.of_tangents and question.by_hue and not lines:
             continue
-        scene: Scene = getattr(presets, name)()
+        scene: Scene = PRESETS[name]()
         lamps = [
             _lamp(light, list(light.direction or (0.0, 0.0, 1.0)), at=False, follows=True)
             for light in scene.lights
         ]
         material = {key: getattr(scene.material, key) for key in _COEFFICIENTS}
-        words = [] if name == "value" else list(TEXTS[name])
+        is_colored = question.key == "colors"
+        words = [] if is_colored else list(question.words)
         by_name[name] = {
-            "title": title, "says": says, "lamps": lamps, "material": material, "key": words,
-            "colored": name == "value", "free": name not in ("shape", "value"),
+            "title": question.title, "says": question.says, "lamps": lamps, "material": material,
+            "key": words, "colored": is_colored, "free": question.of_tangents,
         }  # fmt: skip
     return by_name
 
@@ -848,8 +841,8 @@ def _key_words(live: Live) -> list[str] | None:
     """Return the words of the key where the light comes from a preset."""
     if live.scene is None or live.scalars is not None:
         return None
-    question = preset_of(live.scene)
-    return None if question in (None, "value") else list(TEXTS[question])
+    question = QUESTIONS.get(preset_of(live.scene) or "")
+    return None if question is None or question.key == "colors" else list(question.words)
 
 
 def _web(name: str) -> str:

@@ -10,9 +10,10 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._questions import QUESTIONS
 from vizlight.draw.live import lifted, on_screen
 from vizlight.filters import lighting, relight
-from vizlight.filters.key import preset_of
+from vizlight.filters.key import question_of
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
 from vizlight.mesh import blocks, normals, records
@@ -20,7 +21,7 @@ from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.scene import Light, Scene, View
-from vizlight.scene.presets import OF_TANGENTS, optional_scene
+from vizlight.scene.presets import optional_scene
 from vizlight.shading.display import on_colors
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
@@ -87,8 +88,8 @@ def _refuse_without_tangents(
     """Raise ValueError if a surface has no tangents, and its light tells their direction."""
     if scene is None or light.tangents is not None or light.positions is not None:
         return
-    question = preset_of(scene)
-    if question in OF_TANGENTS and any(map(_has_sides, blocks.all_blocks(mesh))):
+    question = question_of(scene)
+    if QUESTIONS[question].of_tangents and any(map(_has_sides, blocks.all_blocks(mesh))):
         expected = f"vectors, whose {question} this scene shows"
         remedy = "pass tangents=NAME, or scene='shape' for the shape of the surface"
         raise ValueError(_check.message("tangents", expected, None, remedy))

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
+from vizlight._questions import QUESTIONS, Question
 from vizlight.filters.tint import RGB, color_table
 from vizlight.scene import Scene, View
-from vizlight.scene.presets import PRESETS, Question, required_scene
+from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, displayable, numerals, on_colors
 
@@ -38,14 +39,6 @@ RANGE, LEVELS, NAMES = "range", "levels", "names"
 SCALE, BEYOND = "logarithmic", "beyond"
 #: Name of the field array with the title of the key.
 TITLE = "title"
-#: Words beside the key of each question: below it, or at the two ends of a bar.
-TEXTS: dict[str, tuple[str, ...]] = {
-    "direction": ("direction on the screen",),
-    "slope": ("across", "toward you"),
-    "heading": ("near end of a line",),
-    "shape": ("a ball in this light",),
-    "value": ("low", "high"),
-}
 #: Inner radius of the disc of directions, whose centre has none.
 HOLE = 0.3
 #: Height of a bar as a share of its width.
@@ -64,7 +57,7 @@ def key(
     scene: AnyScene,
     /,
     *,
-    question: Question | None = None,
+    question: str | None = None,
     exponent: Exponent = "compensated",
     conditioned: bool = False,
     cmap: ColorMap = None,
@@ -78,8 +71,8 @@ def key(
     ----------
     scene : Scene or str
         Scene that lights the data, all its lights at infinity, or a question of a preset.
-    question : {"direction", "slope", "heading", "shape", "value"}, optional
-        Content of the key. ``"direction"``: a disc of tangents that run from its centre.
+    question : str, optional
+        Question that the key answers. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
         ``"value"``: a bar of the colours of data, below in the least light and above in full; a
@@ -135,14 +128,14 @@ def key(
         steps = [(float(value) - low) / (high - low) for value in values]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
-    is_bar = topic in ("slope", "value")
-    x, y, faces = _bar(steps) if is_bar else _disc(HOLE * (topic == "direction"))
+    asked = _question(topic)
+    x, y, faces = _bar(steps) if asked.is_bar else _disc(HOLE * (asked.key == "disc"))
     mesh = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
     mesh[RGB] = colors_of(
         scene, x, y, question=topic, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
-    words = list(TEXTS[topic])
-    if topic == "value":
+    words = list(asked.words)
+    if asked.key == "colors":
         if clim is None and isinstance(cmap, pv.LookupTable):
             clim = cmap.scalar_range
         names = _names_of(cmap)
@@ -214,7 +207,13 @@ def _annotated(cmap: ColorMap) -> list[tuple[float, str]]:
     return sorted((cmap.GetAnnotatedValue(i).ToDouble(), cmap.GetAnnotation(i)) for i in rows)
 
 
-def question_of(scene: Scene) -> Question:
+def _question(name: str) -> Question:
+    """Return the facts on a question."""
+    _check.choice("question", name, [*QUESTIONS])
+    return QUESTIONS[name]
+
+
+def question_of(scene: Scene) -> str:
     """Return the question of the preset with the light of a scene, ``"shape"`` for other light.
 
     Parameters
@@ -223,7 +222,7 @@ def question_of(scene: Scene) -> Question:
 
     Returns
     -------
-    {"direction", "slope", "heading", "shape", "value"}
+    str
 
     Raises
     ------
@@ -233,7 +232,7 @@ def question_of(scene: Scene) -> Question:
     return preset_of(scene) or "shape"
 
 
-def preset_of(scene: Scene) -> Question | None:
+def preset_of(scene: Scene) -> str | None:
     """Return the question of the preset with the light of a scene, None for other light.
 
     Parameters
@@ -242,7 +241,7 @@ def preset_of(scene: Scene) -> Question | None:
 
     Returns
     -------
-    {"direction", "slope", "heading", "shape", "value"} or None
+    str or None
 
     Raises
     ------
@@ -251,7 +250,7 @@ def preset_of(scene: Scene) -> Question | None:
     """
     _check.instance("scene", scene, Scene)
     material = scene.material
-    for name in get_args(Question):
+    for name in QUESTIONS:
         preset = PRESETS[name]()
         preset_material = preset.material
         # Without a highlight its colour and its power are of no account.
@@ -259,8 +258,7 @@ def preset_of(scene: Scene) -> Question | None:
             material.ambient, material.diffuse, material.specular,
         )  # fmt: skip
         if preset.lights == scene.lights and alike:
-            question: Question = name
-            return question
+            return name
     return None
 
 
@@ -270,7 +268,7 @@ def colors_of(
     y: Array,
     /,
     *,
-    question: Question,
+    question: str,
     exponent: Exponent = "compensated",
     conditioned: bool = False,
     cmap: ColorMap = None,
@@ -294,9 +292,9 @@ def colors_of(
     TypeError, ValueError
         As :func:`key`.
     """
-    _check.choice("question", question, get_args(Question))
+    form = _question(question).key
     seen = _in_frame_of_eye(scene)
-    if question == "value":
+    if form == "colors":
         table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
         if _annotated(cmap):
             # One swatch for each kind, whatever the gaps between their numbers.
@@ -311,14 +309,14 @@ def colors_of(
     depth = np.sqrt(np.maximum(1 - radius**2, 0.0))
     toward_eye = np.broadcast_to((0.0, 0.0, 1.0), (len(x), 3))
     vectors = np.stack([x, y, depth], axis=1)
-    if question == "direction":
+    if form == "disc":
         # Tangents lie in the plane of the screen and run from the centre.
         vectors = np.stack([x, y, 0 * x], axis=1)
-    elif question == "slope":
+    elif form == "bar":
         # From 0, across the view, to 90 degrees, toward the eye.
         angle = (x + 1) * np.pi / 4
         vectors = np.stack([np.cos(angle), 0 * x, np.sin(angle)], axis=1)
-    surface = question == "shape"
+    surface = form == "ball"
     # Lights and eye are at infinity: the place of a point is of no account.
     shading = engine.shade(
         np.zeros((len(x), 3)), None if surface else vectors, seen,
@@ -334,7 +332,7 @@ def key_picture(
     width: int = 240,
     /,
     *,
-    question: Question | None = None,
+    question: str | None = None,
     exponent: Exponent = "compensated",
     conditioned: bool = False,
     cmap: ColorMap = None,
@@ -368,7 +366,8 @@ def key_picture(
     scene = required_scene(scene)
     width = _check.integer("width", width, low=8, high=4096)
     question = question_of(scene) if question is None else question
-    bar = question in ("slope", "value")
+    asked = _question(question)
+    bar = asked.is_bar
     fine = FINE * width
     across = (np.arange(fine) + 0.5) / fine * 2 - 1
     tall = FINE * max(round(width * BAR), 1) if bar else fine
@@ -377,7 +376,7 @@ def key_picture(
     x, y = (part.ravel() for part in np.meshgrid(across, -down))
     radius = np.hypot(x, y)
     inside = np.ones(len(x), dtype=np.bool_) if bar else radius <= 1
-    if question == "direction":
+    if asked.key == "disc":
         inside &= radius >= HOLE
     rgb = colors_of(
         scene, x[inside], y[inside], question=question, exponent=exponent,

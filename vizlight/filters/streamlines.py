@@ -11,6 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
+from vizlight._questions import QUESTIONS
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, strokes, tracers
@@ -42,8 +43,6 @@ TANGENTS, AGE, SPEED = "Tangents", "age", "speed"
 RESTING = 0.01
 #: Its name where the traced mesh has an array of that name.
 OWN_TANGENTS = "vizlight tangents"
-#: Presets whose light tells how lines run, which the self-shadow of a surface would hide.
-OF_LINES = ("direction", "slope", "heading")
 #: Largest length of a line in cell lengths.
 REACH = 1200
 
@@ -364,8 +363,11 @@ def own_name(mesh: pv.DataSet, name: str) -> str:
 
 
 def _tells_of_lines(scene: Scene) -> bool:
-    """Return whether a scene has the light of a preset that tells how lines run."""
-    presets = (PRESETS[name]() for name in OF_LINES)
+    """Return whether a scene has the light of a preset that tells how lines run.
+
+    The self-shadow of a surface would hide it.
+    """
+    presets = (PRESETS[name]() for name, question in QUESTIONS.items() if question.of_tangents)
     return any((p.lights, p.material) == (scene.lights, scene.material) for p in presets)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, files
+from vizlight._questions import QUESTIONS
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector.figure import VECTORS
@@ -75,8 +76,8 @@ class Look:
     Attributes
     ----------
     question : str
-        Question that the light answers: direction, slope, heading, shape or value, relief for
-        heights, ``"none"`` for colours without light, or that of a filter.
+        Question that the light answers: that of a preset, or relief for heights, ``"none"`` for
+        colours without light, or that of a filter.
     shown : str
         Kind of drawing: sheet, surface, isosurface, slices, hull, streamlines, lines or points.
     array : str or None
@@ -339,8 +340,8 @@ def look(
         Data to show. Of several, and of blocks of different dimensions, each is drawn by its own
         rule in one picture; walls of a volume are left out.
     question : str, default: "auto"
-        What the picture should tell: ``"direction"``, ``"slope"``, ``"heading"``, ``"shape"``,
-        ``"value"``, ``"relief"``, ``"flow"``. ``"auto"``: what suits the data.
+        What the picture should tell: the name of a preset, such as ``"heading"`` or ``"shape"``,
+        ``"relief"`` or ``"flow"``. ``"auto"``: what suits the data.
     array : str, optional
         Array that is shown; of components their names, ``"u,v"``. Default: the best.
     view : str, vector or pyvista.Camera, optional
@@ -587,11 +588,10 @@ def _explicit(
         data = wishes.joined(data, array)
     if question == "relief" and not _is_height_field(contents, array):
         question = "shadow"
-    recipe, roles, needed = _QUESTIONS.get(question, (None, (), False))
-    if recipe is None:
-        questions = [name for name in _QUESTIONS if name != "shadow"]
-        expected = f"a question that these data answer, {one_of(questions)}"
+    if question not in {**QUESTIONS, **_OF_FILTERS}:
+        expected = f"a question that these data answer, {one_of([*QUESTIONS, *_FILTERS])}"
         raise ValueError(message("question", expected, repr(question)))
+    recipe, roles, needed = _OF_FILTERS.get(question) or _of_preset(question)
     chosen = array if array is not None and array.role in roles else contents.first(*roles)
     if question == "relief" and chosen is None:
         # Level ground has heights too, all equal.
@@ -599,20 +599,26 @@ def _explicit(
     if needed and (chosen is None or (array is not None and array.role not in roles)):
         arrays = ", ".join(repr(named.name) for named in contents.arrays)
         got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
-        remedy = "take question='shape'" if question in ("direction", "slope") else ""
+        is_of_tangents = question in QUESTIONS and QUESTIONS[question].of_tangents
+        remedy = "take question='shape'" if is_of_tangents else ""
         raise ValueError(message("array", f"{' or '.join(roles)} for {question!r}", got, remedy))
     kind = next(rule.shown for rule in RULES if rule.fits(contents))
     rule = Rule(kind, lambda _: True, question, roles, recipe, f"{question} was asked for")
     return rule, Case(data, contents, wishes, question, chosen)
 
 
-#: Recipes of questions, the roles of the array that they show, and whether they need one.
-_QUESTIONS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
-    "direction": (fields.vectors, ("vectors",), True),
-    "slope": (fields.vectors, ("vectors",), True),
-    "heading": (fields.vectors, ("vectors",), True),
-    "shape": (surfaces.surface, (), False),
-    "value": (surfaces.values, ("values", "heights", "kinds", "colors"), True),
+def _of_preset(question: str) -> tuple[Recipe, tuple[Role, ...], bool]:
+    """Return the recipe of a preset's question, as ``_OF_FILTERS`` has those of others."""
+    if QUESTIONS[question].of_tangents:
+        return fields.vectors, ("vectors",), True
+    if QUESTIONS[question].key == "colors":
+        return surfaces.values, ("values", "heights", "kinds", "colors"), True
+    return surfaces.surface, (), False
+
+
+#: Recipes of questions that have no preset, the roles of the array that they show, and whether they
+#: need one.
+_OF_FILTERS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
     "flow": (fields.flow, ("vectors",), True),
     "relief": (reliefs.relief, ("heights", "values"), True),
     "shadow": (reliefs.shadow, (), False),
@@ -621,8 +627,8 @@ _QUESTIONS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
     "contours": (surfaces.contours, (), False),
     "projection": (surfaces.projection, (), False),
 }
-#: Questions that a filter answers, whatever the data are.
-_FILTERS = ("flow", "relief", "sky", "fur", "contours", "projection")
+#: Those that a filter answers, whatever the data are.
+_FILTERS = tuple(name for name in _OF_FILTERS if name != "shadow")
 
 
 def _is_height_field(contents: Contents, array: Named | None) -> bool:

@@ -233,10 +233,6 @@ class Scale:
         return [(words, finest, ""), ("median structure", f"{self.median:.3g} pixels", "")]
 
 
-#: Figures that are printed, in their order.
-QUESTIONS = ("direction", "slope", "heading", "sense", "order", "shape", "value", "speed", "scale")
-
-
 @dataclass(frozen=True, kw_only=True)
 class Legibility:
     """Figures of what a reader can read back from a picture; see :func:`vizlight.legibility`.
@@ -343,3 +339,7 @@ class Legibility:
     def to_dict(self) -> dict[str, object]:
         """Return all figures as nested dicts of plain values, for JSON."""
         return dataclasses.asdict(self)
+
+
+#: Figures that are printed, in their order.
+QUESTIONS = tuple(entry.name for entry in dataclasses.fields(Legibility) if entry.default is None)

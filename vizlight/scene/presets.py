@@ -8,11 +8,12 @@ one luma, and their mean is white: hue and lightness tell different things.
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._questions import QUESTIONS
 from vizlight.model.formulas import LUMA
 from vizlight.scene.light import Light, of_eye
 from vizlight.scene.material import Material
@@ -29,9 +30,8 @@ if TYPE_CHECKING:
 
     Eye: TypeAlias = View | vtkCamera | pv.BasePlotter | None
 
-#: Questions that have a preset, and what stands for a scene: one, or the question of its preset.
-Question: TypeAlias = Literal["direction", "slope", "heading", "shape", "value"]
-AnyScene: TypeAlias = Scene | Question
+#: What stands for a scene: one, or the question of its preset.
+AnyScene: TypeAlias = Scene | str
 
 #: Ambient light of data without colours.
 AMBIENT = 0.08
@@ -175,12 +175,10 @@ def value(view: Eye = None, /) -> Scene:
 
 
 #: The presets by the names of their questions.
-PRESETS = {
-    "direction": direction, "slope": slope, "heading": heading, "shape": shape, "value": value,
-}  # fmt: skip
+PRESETS = {name: globals()[name] for name in QUESTIONS}
 
 
-def optional_scene(scene: AnyScene | str | None) -> Scene | None:
+def optional_scene(scene: AnyScene | None) -> Scene | None:
     """Return the scene that is meant: itself, the preset of a question, or None for None.
 
     Raises
@@ -192,12 +190,13 @@ def optional_scene(scene: AnyScene | str | None) -> Scene | None:
         if scene not in PRESETS:
             expected = f"a vizlight.Scene, or {', '.join(map(repr, PRESETS))}"
             raise ValueError(_check.message("scene", expected, repr(scene)))
-        return PRESETS[scene]()
+        preset: Scene = PRESETS[scene]()
+        return preset
     _check.instance("scene", scene, Scene, optional=True)
     return scene
 
 
-def required_scene(scene: AnyScene | str | None) -> Scene:
+def required_scene(scene: AnyScene | None) -> Scene:
     """Return the scene that is meant.
 
     Raises
@@ -210,7 +209,7 @@ def required_scene(scene: AnyScene | str | None) -> Scene:
     return as_scene(scene)
 
 
-def as_scene(scene: AnyScene | str | None) -> Scene:
+def as_scene(scene: AnyScene | None) -> Scene:
     """Return the scene that is meant, for None the default one.
 
     Raises
@@ -220,9 +219,6 @@ def as_scene(scene: AnyScene | str | None) -> Scene:
     """
     return optional_scene(scene) or Scene()
 
-
-#: Questions about tangents, which lines have by themselves and surfaces do not.
-OF_TANGENTS = ("direction", "slope", "heading")
 
 #: A lamp: the direction toward it in the frame of the eye, of length 1, and its channels.
 Lamp = tuple["Array", "Array"]

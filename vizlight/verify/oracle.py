@@ -279,14 +279,20 @@ class Oracle:
                 terms = ((lamp.color or WHITE, color[i] * d + gloss[i] * s) for lamp, d, s in parts)
                 rgb.append(ambient * tint * color[i] + sum(c[i] * value for c, value in terms))
         luminance, *rgb = self._faded([ambient + diffuse + specular, *rgb], at, scene)
-        if scene.exposure is not None and rgb:
-            most = max(rgb) * scene.exposure
-            knee = self.number(4) / 5
-            # The knee, from 4/5 toward 1; light below it is multiplied alone.
-            bent = 1 - (1 - knee) * self.exp(-(most - knee) / (1 - knee))
-            share = bent / most if most > knee else self.number(1.0)
-            rgb = [value * scene.exposure * share for value in rgb]
-        return OracleLight(luminance, tuple(rgb), ambient, diffuse, specular)
+        return OracleLight(
+            luminance, tuple(self.exposed(rgb, scene.exposure)), ambient, diffuse, specular
+        )
+
+    def exposed(self, rgb: Vector, exposure: float | None) -> Vector:
+        """Return the colour that is shown: times the exposure, with a knee from 4/5 toward 1."""
+        if exposure is None or not rgb:
+            return rgb
+        most = max(rgb) * exposure
+        knee = self.number(4) / 5
+        # Light below the knee is multiplied alone.
+        bent = 1 - (1 - knee) * self.exp(-(most - knee) / (1 - knee))
+        share = bent / most if most > knee else self.number(1.0)
+        return [value * exposure * share for value in rgb]
 
     def _faded(self, values: list[Real], at: Vector, scene: Scene) -> list[Real]:
         """Return luminance, red, green and blue with the depth cue."""

@@ -349,9 +349,9 @@ def note(inputs: ShadingInputs, scene: Scene, shading: Shading, options: Shading
         drawn = np.sort(_drawn(active, count, count))
         # A tangent counts as dependent from the same share on as in the type of the engine.
         apart = frames.default_rtol(shading.plan.n, shading.plan.dtype)
-        reference = [_reference(inputs, int(i), scene, options, apart) for i in drawn]
+        oracle_lights = [reference(inputs, int(i), scene, options, apart) for i in drawn]
         got = between.columns(shading, drawn)
-        true = np.array([[lit.luminance, *lit.rgb] for lit in reference]).reshape(got.shape)
+        true = np.array([[lit.luminance, *lit.rgb] for lit in oracle_lights]).reshape(got.shape)
         valid, finite = shading.valid[drawn], np.isfinite(true[:, 0])
         # Points that one of both calls invalid have no difference; they are counted as disagreed.
         both = valid & finite
@@ -537,7 +537,7 @@ def paused() -> contextlib.AbstractContextManager[None]:
     return assigned(_ACTIVE, None)
 
 
-def _reference(
+def reference(
     inputs: ShadingInputs, i: int, scene: Scene, options: ShadingOptions, apart: float
 ) -> oracle.OracleLight:
     """Return the light of one point by the oracle."""

@@ -1,0 +1,64 @@
+"""The questions that light answers, one row each: a preset has its row here. It needs no NumPy."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+
+class Question(NamedTuple):
+    """Facts on a question, from which its key, its chip on a page and its look are made.
+
+    Attributes
+    ----------
+    title : str
+        Name on a page.
+    says : str
+        What a page says of it.
+    words : tuple of str
+        Words beside its key: below it, or at the two ends of a bar.
+    key : str
+        Form of its key: a ``"ball"`` of normals, a ``"disc"`` of tangents across the view, a
+        ``"hemisphere"`` of tangents to the near side, a ``"bar"`` of tangents from across the view
+        to the eye, or the ``"colors"`` of data as a bar.
+    of_tangents : bool
+        Whether it is about tangents, which lines have by themselves and surfaces do not.
+    by_hue : bool
+        Whether hues of the light are the answer, which the colours of data would hide.
+    """
+
+    title: str
+    says: str
+    words: tuple[str, ...]
+    key: Literal["ball", "disc", "hemisphere", "bar", "colors"] = "ball"
+    of_tangents: bool = False
+    by_hue: bool = False
+
+    @property
+    def is_bar(self) -> bool:
+        """Whether its key is a bar."""
+        return self.key in ("bar", "colors")
+
+
+#: The table: each question has a function of its name in ``vizlight/scene/presets.py``.
+QUESTIONS = {
+    "direction": Question(
+        "Direction", "Hue is the direction on the screen, as the key shows.",
+        ("direction on the screen",), "disc", of_tangents=True, by_hue=True,
+    ),
+    "slope": Question(
+        "Slope", "Bright is across your view, dark is along it.",
+        ("across", "toward you"), "bar", of_tangents=True,
+    ),
+    "heading": Question(
+        "Heading", "Hue tells the direction and which end is near.",
+        ("near end of a line",), "hemisphere", of_tangents=True, by_hue=True,
+    ),
+    "shape": Question(
+        "Shape", "Hue and lightness are the normal, as on the ball of the key.",
+        ("a ball in this light",), by_hue=True,
+    ),
+    "value": Question(
+        "Value", "Soft light without highlight: colours are read by the bar.",
+        ("low", "high"), "colors",
+    ),
+}  # fmt: skip
