@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vizlight._types import Array, Foreign, Given, Keywords
-    from vizlight.looks.look import Look
     from vizlight.looks.recipes.drawing import Layer
 
     Picture = NDArray[np.uint8]
@@ -112,7 +111,9 @@ class _Pictures:
     Where a step has several pictures, strokes are carried from step to step by the vectors.
     """
 
-    def __init__(self, looks: Iterator[Look], times: Sequence[float], per_step: int) -> None:
+    def __init__(
+        self, looks: Iterator[vizlight.Look], times: Sequence[float], per_step: int
+    ) -> None:
         self._looks, self._times, self._per_step = looks, times, per_step
 
     def __len__(self) -> int:
@@ -139,7 +140,7 @@ class _Pictures:
 
 def _looks(
     data: str | Path | Foreign, question: str, times: Sequence[float], options: Keywords
-) -> Iterator[Look]:
+) -> Iterator[vizlight.Look]:
     """Yield the looks at the steps, without those that cannot be drawn alike."""
     left_out: list[float] = []
     error: ValueError | None = None
@@ -168,12 +169,12 @@ class _Flow:
         Flat sheet or volume of the vectors.
     """
 
-    look: Look
+    look: vizlight.Look
     layer: Layer
     mesh: pv.DataSet
 
     @classmethod
-    def of(cls, look: Look) -> _Flow | None:
+    def of(cls, look: vizlight.Look) -> _Flow | None:
         """Return the strokes of a look, None where it has none that can be carried."""
         for layer in look.drawing.layers:
             if "width" in layer.keywords and fields.have_sense(layer.mesh):
@@ -264,7 +265,7 @@ def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Pict
         plotter.close()
 
 
-def step(look: Look, path: Path) -> Step | None:
+def step(look: vizlight.Look, path: Path) -> Step | None:
     """Return the step that saves a movie of all steps of the series of a look, None for no series.
 
     Parameters
@@ -293,7 +294,7 @@ def _pace(times: Sequence[float]) -> float:
     return float(np.clip(len(times) / LASTS, SLOWEST, FASTEST))
 
 
-def _settings(look: Look, read: Step, times: Sequence[float]) -> Keywords:
+def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywords:
     """Return the options with which all steps of a series are drawn as one of them is."""
     wishes, drawing = look.wishes, look.drawing
     given = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
@@ -320,7 +321,7 @@ def _settings(look: Look, read: Step, times: Sequence[float]) -> Keywords:
     return options
 
 
-def _colors(look: Look, read: Step, times: Sequence[float], array: str) -> Keywords:
+def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str) -> Keywords:
     """Return the colour map and the range that suit the values of an array at all steps."""
     values, vectors = [], False
     for time in times:
