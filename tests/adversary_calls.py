@@ -229,7 +229,7 @@ OWN = {
     "Component.save_graphic": {"path": lambda: shown() and Path("figure.svg"), "error": 30.0},
     "add_recorded": {"mesh": lit},
     "film.save": {
-        "data": series_file, "path": lambda: Path("movie.png"), "size": (80, 60), "key": False,
+        "data": series_file, "path": lambda: Path("movie.png"), "array": "s", "size": (80, 60),
     },
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
