@@ -91,6 +91,17 @@ def saved():
     return Path("ball.vtp")
 
 
+def series_file():
+    """Return the path of two steps that are saved."""
+    sets = ""
+    for i in range(2):
+        ball().save(f"step{i}.vtp")
+        sets += f'<DataSet timestep="{i}" file="step{i}.vtp"/>'
+    text = f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>'
+    Path("steps.pvd").write_text(text, "utf-8")
+    return Path("steps.pvd")
+
+
 def plotter():
     """Return a plotter with a mesh."""
     made = pv.Plotter(off_screen=True, window_size=(60, 40))
@@ -217,6 +228,9 @@ OWN = {
     "Component.export_html": {"path": lambda: shown() and Path("page.html")},
     "Component.save_graphic": {"path": lambda: shown() and Path("figure.svg"), "error": 30.0},
     "add_recorded": {"mesh": lit},
+    "film.save": {
+        "data": series_file, "path": lambda: Path("movie.png"), "array": "s", "size": (80, 60),
+    },
     "movie.save": {"path": lambda: Path("movie.png"), "picture": SMALL},
     "movie.orbit": {"path": lambda: Path("movie.png"), "frames": 2},
     "coasts.coasts": {"bounds": (-10.0, 40.0, 35.0, 60.0)},

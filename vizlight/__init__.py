@@ -53,6 +53,7 @@ if _typing.TYPE_CHECKING:
         Sphere as Sphere,
         Torus as Torus,
     )
+    from vizlight.looks import film as film
     from vizlight.looks.look import Look as Look, look as look
     from vizlight.mesh.polylines import direction_colors as direction_colors
     from vizlight.mesh.records import provenance as provenance
@@ -105,6 +106,7 @@ _HOMES = {name: module for module, names in _NAMES.items() for name in names.spl
 _FOLDERS = {
     "vizlight": "accessor cartography files filters geometry maps model pieces presets vtk",
     "vizlight.draw": "movie paraview render testing",
+    "vizlight.looks": "film",
     "vizlight.shading": "engine",
 }
 _MODULES = {

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 #: Words before the path that a step writes, for anything but a mesh.
 SAID = {
     "render.save": "picture", "movie.orbit": "movie", "movie.travel": "movie",
+    "film.save": "movie",
     ".vizlight.save_graphic": "picture", "vizlight.live_html": "page",
     ".vizlight.export_html": "page",
 }  # fmt: skip
@@ -141,8 +142,11 @@ class Command:
             codes.append(draw(functools.partial(written, steps), kind))
         # Last, so that an error is the only word on a step that failed.
         say(f"shown    {look.summary}")
+        # A movie of all steps has no step of its own to tell.
+        in_time = any(steps[-1].path == "film.save" for steps in outputs)
         for note in dict.fromkeys(look.notes):
-            say(f"note     {note}")
+            if not (in_time and note.startswith("time ")):
+                say(f"note     {note}")
         if look.others:
             say(f"ask      {'; '.join(other.shell for other in look.others)}")
         return max(codes)

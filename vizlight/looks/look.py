@@ -16,8 +16,8 @@ from vizlight._questions import QUESTIONS
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector.figure import VECTORS
+from vizlight.looks import film, together
 from vizlight.looks import options as look_options
-from vizlight.looks import together
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
@@ -156,7 +156,8 @@ class Look:
         path : path
             Path of a picture (.png, .jpg, .tif, .bmp), of vector graphics (.svg, .pdf), of a page
             (.html) whose light follows the reader's eye, of a glTF file (.glb), of a movie (.mp4,
-            .gif) in which the strokes of a field move with it, else of one turn, or of a mesh
+            .gif) of the steps of a series, if no time was asked for, or in which the strokes of a
+            field move with it, else of one turn, or of a mesh
             (.vtp, .vtu, .vtk, .vts, .vti, .vtr, .vtm). An existing file is replaced.
 
         Returns
@@ -191,6 +192,8 @@ class Look:
         path = files.check_output(path, FORMATS)
         suffix, drawing = path.suffix.lower(), self.drawing
         if suffix in MOVIES:
+            if (whole := film.step(self, path)) is not None:
+                return [[whole]]
             moving = fields.moving(drawing)
             if moving is None and drawing.is_flat:
                 expected = "a picture or a page of a map on which nothing moves"
@@ -654,6 +657,9 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     named = contents.named(name)
     if named is None:
         there = [*contents.mesh.point_data, *contents.mesh.cell_data]
+        if name in there:
+            expected = "an array of finite numbers, or of 3 components that are not all 0"
+            raise ValueError(message(option, expected, repr(name)))
         expected = f"the name of an array, {one_of(there)}"
         raise ValueError(message(option, expected, repr(name)))
     if option == "tangents" and named.role != "vectors":

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: First names of paths: modules in groups, and modules of vizlight.
 MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight", "vizlight.maps"))
-OWN = ("files", "movie", "paraview", "render")
+OWN = ("files", "film", "movie", "paraview", "render")
 INDENT, WIDTH = 4, 88
 #: Indentation at which nothing is broken.
 ONE_LINE = -(10**6)

@@ -106,7 +106,7 @@ class Carrier:
         """Return the factors that take vectors to motion in the coordinates of the mesh."""
         return self._seconds * georeference.rates(self._mesh, places)
 
-    def _motion(self, places: Array, share: float) -> Array:
+    def motion(self, places: Array, share: float) -> Array:
         """Return the motion at places after a share of the interval, in the unit of the times."""
         return self.at(places, share) * self._rates(places)
 
@@ -138,8 +138,8 @@ class Carrier:
         """
         middle = share + width / 2
         # A stage outside of the mesh is NaN, and so is the sum: the line ends before this step.
-        a = self._motion(places, share)
-        b = self._motion(places + duration / 2 * a, middle)
-        c = self._motion(places + duration / 2 * b, middle)
-        d = self._motion(places + duration * c, share + width)
+        a = self.motion(places, share)
+        b = self.motion(places + duration / 2 * a, middle)
+        c = self.motion(places + duration / 2 * b, middle)
+        d = self.motion(places + duration * c, share + width)
         return np.asarray(places + duration / 6 * (a + 2 * b + 2 * c + d))

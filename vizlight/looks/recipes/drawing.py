@@ -30,8 +30,9 @@ from vizlight.shading.results import part_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
+    from vizlight.looks.ranges import Range
     from vizlight.looks.two_sides import TwoSides
     from vizlight.looks.wishes import Wishes
 
@@ -392,23 +393,7 @@ class Case:
         if "clim" in colors or not values.size:
             return colors, ""
         shown = range_shown(values, lengths=lengths)
-        colors["clim"] = (shown.low, shown.high)
-        words = shown.words(name)
-        if words:
-            ends = [to_hex(get_cmap_safe(colors["cmap"])(end)) for end in (0.0, 1.0)]
-            if shown.apart:
-                ends[0] = MISSING
-            names = ("below_range_color", "above_range_color")
-            options: Keywords = {
-                n: c for n, c, cut in zip(names, ends, shown.clipped, strict=True) if cut
-            }
-            if shown.logarithmic:
-                options["log_scale"] = True
-            colors["cmap"] = Step(
-                "", "pyvista.LookupTable", colors["cmap"], n_values=256,
-                scalar_range=colors["clim"], nan_color=MISSING, **options,
-            )  # fmt: skip
-        return colors, words
+        return colors | colors_in(shown, colors["cmap"]), shown.words(name)
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""
@@ -468,6 +453,34 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
     return bool(np.mean(on.any(axis=(1, 2))) > CUT and np.all(on.any(axis=0)))
 
 
+def colors_in(shown: Range, cmap: Foreign) -> Keywords:
+    """Return the colours of a range, with those of values outside of it.
+
+    Parameters
+    ----------
+    shown : Range
+    cmap : str or colour map
+        Colours from one end to the other.
+    """
+    ends = shown.low, shown.high
+    if not shown.logarithmic and not any(shown.clipped):
+        return {"cmap": cmap, "clim": ends}
+    outer = [to_hex(get_cmap_safe(cmap)(end)) for end in (0.0, 1.0)]
+    if shown.apart:
+        outer[0] = MISSING
+    names = ("below_range_color", "above_range_color")
+    options: Keywords = {
+        name: color for name, color, cut in zip(names, outer, shown.clipped, strict=True) if cut
+    }
+    if shown.logarithmic:
+        options["log_scale"] = True
+    table = Step(
+        "", "pyvista.LookupTable", cmap, n_values=256, scalar_range=ends, nan_color=MISSING,
+        **options,
+    )  # fmt: skip
+    return {"cmap": table, "clim": ends}
+
+
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
@@ -480,6 +493,8 @@ def titled(mesh: pv.DataSet, name: str) -> str:
     if series.TIME in mesh.field_data:
         time = float(np.ravel(mesh.field_data[series.TIME])[0])
         date = meaning.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
+        if not date and len(series.of(mesh)) > 1:
+            date = f"t = {time:g}"
         title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
 

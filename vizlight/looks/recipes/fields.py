@@ -294,22 +294,32 @@ def moving(drawing: Drawing) -> Drawing | None:
     layers, period = [], 0.0
     for layer in drawing.layers:
         step = layer.mesh
-        if "width" in layer.keywords and _have_sense(step):
+        if "width" in layer.keywords and have_sense(step):
             step = Step(step.name, step.path, *step.arguments, **step.keywords, travel=TRAVEL)
             step.quiet = layer.mesh.quiet
             period = float(step.run().field_data["period"][0])
         layers.append(replace(layer, mesh=step))
     if not period:
         return None
-    title = drawing.keys[0].get("title", "") if drawing.keys else ""
-    head = str(title).replace(SENSE, "")
+    head = _title_without_sense(drawing)
     unit = " s" if head.endswith("/s)") else ""
-    said = f"{head}; strokes move with it, {period:.3g}{unit} of its time in all"
+    words = f"strokes move with it, {period:.3g}{unit} of its time in all"
+    return replace(with_words(drawing, words), layers=layers)
+
+
+def with_words(drawing: Drawing, words: str) -> Drawing:
+    """Return a drawing whose first key says how strokes move, in place of their sense."""
+    said = f"{_title_without_sense(drawing)}; {words}"
     keys = [dict(key, title=said) if i == 0 else key for i, key in enumerate(drawing.keys)]
-    return replace(drawing, layers=layers, keys=keys)
+    return replace(drawing, keys=keys)
 
 
-def _have_sense(strokes: Step) -> bool:
+def _title_without_sense(drawing: Drawing) -> str:
+    title = drawing.keys[0].get("title", "") if drawing.keys else ""
+    return str(title).replace(SENSE, "")
+
+
+def have_sense(strokes: Step) -> bool:
     """Return whether a step lays strokes along vectors, which are not a line field."""
     if "stroke_length" not in strokes.keywords or strokes.keywords.get("line_field"):
         return False

@@ -114,7 +114,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     ]
     if not is_relief and (cmap is None or isinstance(cmap, str)):
         shown = ends[0] / factor, ends[1] / factor
-        edges = _classes(levels, shown, rounded=clim is None)
+        edges = _classes(levels, shown)
         first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
         table = Step("", "vizlight.maps.bands", inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
@@ -138,7 +138,7 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 
-def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: bool) -> list[float]:
+def _classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
     """Return the values at which the classes of colours between isolines begin and end.
 
     Parameters
@@ -146,16 +146,13 @@ def _classes(levels: Sequence[float], ends: tuple[float, float], *, rounded: boo
     levels : sequence of float
         Levels of the isolines, in even steps; where they are few, classes end halfway too.
     ends : (float, float)
-        Ends of the values.
-    rounded : bool
-        Whether the first and the last class are as wide as the others.
+        Ends of the values, which the first and the last class, as wide as the others, hold.
     """
     if len(levels) < 2:
         return [ends[0], *levels, ends[1]]
     step = (levels[1] - levels[0]) / (2 if len(levels) <= FEW_LINES else 1)
     first, last = math.floor(ends[0] / step + 1e-9), math.ceil(ends[1] / step - 1e-9)
-    edges = [float(f"{i * step:.12g}") for i in range(first, last + 1)]
-    return edges if rounded else [ends[0], *edges[1:-1], ends[1]]
+    return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
 
 
 def _without_limits(keywords: Keywords) -> Keywords:

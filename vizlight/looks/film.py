@@ -1,0 +1,347 @@
+"""Movies of the steps of a series, all drawn in one range of colours and from one place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import vizlight
+from vizlight import _check, files
+from vizlight.draw import movie
+from vizlight.looks.options import READ
+from vizlight.looks.ranges import range_shown
+from vizlight.looks.recipes import fields
+from vizlight.looks.recipes.drawing import colors_in
+from vizlight.looks.steps import Step, in_order
+from vizlight.looks.wishes import Wishes
+from vizlight.mesh import series
+from vizlight.mesh.drift import Drift
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    import pyvista as pv
+    from numpy.typing import NDArray
+
+    from vizlight._types import Array, Foreign, Given, Keywords
+    from vizlight.looks.recipes.drawing import Layer
+
+    Picture = NDArray[np.uint8]
+
+__all__ = ["save"]
+
+#: Seconds that a movie takes, and its least and largest number of steps a second.
+LASTS, SLOWEST, FASTEST = 8.0, 2.0, 24.0
+#: Most values of a step that count for the range of all.
+MOST_VALUES = 100_000
+#: Most a stroke moves from picture to picture, as the inverse of a share of its length.
+PER_LENGTH = 16.0
+#: Share of the pace of a field from which strokes move with it.
+AT_PACE = 0.99
+#: Share of a range, as its inverse, to which its ends are rounded.
+FINE = 1000
+
+
+def save(
+    data: str | Path | Foreign,
+    path: str | Path,
+    question: str = "auto",
+    /,
+    *,
+    fps: float | None = None,
+    per_step: int = 1,
+    progress_bar: bool = False,
+    **options: Given,
+) -> list[Path]:
+    """Save a movie of all steps of a series, each drawn as :func:`vizlight.look` draws it.
+
+    ``vizlight.look(data).save("movie.mp4")`` calls it with the array, the range of colours and the
+    camera that suit all steps.
+
+    Parameters
+    ----------
+    data : path or xarray object
+        Series, of which one step at a time is in memory.
+    path : path
+        Path of a movie or of a sequence of PNGs, as for :func:`vizlight.movie.turn`.
+    question : str, default: "auto"
+        Question that each picture answers, as for :func:`vizlight.look`.
+    fps : float, optional
+        Steps per second. Default: such that the movie takes 8 s, between 2 and 24.
+    per_step : int, default: 1
+        Pictures from step to step, if strokes of a flat field or of one in a volume are drawn: they
+        are carried by vectors linear in time, and keep their places from picture to picture. On
+        other data the pictures of a step are alike.
+    progress_bar : bool, default: False
+        Show progress on standard error.
+    **options
+        Options of :func:`vizlight.look`. Without ``clim`` each step has a range of its own.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Paths of the files written.
+
+    Raises
+    ------
+    MovieError
+        If the path names a movie and imageio is not installed.
+    TypeError, ValueError
+        If an option does not fit, the data have no steps, or a file cannot be written. No partial
+        file is left.
+    """
+    read = {name: options[name] for name in READ if name in options}
+    if "time" in read:
+        raise ValueError(_check.message("time", "none beside a movie of all steps", "one"))
+    times = series.of(files.read(data, **read))
+    if not times:
+        raise ValueError(_check.message("data", "a series of steps", "one mesh"))
+    _check.integer("per_step", per_step, low=1, high=100)
+    fps = _pace(times) if fps is None else _check.number("fps", fps, low=0.01, high=100.0)
+    pictures = _Pictures(_looks(data, question, times, options), times, per_step)
+    return movie.save(pictures, path, fps=fps * per_step, progress_bar=progress_bar)
+
+
+class _Pictures:
+    """Pictures of the steps of a series, each drawn when it is asked for.
+
+    Where a step has several pictures, strokes are carried from step to step by the vectors.
+    """
+
+    def __init__(
+        self, looks: Iterator[vizlight.Look], times: Sequence[float], per_step: int
+    ) -> None:
+        self._looks, self._times, self._per_step = looks, times, per_step
+
+    def __len__(self) -> int:
+        return (len(self._times) - 1) * self._per_step + 1
+
+    def __iter__(self) -> Iterator[Picture]:
+        drift: Drift | None = None
+        lasts = np.inf
+        look = next(self._looks, None)
+        while look is not None:
+            after = next(self._looks, None)
+            flow = _Flow.of(look) if self._per_step > 1 else None
+            if flow is None:
+                yield from _drawn(look.plotter(), [None])
+            else:
+                then = None if after is None else _Flow.of(after)
+                # The last step has the pace of the step before it.
+                lasts = lasts if then is None else then.time - flow.time
+                if drift is None or not drift.fits(flow.mesh):
+                    drift = Drift(flow.mesh, flow.vectors, flow.spacing, flow.length)
+                yield from flow.pictures(drift, then, lasts, self._per_step)
+            look = after
+
+
+def _looks(
+    data: str | Path | Foreign, question: str, times: Sequence[float], options: Keywords
+) -> Iterator[vizlight.Look]:
+    """Yield the looks at the steps, without those that cannot be drawn alike."""
+    left_out: list[float] = []
+    error: ValueError | None = None
+    for time in times:
+        try:
+            yield vizlight.look(data, question, time=time, **options)
+        except ValueError as reason:
+            # Fields at rest, or without a value of the level, at the first step for instance.
+            left_out, error = [*left_out, time], reason
+    if error is not None:
+        if len(left_out) == len(times):
+            raise error
+        _check.warn(f"steps are left out, at {series.listed(left_out)}: {error}")
+
+
+@dataclass(frozen=True)
+class _Flow:
+    """Strokes of a look at one step, that can be carried.
+
+    Parameters
+    ----------
+    look : Look
+    layer : Layer
+        Layer of the strokes.
+    mesh : pyvista.DataSet
+        Flat sheet or volume of the vectors.
+    """
+
+    look: vizlight.Look
+    layer: Layer
+    mesh: pv.DataSet
+
+    @classmethod
+    def of(cls, look: vizlight.Look) -> _Flow | None:
+        """Return the strokes of a look, None where it has none that can be carried."""
+        for layer in look.drawing.layers:
+            if "width" in layer.keywords and fields.have_sense(layer.mesh):
+                source: Foreign = layer.mesh.arguments[0]
+                mesh = source.run()
+                volume = mesh.GetMaxSpatialDimension() == 3
+                return cls(look, layer, mesh) if volume or look.drawing.is_flat else None
+        return None
+
+    @property
+    def vectors(self) -> Array:
+        """Vectors at the points."""
+        return np.asarray(self.mesh.point_data[self._name], dtype=np.float64)
+
+    @property
+    def _name(self) -> str:
+        return str(self.layer.mesh.keywords["tangents"])
+
+    @property
+    def length(self) -> float:
+        """Length of a stroke."""
+        length: Foreign = self.layer.mesh.keywords["stroke_length"]
+        return float(length)
+
+    @property
+    def spacing(self) -> float:
+        """Distance between strokes."""
+        spacing: Foreign = self.layer.mesh.keywords.get("spacing")
+        return self.length / fields.LONG if spacing is None else float(spacing)
+
+    @property
+    def time(self) -> float:
+        """Time of the step."""
+        return float(self.mesh.field_data[series.TIME][0])
+
+    def pictures(
+        self, drift: Drift, then: _Flow | None, lasts: float, count: int
+    ) -> Iterator[Picture]:
+        """Yield the pictures from this step to before the next, one of the last step.
+
+        Parameters
+        ----------
+        drift : Drift
+            Strokes as they are at this step.
+        then : _Flow, optional
+            Strokes of the next step.
+        lasts : float
+            Time of a step.
+        count : int
+            Number of pictures from step to step.
+        """
+        here = self.vectors
+        at = here if then is None else then.vectors
+        drift.between(here, at if at.shape == here.shape else here)
+        move = min(lasts / count, drift.duration / PER_LENGTH)
+        ratio = move * count / lasts
+        pace = "with it" if ratio > AT_PACE else f"at {ratio:.2g} of its pace"
+        rest = [layer for layer in self.look.drawing.layers if layer is not self.layer]
+        ground = replace(fields.with_words(self.look.drawing, f"strokes move {pace}"), layers=rest)
+        speed = self.layer.keywords.get("scalars")
+
+        def strokes() -> Iterator[Layer]:
+            for i in range(count if then is not None else 1):
+                lines = drift.strokes(self._name)
+                if speed is not None:
+                    sizes = np.linalg.norm(lines.point_data[self._name], axis=1)
+                    lines.point_data[str(speed)] = sizes
+                yield replace(self.layer, mesh=Step("strokes", "-", lines))
+                drift.advance(i / count, 1 / count, move)
+
+        yield from _drawn(replace(self.look, drawing=ground).plotter(), strokes())
+
+
+def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Picture]:
+    """Yield the pictures of a plotter with each of some layers, and close it."""
+    try:
+        for layer in layers:
+            actor = None
+            if layer is not None:
+                # Otherwise the picture is drawn after each change.
+                layer = replace(layer, keywords={**layer.keywords, "render": False})
+                actor = layer.added(Step("plotter", "-", plotter)).run()
+                plotter.render()
+            yield np.array(plotter.screenshot(return_img=True))
+            if actor is not None:
+                plotter.remove_actor(actor, render=False)
+    finally:
+        plotter.close()
+
+
+def step(look: vizlight.Look, path: Path) -> Step | None:
+    """Return the step that saves a movie of all steps of the series of a look, None for no series.
+
+    Parameters
+    ----------
+    look : Look
+        Look at one step.
+    path : pathlib.Path
+        Path of the movie.
+    """
+    reads = [each for each in in_order([look.drawing.lit]) if each.path == "vizlight.read"]
+    if len(reads) != 1 or reads[0].keywords.get("time") is not None:
+        return None
+    read = reads[0]
+    times = series.of(read.run())
+    if len(times) < 2:
+        return None
+    question = [look.wishes.question] if look.wishes.question != "auto" else []
+    options = _settings(look, read, times)
+    if _Flow.of(look) is not None and (count := round(FASTEST / _pace(times))) > 1:
+        options["per_step"] = count
+    return Step("", "film.save", read.arguments[0], path, *question, **options)
+
+
+def _pace(times: Sequence[float]) -> float:
+    """Return the number of steps a second that suits a series."""
+    return float(np.clip(len(times) / LASTS, SLOWEST, FASTEST))
+
+
+def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywords:
+    """Return the options with which all steps of a series are drawn as one of them is."""
+    wishes, drawing = look.wishes, look.drawing
+    given = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
+    options: Keywords = {name: value for name, value in given.items() if value is not None}
+    if not options.get("globe"):
+        options.pop("globe", None)
+    for name in ("view", "size", "style"):
+        if (value := getattr(wishes, name)) != getattr(Wishes, name):
+            options[name] = value
+    if not drawing.is_flat:
+        options["view"] = drawing.camera
+        if wishes.make_scene is not None or drawing.scene.path == ".replace":
+            # The light of one step is that of all.
+            options["scene"] = drawing.scene
+    array = look.array
+    for each in in_order([drawing.lit]):
+        if each.keywords.get("level") is not None:
+            options |= {name: each.keywords[name] for name in ("contour", "level")}
+            array = drawing.layers[0].keywords.get("scalars")
+    if array is not None:
+        options["array"] = array
+        if "clim" not in options and any("clim" in key for key in drawing.keys):
+            options |= _colors(look, read, times, array)
+    return options
+
+
+def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str) -> Keywords:
+    """Return the colour map and the range that suit the values of an array at all steps."""
+    values, vectors = [], False
+    for time in times:
+        mesh = Step("", read.path, *read.arguments, **read.keywords | {"time": time}).run()
+        if "," in array:
+            mesh = files.with_vectors(mesh, array)
+        if array not in mesh.array_names:
+            continue
+        rows: Array = np.asarray(mesh[array])
+        vectors = rows.ndim == 2
+        rows = np.linalg.norm(rows, axis=1) if vectors else rows.astype(np.float64)
+        rows = rows[np.isfinite(rows)]
+        values.append(rows[:: 1 + len(rows) // MOST_VALUES])
+        # The sample may miss them.
+        values += [np.array([rows.min(), rows.max()])] if len(rows) else []
+    shown = range_shown(np.concatenate(values), lengths=vectors)
+    given = look.wishes.picture.get("cmap")
+    drawn = look.drawing.layers[0].keywords.get("cmap")
+    if shown.words(array):
+        return colors_in(shown, given or drawn)
+    step = 10.0 ** np.floor(np.log10((shown.high - shown.low) / FINE or 1.0))
+    ends = np.floor(shown.low / step) * step, np.ceil(shown.high / step) * step
+    return {"clim": tuple(float(f"{end:.9g}") for end in ends)}
