@@ -56,6 +56,7 @@ class Drift:
         self._random = np.random.default_rng(0)
         self._carrier = Carrier(mesh)
         self._n_points, self._bounds = mesh.n_points, mesh.bounds
+        self._arrow = strokes.TUBE if mesh.GetMaxSpatialDimension() == 3 else strokes.FLAT
         self._carrier.between(vectors, vectors)
         self._store = self._places(mesh, spacing, length)
         speeds = np.linalg.norm(self._carrier.motion(self._store, 0.0), axis=1)
@@ -106,7 +107,7 @@ class Drift:
             return lines
         length = float(np.median(strokes.segments_of(lines).totals()))
         lines = strokes.fine(lines, length) if length > 0 else lines
-        strokes.set_widths(lines, WHEN, self.duration)
+        strokes.set_widths(lines, WHEN, self.duration, self._arrow)
         del lines.point_data[WHEN]
         return lines
 

@@ -183,7 +183,7 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) ->
     return strokes
 
 
-def set_widths(lines: pv.PolyData, times: str, duration: float) -> None:
+def set_widths(lines: pv.PolyData, times: str, duration: float, arrow: Arrow) -> None:
     """Give lines the widths of one stroke each, thin as long as it is short.
 
     Parameters
@@ -194,6 +194,8 @@ def set_widths(lines: pv.PolyData, times: str, duration: float) -> None:
         Name of the point array of the times at which a particle passes, rising along a line.
     duration : float
         Time that a stroke which is grown shows.
+    arrow : Arrow
+        Shape of a stroke.
     """
     _, ids, offsets = polylines.cells_of(lines)
     when = np.asarray(lines.point_data[times], dtype=np.float64)[ids]
@@ -201,9 +203,9 @@ def set_widths(lines: pv.PolyData, times: str, duration: float) -> None:
     first = np.repeat(when[offsets[:-1]], counts)
     shown = np.repeat(when[offsets[1:] - 1], counts) - first
     place = (when - first) / np.where(shown > 0, shown, 1.0)
-    head = np.minimum(HEAD * duration / np.where(shown > 0, shown, 1.0), MOST_HEAD)
+    head = np.minimum(arrow.head * duration / np.where(shown > 0, shown, 1.0), MOST_HEAD)
     widths = np.zeros(lines.n_points, dtype=np.float32)
-    widths[ids] = _profile(place, head) * np.clip(shown / (FADE * duration), 0, 1)
+    widths[ids] = _profile(place, arrow, head) * np.clip(shown / (FADE * duration), 0, 1)
     lines.point_data[WIDTH] = widths
 
 

@@ -397,7 +397,7 @@ def lean_of(surface: vtkPolyData, normals: Array) -> Array:
             np.minimum.at(least, corner, np.abs(cosine).astype(np.float32))
             along[corner[cosine > 0]] = True
             against[corner[cosine < 0]] = True
-    sine = np.sqrt(np.clip(1 - least * least, 0, 1))
+    sine: Array = np.sqrt(np.clip(1 - least * least, 0, 1))
     sine[along & against] = 1
     sine[~np.isfinite(normals).all(axis=1)] = 0
     # It may be kept for others.
