@@ -82,9 +82,8 @@ def key(
         Content of the key. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
-        ``"value"``: a bar of the colours of data, below in the least light and above in full; a
-        lookup table whose colour of values below its range is another than its first has a swatch
-        of it before the bar.
+        ``"value"``: a bar of the colours of data, below in the least light and above in full,
+        with a swatch before it where a lookup table has a colour apart for values below its range.
         Default: the question of the preset with the light of the scene, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
