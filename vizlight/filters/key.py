@@ -165,7 +165,18 @@ def key(
 
 
 def color_below(table: pv.LookupTable) -> Array | None:
-    """Return the colour, 0 to 1, of values below a bar, None where it is that of the bar's end."""
+    """Return the colour of values below a bar, None where it is that of the bar's end.
+
+    Parameters
+    ----------
+    table : pyvista.LookupTable
+        Colours of the bar.
+
+    Returns
+    -------
+    ndarray, shape (3,), or None
+        Red, green and blue, from 0 to 1.
+    """
     color: Array = np.asarray(table.GetBelowRangeColor()[:3], dtype=np.float64)
     first = np.asarray(table.values)[0, :3] / 255
     is_apart = table.GetUseBelowRangeColor() and not np.allclose(color, first, atol=0.02)
