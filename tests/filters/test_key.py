@@ -182,3 +182,17 @@ def test_a_bar_says_whether_it_is_logarithmic_and_what_lies_beyond_its_ends(opti
     made = presets.key("value", question="value", cmap=table)
     assert bool(made.field_data["logarithmic"][0]) == ("log_scale" in options)
     assert list(made.field_data["beyond"]) == ["below_range_color" in options, False]
+
+
+def test_values_below_a_bar_with_a_colour_apart_have_a_swatch():
+    table = pv.LookupTable("viridis", scalar_range=(1.0, 4.0))
+    plain = presets.key(Scene(), question="value", cmap=table)
+    table.below_range_color = "silver"
+    apart = presets.key(Scene(), question="value", cmap=table)
+    assert plain.bounds[0] == -1
+    assert apart.bounds[0] < -1
+    swatch = np.asarray(apart.points)[:, 0] < -1
+    np.testing.assert_array_equal(np.unique(apart["rgb"][swatch], axis=0), [[192, 192, 192]])
+    # One that continues the bar is none.
+    table.below_range_color = table.values[0, :3] / 255
+    assert presets.key(Scene(), question="value", cmap=table).bounds[0] == -1

@@ -78,3 +78,12 @@ def test_a_slab_is_seen_across(axis, toward):
     assert eye_of(slab, Contents(slab)).toward == toward
     thick = pv.ImageData(dimensions=(8, 9, 8)).cast_to_structured_grid()
     assert np.abs(eye_of(thick, Contents(thick)).toward).max() < 0.99
+
+
+def test_a_surface_that_its_box_cuts_is_seen_near_a_diagonal():
+    grid = pv.ImageData(dimensions=(30,) * 3, spacing=(0.25,) * 3)
+    x, y, z = np.asarray(grid.points).T
+    grid["f"] = np.cos(x) + np.cos(y) + np.cos(z)
+    toward = framing.eye_around(grid.contour([0.0], scalars="f"), cut=True).toward
+    assert toward[2] == pytest.approx(0.5)
+    assert min(abs(toward[0]), abs(toward[1])) > 0.5

@@ -95,13 +95,13 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
 
 
 def names_above(
-    blocks_: pv.MultiBlock, camera: pv.Camera, /, height: float, *, size: float
+    meshes: pv.MultiBlock, camera: pv.Camera, /, height: float, *, size: float
 ) -> pv.PolyData:
     """Return the names of blocks as words above them.
 
     Parameters
     ----------
-    blocks_ : pyvista.MultiBlock
+    meshes : pyvista.MultiBlock
         Meshes with names.
     camera, height, size
         As for :func:`box_axes`.
@@ -116,15 +116,18 @@ def names_above(
     TypeError, ValueError
         If a block has no finite box, or a height is not positive.
     """
-    eye = _Eye(camera, _check.positive("height", height))
+    if not isinstance(meshes, pv.MultiBlock):
+        raise TypeError(_check.message("meshes", "a MultiBlock", _check.describe(meshes)))
+    height, size = _check.positive("height", height), _check.positive("size", size)
+    eye = _Eye(camera, height)
     parts = []
-    for i, name in enumerate(blocks_.keys()):
-        box = _box_of(blocks_[i])
+    for i, name in enumerate(meshes.keys()):
+        box = _box_of(meshes[i])
         middle = box.mean(axis=1)
         rows = eye.seen(np.array([middle, *itertools.product(*box)]))[:, 1]
         place = middle + (rows.max() - rows[0]) * eye.pixel(middle) * eye.up
         parts.append(_word(place, np.array([0.0, 1.0]), GAP, str(name), eye, size))
-    return blocks.polydata(*letters.union(parts))
+    return blocks.polydata(*letters.union(parts)) if parts else pv.PolyData()
 
 
 def _box_of(mesh: object) -> Array:

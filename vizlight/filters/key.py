@@ -75,9 +75,8 @@ def key(
         Question that the key answers. ``"direction"``: a disc of tangents that run from its centre.
         ``"slope"``: a bar of lines, from across the view to toward the eye. ``"heading"``: a disc
         where each point is the near end of a line from the centre. ``"shape"``: a ball.
-        ``"value"``: a bar of the colours of data, below in the least light and above in full; a
-        lookup table whose colour of values below its range is another than its first has a swatch
-        of it before the bar.
+        ``"value"``: a bar of the colours of data, below in the least light and above in full,
+        with a swatch before it where a lookup table has a colour apart for values below its range.
         Default: the question of the preset with the light of the scene, otherwise ``"shape"``.
     exponent : float or "compensated"
         Exponent of the diffuse light of lines, as the data have it.
@@ -159,7 +158,18 @@ def key(
 
 
 def color_below(table: pv.LookupTable) -> Array | None:
-    """Return the colour, 0 to 1, of values below a bar, None where it is that of the bar's end."""
+    """Return the colour of values below a bar, None where it is that of the bar's end.
+
+    Parameters
+    ----------
+    table : pyvista.LookupTable
+        Colours of the bar.
+
+    Returns
+    -------
+    ndarray, shape (3,), or None
+        Red, green and blue, from 0 to 1.
+    """
     color: Array = np.asarray(table.GetBelowRangeColor()[:3], dtype=np.float64)
     first = np.asarray(table.values)[0, :3] / 255
     is_apart = table.GetUseBelowRangeColor() and not np.allclose(color, first, atol=0.02)

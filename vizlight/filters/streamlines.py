@@ -186,10 +186,11 @@ def streamlines(
         box. A line ends after 1,200 cell lengths in any case.
     stroke_length : float, optional
         Length, in the unit of the mesh, of strokes into which the lines are cut, at points of
-        theirs. They have the point array ``width``: 0.3, and at their ends along the vectors a
-        head, from 1 at its base to 0 at its tip, so that a stroke is an arrow; in a line field both
-        ends are thin. ``plotter.vizlight.add_mesh(lines, width="width")`` takes this array; its
-        ``line_width`` is the width of the heads. Default: lines are whole.
+        theirs. They have the point array ``width``: at their ends along the vectors a head, from 1
+        at its base to 0 at its tip, before it a thin shaft, so that a stroke is an arrow; a head
+        is shorter in a volume than on a surface. In a line field both ends are thin.
+        ``plotter.vizlight.add_mesh(lines, width="width")`` takes this array; its ``line_width`` is
+        the width of the heads. Default: lines are whole.
     travel : float, optional
         Number of stroke lengths by which strokes move along the lines in a movie, where the vectors
         are as long as their 90th percentile; elsewhere by as much as the vectors say. The lines are

@@ -64,8 +64,9 @@ def both_sides(
     if not isinstance(surface, pv.PolyData):
         raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
     back, upward = _check.unit("toward", toward), _check.unit("up", up)
-    if len(names) != 2:
-        raise ValueError(_check.message("names", "two names", f"{len(names)}"))
+    if not isinstance(names, list | tuple) or len(names) != 2:
+        raise ValueError(_check.message("names", "two names", _check.describe(names)))
+    words = [_check.text("names", name) for name in names]
     turned = surface.rotate_vector(
         _vector(upward), 180, point=surface.center, transform_all_input_vectors=True
     )
@@ -74,7 +75,7 @@ def both_sides(
     wide, tall = (float(np.abs(way) @ np.ptp(bounds, axis=1)) for way in (right, upward))
     step = (1 + APART) * wide * right if wide < WIDE * tall else -(1 + APART) * tall * upward
     turned.translate(_vector(step), inplace=True)
-    return pv.MultiBlock(dict(zip(names, (surface.copy(deep=False), turned), strict=True)))
+    return pv.MultiBlock(dict(zip(words, (surface.copy(deep=False), turned), strict=True)))
 
 
 def _vector(values: Array) -> Vector:

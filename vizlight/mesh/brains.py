@@ -72,6 +72,11 @@ def hemisphere(surface: pv.DataSet) -> str:
 
     It is known by its size in mm, the side of the middle on which it lies, x to the right, a
     surface without handles, and the number of its points or the name of an array.
+
+    Parameters
+    ----------
+    surface : pyvista.DataSet
+        Surface.
     """
     if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
         return ""

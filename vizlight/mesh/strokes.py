@@ -158,8 +158,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) ->
     Returns
     -------
     pyvista.PolyData
-        Strokes with the arrays of the mesh, and the point array ``width``: 0.3, and from 1 at the
-        base of a head to 0 at its tip; without heads from 0.3 at the ends to 1.
+        Strokes with the arrays of the mesh, and the point array ``width``: as the arrow says, and
+        from 1 at the base of a head to 0 at its tip; without heads from 0.3 at the ends to 1.
     """
     segments = segments_of(mesh)
     totals = segments.totals()

@@ -301,7 +301,7 @@ class Case:
 
     @cached_property
     def sides(self) -> TwoSides | None:
-        """Both sides of a flattened surface whose values differ on them, None for all else."""
+        """Both sides of a flattened surface with other values on each, None for all else."""
         array, wishes = self.array, self.wishes
         is_free = wishes.view is None and wishes.frame is None and not self.on_globe
         has_values = array is not None and array.role in ("values", "heights")
