@@ -14,7 +14,7 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
-from vizlight.draw.vector.figure import VECTORS
+from vizlight.draw.vector import VECTORS
 from vizlight.looks import options as look_options
 from vizlight.looks import together
 from vizlight.looks.contents import Contents
