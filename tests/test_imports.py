@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import pyvista as pv
 
 import vizlight
 
@@ -74,6 +75,25 @@ def test_attributes_of_the_package_are_the_modules(name, place):
     assert found is sys.modules[f"vizlight.{place}"]
     owner, _, own = f"vizlight.{name}".rpartition(".")
     assert own in dir(sys.modules[owner])
+
+
+def test_a_picture_loads_nothing_that_it_does_not_need(tmp_path):
+    """Parts of SciPy, and libraries of VTK that few meshes need, take a tenth of a small picture's
+    time to load.
+    """
+    path = tmp_path / "mesh.vtp"
+    pv.Plane(i_resolution=9, j_resolution=9).elevation().save(path)
+    picture = tmp_path / "x.png"
+    command = f"from vizlight import cli; cli.main([{str(path)!r}, '-o', {str(picture)!r}])"
+    few = "scipy.", "numba", "xarray", "vtkmodules.vtkIOParallel", "vtkmodules.vtkIOXdmf2"
+    few += ("vtkmodules.vtkFiltersExtraction", "vtkmodules.vtkFiltersPoints", "xml.sax")
+    names = f"*(name for name in sys.modules if name.startswith({few}))"
+    code = f"{command}; import sys; print('LOADED', {names})"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert picture.exists()
+    # SciPy itself loads its parts when they are used.
+    own = ("scipy._", "scipy.version")
+    assert [n for n in run.stdout.rpartition("LOADED")[2].split() if not n.startswith(own)] == []
 
 
 def test_the_probe_can_fail():

@@ -88,6 +88,14 @@ def test_a_time_that_is_not_there_is_an_error_with_those_that_are(tmp_path):
             vizlight.read(path, time=asked)
 
 
+def test_a_file_without_steps_is_opened_once(monkeypatch, tmp_path):
+    pv.Sphere().save(tmp_path / "ball.vtp")
+    opened, get_reader = [], pv.get_reader
+    monkeypatch.setattr(pv, "get_reader", lambda path: opened.append(path) or get_reader(path))
+    assert vizlight.read(tmp_path / "ball.vtp") == pv.Sphere()
+    assert len(opened) == 1
+
+
 def test_a_time_of_a_file_without_steps_is_refused(tmp_path):
     pv.Sphere().save(tmp_path / "a.vtp")
     assert vizlight.read(tmp_path / "a.vtp", time="last").n_points

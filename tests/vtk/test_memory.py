@@ -7,7 +7,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.mesh.normals import split_edges
-from vizlight.vtk import memory, normals
+from vizlight.vtk import memory, normals, polylines
 
 
 @pytest.fixture
@@ -117,6 +117,37 @@ def test_a_chain_of_light_pictures_and_pages_finds_normals_once(shapes, tmp_path
         plotter.show()
     vizlight.live_html(mesh, tmp_path / "page.html", scene=scene)
     assert len(shapes) == count
+
+
+@pytest.mark.parametrize(("carried", "count"), [("faces", 0), ("no face", 1)])
+def test_a_mesh_with_normals_is_looked_at_once_if_they_leave_doubt(
+    shapes, monkeypatch, carried, count
+):
+    """Normals that fit the faces tell by themselves that no edge is sharp."""
+    walks, lean_of = [], normals.lean_of
+    monkeypatch.setattr(normals, "lean_of", lambda *given: walks.append(0) or lean_of(*given))
+    mesh = pv.Plane(i_resolution=99, j_resolution=99).triangulate()
+    x, y, _ = np.asarray(mesh.points).T
+    np.asarray(mesh.points)[:, 2] = 0.1 * np.sin(9 * x) * np.cos(7 * y)
+    if carried == "faces":
+        mesh.clear_data()
+        mesh = mesh.compute_normals(cell_normals=False, split_vertices=False)
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+    plotter.vizlight.add_mesh(mesh)
+    plotter.close()
+    assert len(shapes) == count
+    assert len(walks) == 1
+
+
+def test_tangents_of_lines_are_computed_once(monkeypatch):
+    calls, tangents = [], polylines.polyline_tangents
+    monkeypatch.setattr(
+        polylines, "polyline_tangents", lambda *a, **k: calls.append(0) or tangents(*a, **k)
+    )
+    monkeypatch.setattr(memory, "_KEPT", {})
+    look = vizlight.look(pv.Spline(np.random.default_rng(3).normal(size=(9, 3)), 50))
+    look.plotter().close()
+    assert len(calls) == 1
 
 
 def test_small_blocks_are_looked_at_together_and_once(shapes):

@@ -299,3 +299,28 @@ def test_points_of_hidden_cells_are_no_fault():
     grid = pv.StructuredGrid(x, y, 0 * x).hide_cells(range(30))
     lit = grid.vizlight.illuminate()
     assert np.count_nonzero(~lit["luminance_valid"].astype(bool)) == 33
+
+
+@pytest.mark.parametrize("length", [1.0, 7.0])
+def test_lean_is_the_sine_of_the_largest_angle_with_a_face(length):
+    mesh = pv.Sphere(theta_resolution=9, phi_resolution=7)
+    vectors = unit(np.asarray(mesh.points) + 0.1)
+    # Sides of normals, and the order of corners of all faces, do not count.
+    sides = np.where(np.arange(len(vectors)) % 2, length, -length)[:, np.newaxis]
+    expected = np.zeros(len(vectors))
+    for face, across in zip(mesh.regular_faces, mesh.compute_normals().cell_normals, strict=True):
+        sine = np.linalg.norm(np.cross(vectors[face], across), axis=1)
+        np.maximum.at(expected, face, sine)
+    for order in (1, -1):
+        surface = pv.PolyData.from_regular_faces(mesh.points, mesh.regular_faces[:, ::order])
+        np.testing.assert_allclose(normals.lean_of(surface, vectors * sides), expected, atol=1e-5)
+    vectors[3] = np.nan
+    assert normals.lean_of(mesh, vectors)[3] == 0
+
+
+def test_normals_of_faces_are_told_from_others():
+    ball, cube = pv.Sphere(), pv.Cube().triangulate().clean()
+    assert normals.are_of_faces(ball, np.asarray(ball.points))
+    assert not normals.are_of_faces(ball, np.roll(ball.points, 1, axis=1))
+    # Means over the corners of a cube are normals of none of its sides.
+    assert not normals.are_of_faces(cube, np.asarray(cube.points))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import importlib.util
 import tempfile
-import webbrowser
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -278,6 +277,8 @@ def view(
     finally:
         if folder is not None and not pages[0].exists():
             folder.rmdir()
+    import webbrowser
+
     opens = browser and code == OK and not common.out.script
     if opens and not webbrowser.open(pages[0].resolve().as_uri()):
         complain(f"no browser was found; open '{pages[0]}' in one")

@@ -11,6 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkStripper
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.vtk import hull
 from vizlight.vtk.cells import as_vtk, connectivity, faces, places
+from vizlight.vtk.memory import once
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,13 +65,16 @@ def dimensions(mesh: Dataset, carried: Bools) -> Array | None:
 def line_tangents(mesh: Dataset) -> Array:
     """Return the unit tangents of a mesh of lines; zero at points that no line uses.
 
-    Consecutive segments, as in contour lines, are joined first.
+    Consecutive segments, as in contour lines, are joined first. They are computed once, see
+    :func:`~vizlight.vtk.memory.once`, and may not be changed.
     """
-    return of_points(mesh, _tangents)
+    return once(mesh, "tangents", lambda: of_points(mesh, _tangents))
 
 
 def _tangents(points: Array, ids: Indices, offsets: Indices) -> Array:
-    return polyline_tangents(points, connectivity=ids, offsets=offsets)
+    tangents = polyline_tangents(points, connectivity=ids, offsets=offsets)
+    tangents.setflags(write=False)
+    return tangents
 
 
 def of_points(mesh: Dataset, function: Callable[[Array, Indices, Indices], Array], /) -> Array:

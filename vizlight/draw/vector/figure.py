@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw.vector import VECTORS
 from vizlight.draw.vector.files import Fill, Picture, Sheet, pdf_of, svg_of
 from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
 from vizlight.draw.vector.samples import Samples, enlarged, samples_of
@@ -27,10 +28,8 @@ if TYPE_CHECKING:
     from vizlight.draw.live import Live
     from vizlight.draw.vector.files import Item
 
-__all__ = ["VECTORS", "save_graphic"]
+__all__ = ["save_graphic"]
 
-#: File name extensions of vector graphics.
-VECTORS = (".svg", ".pdf")
 #: Largest file in bytes that is made where no error is asked for.
 LARGEST = 500_000
 #: Errors in 1/255: the finest and the coarsest of which one is chosen, the first to try with one
