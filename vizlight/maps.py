@@ -240,7 +240,7 @@ def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
     import pyvista as pv
 
     names = values if isinstance(values, Mapping) else {}
-    rows = np.unique(_check.floats("values", list(values)))
+    rows = np.unique(_check.floats("values", list(values) if names else values))
     whole = rows.size and np.all(rows == np.round(rows)) and np.ptp(rows) < MOST_SPAN
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"

@@ -111,6 +111,14 @@ def test_labels_may_be_floats_with_holes():
     assert (array.role, array.distinct) == ("kinds", 20)
 
 
+def test_labels_need_not_be_in_the_middle_of_an_image():
+    image = pv.ImageData(dimensions=(60, 60, 60))
+    labels = np.zeros(60**3, np.uint8)
+    labels[:20_000] = 7 * (np.arange(20_000) // 1000) + 3
+    image["tissue"] = labels
+    assert Contents(image).arrays[0].role == "kinds"
+
+
 def test_heights_in_kelvin_are_values():
     from vizlight.mesh import meaning
 

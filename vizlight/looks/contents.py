@@ -327,7 +327,9 @@ def _is_table(name: str) -> bool:
 
 def _are_labels(values: Raw) -> bool:
     """Return whether whole numbers are labels: neighbours mostly equal, else far apart."""
-    middle = len(values) // 2
+    # The middle of the image may be ground, 0.
+    inner = np.flatnonzero(values)
+    middle = int(inner[len(inner) // 2]) if len(inner) else 0
     run = np.asarray(values[max(middle - SAMPLE, 0) : middle + SAMPLE])
     run = run[np.isfinite(run)].astype(np.int64)
     inside = (run[1:] != 0) & (run[:-1] != 0)

@@ -419,7 +419,7 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     attributes = of(mesh).arrays.get(name, {})
     given = attributes.get("units", "")
     words = " ".join(attributes.values()).lower().replace("_", " ")
-    is_of_air = "air pressure" in words or "sea level" in words or "surface pressure" in words
+    is_of_air = re.search(r"air pressure|sea level|surface pressure|\bmsl\b", words) is not None
     if size >= SILLY and is_of_air and "pressure" in words:
         return _USUAL_UNITS.get(given, (1.0, given))
     return 1.0, given

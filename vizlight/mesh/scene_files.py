@@ -7,7 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+<<<<<<< HEAD
 from vtkmodules.util.numpy_support import vtk_to_numpy
+=======
+from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
+>>>>>>> hC
 
 from vizlight import _check
 
@@ -74,10 +78,10 @@ def _colors(shape: Foreign, table: Foreign) -> Raw | None:
     """Return the colours of the points of a shape, which VTK numbers, one or more too many."""
     scalars = shape.GetPointData().GetScalars()
     # Without colours in the file the table is empty.
-    colors = vtk_to_numpy(table.GetTable())
+    colors: Raw = pv.convert_array(table.GetTable())
     if scalars is None or not 0 < shape.GetNumberOfPoints() <= scalars.GetNumberOfTuples():
         return None
-    numbers = vtk_to_numpy(scalars)[: shape.GetNumberOfPoints()].astype(np.intp)
+    numbers = pv.convert_array(scalars)[: shape.GetNumberOfPoints()].astype(np.intp)
     if numbers.ndim > 1 or not 0 <= numbers.min() <= numbers.max() < len(colors):
         return None
     return np.asarray(colors[numbers, :3])
