@@ -15,12 +15,8 @@ from vizlight import _check, files
 from vizlight._questions import QUESTIONS
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
-<<<<<<< HEAD
-from vizlight.draw.vector.figure import VECTORS
-from vizlight.looks import film, together
-=======
 from vizlight.draw.vector import VECTORS
->>>>>>> hB
+from vizlight.looks import film, together
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces

@@ -7,11 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-<<<<<<< HEAD
-from vtkmodules.util.numpy_support import vtk_to_numpy
-=======
-from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
->>>>>>> hC
 
 from vizlight import _check
 
