@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -26,7 +26,7 @@ from vizlight.vtk.arrays import vectors_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Indices, Slice, VectorLike
+    from vizlight._types import Array, Indices, Slice, Vector, VectorLike
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, FeatureAngle, Model
 
@@ -219,6 +219,52 @@ def fur(
     """
     options = FurOptions.of(locals())
     scene = as_scene(Scene(material=MATERIAL) if scene is None else scene)
+    grown = grow(surface, scene, options, progress_bar=progress_bar)
+    parts, origin, inside = grown.parts, grown.origin, grown.inside
+    # A depth cue spans the skin.
+    scene = lighting.fit_depth_cue(scene, [parts[1][0].points])
+    points = np.asarray(parts[0][0].points)
+    results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
+    # The inputs of the light are freed before the cells of the lines are made.
+    parts.clear()
+    if any(origin):
+        # The engine lit points less the origin; the mesh has them where its surface is.
+        points += np.array(origin)
+    if inside:
+        _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
+    meshes = [_mesh(points, options.segments + 1), grown.surface.copy(deep=True)]
+    lighting.finish(meshes, results, "fur", scene, options, name, dimmings=grown.dimmings)
+    return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
+
+
+class Grown(NamedTuple):
+    """Fur that has grown and is not lit.
+
+    Attributes
+    ----------
+    surface : pyvista.PolyData
+        Surface on which it stands.
+    parts : list of (ShadingInputs, ShadingOptions)
+        Inputs and options of the light of the fibres and of the skin.
+    origin : vector of 3 components
+        Vector that was subtracted from the points.
+    inside : int
+        Number of fibres whose vectors point into the surface.
+    dimmings : list of Dimming
+        Shares of light inside a bundle.
+    """
+
+    surface: pv.PolyData
+    parts: list[tuple[ShadingInputs, ShadingOptions]]
+    origin: Vector
+    inside: int
+    dimmings: list[bundles.Dimming]
+
+
+def grow(
+    surface: pv.DataSet | pv.MultiBlock, scene: Scene, options: FurOptions, *, progress_bar: bool
+) -> Grown:
+    """Return the fur of a surface; see :func:`fur`."""
     if scene.n not in (None, 3):
         raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
     # Splitting at sharp edges makes more points, and only arrays that the mesh carries go with
@@ -230,7 +276,7 @@ def fur(
     surface = records.averaged(blocks.surface(surface, "surface"), options.length, options.toward)
     surface = split_where_computed(surface, options.feature_angle)
     skin = with_normals(surface, onlooker(scene), options.feature_angle)
-    lighting.refuse_overwriting([(surface, "")], name, scene, bundle=bool(options.bundle))
+    lighting.refuse_overwriting([(surface, "")], options.name, scene, bundle=bool(options.bundle))
     _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
     coat = _Coat(surface, skin, options)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
@@ -243,14 +289,14 @@ def fur(
         fur_height=coat.skin_heights() if options.lost else None,
         fur=options.lost,
     )
-    points = np.asarray(hairs.points)
     dimmings: list[bundles.Dimming] = []
     if isinstance(options.bundle, Bundle):
         # The lines of the bundle are in the space of the surface, and the fibres are less the
         # origin.
+        points = np.asarray(hairs.points)
         lines = _mesh(points + np.array(coat.origin) if any(coat.origin) else points, hairs.repeat)
         (hairs, below), dimmings = lighting.dimmed(
-            [lines, surface], [hairs, below], scene, options.bundle, name, show=progress_bar
+            [lines, surface], [hairs, below], scene, options.bundle, options.name, show=progress_bar
         )
         # Ambient light comes from all sides: its share in the fur is found in the medium of the
         # fibres.
@@ -261,23 +307,9 @@ def fur(
             dataclasses.replace(inputs, occlusion=share)
             for inputs, share in zip((hairs, below), shares, strict=True)
         )
-    # A depth cue spans the skin.
-    scene = lighting.fit_depth_cue(scene, [below.points])
-    m = hairs.repeat
     light = ShadingOptions.of(vars(options))
     parts = [(hairs, light), (below, light.for_surface())]
-    del hairs, below
-    results, scene = lighting.light(parts, scene, progress_bar=progress_bar)
-    # The inputs of the light are freed before the cells of the lines are made.
-    parts.clear()
-    if any(coat.origin):
-        # The engine lit points less the origin; the mesh has them where its surface is.
-        points += np.array(coat.origin)
-    if inside:
-        _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
-    meshes = [_mesh(points, m), surface.copy(deep=True)]
-    lighting.finish(meshes, results, "fur", scene, options, options.name, dimmings=dimmings)
-    return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
+    return Grown(surface, parts, coat.origin, inside, dimmings)
 
 
 class _Coat:

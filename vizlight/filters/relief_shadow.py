@@ -5,13 +5,13 @@ from __future__ import annotations
 import dataclasses
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
-from vizlight.filters.lighting import fit_depth_cue, refuse_overwriting
+from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
@@ -22,7 +22,8 @@ from vizlight.mesh.sky import ABOVE
 from vizlight.scene import Light
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
-from vizlight.shading import engine
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import ShadingOptions
 from vizlight.shading.results import (
     DEFAULT_NAME,
     PARTS,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
     from vizlight.mesh.casters import FieldCaster, SolidCaster
+    from vizlight.scene import Scene
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import FeatureAngle
 
@@ -75,6 +77,78 @@ class ReliefOptions(CasterOptions):
                 raise ValueError(_check.message("occlusion", "lit=True beside it", got))
         _check.fields(self, _check.number, "angular_diameter", low=0.0, high=1.0)
         _check.fields(self, _check.integer, "samples", low=1)
+
+
+class Shadows(NamedTuple):
+    """The shadows on a surface, before they are cast.
+
+    Attributes
+    ----------
+    surface : pyvista.DataSet
+        Surface with its points split at sharp edges.
+    caster : FieldCaster or SolidCaster
+        What the rays of the lights pass.
+    lights : list of Light
+        Lights of intensity above 0, where the view has them.
+    share : ndarray or None
+        Share of the ambient light that reaches the points.
+    """
+
+    surface: Grid | pv.PolyData
+    caster: FieldCaster | SolidCaster
+    lights: list[Light]
+    share: Array | None
+
+    @classmethod
+    def of(cls, mesh: Grid | pv.PolyData, scene: Scene, options: ReliefOptions) -> Shadows:
+        """Return the shadows that the lights of a scene cast."""
+        check_whole(mesh, "mesh")
+        # A light that is off casts no shadow and has no weight in the mean.
+        lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
+        if not lights:
+            raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
+        if scene.n not in (None, 3):
+            raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
+        # A raster is sampled from above, and does not need the points of edges apart.
+        is_raster = options.raster is not None
+        surface = mesh if is_raster else split_where_computed(mesh, options.feature_angle)
+        # A raster, sampled from above, has its sky above alone.
+        (sunlit,) = with_sky(
+            [surface], options.occlusion, elevation=options.elevation, factor=options.exaggeration,
+            up=ABOVE if is_raster else None,
+        )  # fmt: skip
+        share = share_of(sunlit, options.occlusion)
+        return cls(surface, caster(surface, scene, options), lights, share)
+
+    def ratios(self, options: ReliefOptions, *, progress_bar: bool) -> Array:
+        """Return t of each point (rows) and light, and add it to a report."""
+        start, shadow, lights = time.perf_counter(), self.caster, self.lights
+        t = np.empty((len(shadow.points), len(lights)))
+        discs = [_disc(light, options) for light in lights]
+        count, done = len(t), 0
+        total = count * sum(map(len, discs))
+        with _progress.progress("shadow", total, show=progress_bar) as report:
+            for i, disc in enumerate(discs):
+                column = np.zeros(count)
+                for lamp in disc:
+                    column += shadow.ratios(lamp, lambda now, done=done: report(done + now))  # type: ignore[misc]
+                    done += count
+                    report(done)
+                t[:, i] = column / len(disc)
+
+        def again(point: int, light: int) -> float:
+            return float(np.mean([shadow.reference(point, lamp) for lamp in discs[light]]))
+
+        size = t.itemsize * len(t) * (1 + len(lights) * options.components)
+        effort = shadow.effort * max(map(len, discs))
+        note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
+        return t
+
+    def inputs(self, t: Array) -> ShadingInputs:
+        """Return what the engine lights: it multiplies each light by its own column of t."""
+        return ShadingInputs(
+            points=self.caster.points, normals=self.caster.normals, shadow=t, occlusion=self.share
+        )
 
 
 @named
@@ -200,28 +274,13 @@ def relief_shadow(
             mesh, lambda block: relief_shadow(block, scene, inplace=inplace, **keywords)
         )
         return mesh if inplace else shadowed
-    if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
-        mesh = blocks.surface(mesh, "mesh")
-    check_whole(mesh, "mesh")
     scene = as_scene(scene)
     if sun is not None:
         scene = scene.replace(lights=[Light(direction=sun_direction(sun))])
-    # A light that is off casts no shadow and has no weight in the mean.
-    lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
-    if not lights:
-        raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
-    if scene.n not in (None, 3):
-        raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
-    # A raster is sampled from above, and does not need the points of edges apart.
-    surface = (
-        mesh if options.raster is not None else split_where_computed(mesh, options.feature_angle)
-    )
-    # A raster, sampled from above, has its sky above alone.
-    (sunlit,) = with_sky(
-        [surface], options.occlusion, elevation=options.elevation, factor=options.exaggeration,
-        up=None if options.raster is None else ABOVE,
-    )  # fmt: skip
-    shadow = caster(surface, scene, options)
+    if isinstance(mesh, pv.DataSet) and not isinstance(mesh, pv.PolyData | Grid):
+        mesh = blocks.surface(mesh, "mesh")
+    cast = Shadows.of(mesh, scene, options)
+    surface, shadow, lights = cast.surface, cast.caster, cast.lights
     if options.elevation is None and (isinstance(surface, Grid) or options.raster is not None):
         # For the record: in the result the light is the active array.
         options = dataclasses.replace(options, elevation=elevation_name(surface))
@@ -234,28 +293,25 @@ def relief_shadow(
         if taken:
             expected = "a name that the light does not use, with lit=True"
             raise ValueError(_check.message("name", expected, repr(taken[0])))
-        refuse_overwriting([(mesh, "")], DEFAULT_NAME, scene, components=options.components)
-    t = _ratios(shadow, lights, options, progress_bar=progress_bar)
+        lighting.refuse_overwriting(
+            [(mesh, "")], DEFAULT_NAME, scene, components=options.components
+        )
+    t = cast.ratios(options, progress_bar=progress_bar)
     weight = np.array([light.intensity for light in lights])
     missing = int(np.count_nonzero(~shadow.valid))
     record = of_filter(
         "relief_shadow", scene, options, precision="float64", points=len(t), invalid=missing,
         depth=shadow.depth,
     )  # fmt: skip
-    shading, share = None, share_of(sunlit, options.occlusion)
+    shading = None
     if options.lit:
-        # The engine multiplies each light by its own column of t, in this order.
-        fixed = fit_depth_cue(scene.replace(lights=lights), [shadow.points])
-        shading = engine.shade(
-            shadow.points, None, fixed, normals=shadow.normals, shadow=t,
-            components=options.components, occlusion=share,
-        )  # fmt: skip
-
+        part = cast.inputs(t), ShadingOptions(components=options.components)
+        (shading,), _ = lighting.light([part], scene.replace(lights=lights), progress_bar=False)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     out, _ = blocks.placed(mesh, [surface], inplace=inplace)
     if shading is not None:
         light = of_light(shading, "relief_shadow", scene, options)
-        lit_arrays = arrays_of(shading, DEFAULT_NAME, occlusion=share)
+        lit_arrays = arrays_of(shading, DEFAULT_NAME, occlusion=cast.share)
         records.attach(out, DEFAULT_NAME, lit_arrays, light)
     arrays: dict[str, Raw] = {key: t[:, i].copy() for i, key in enumerate(each)}
     arrays[name] = t @ (weight / weight.sum())
@@ -296,37 +352,6 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
             "interpolated over them; smaller ones show their edges: "
             "mesh.triangulate().subdivide(3, 'linear')"
         )
-
-
-def _ratios(
-    shadow: FieldCaster | SolidCaster,
-    lights: list[Light],
-    options: ReliefOptions,
-    *,
-    progress_bar: bool,
-) -> Array:
-    """Return t of each point (rows) and light, and add it to a report."""
-    start = time.perf_counter()
-    t = np.empty((len(shadow.points), len(lights)))
-    discs = [_disc(light, options) for light in lights]
-    count, done = len(t), 0
-    total = count * sum(map(len, discs))
-    with _progress.progress("shadow", total, show=progress_bar) as report:
-        for i, disc in enumerate(discs):
-            column = np.zeros(count)
-            for lamp in disc:
-                column += shadow.ratios(lamp, lambda now, done=done: report(done + now))  # type: ignore[misc]
-                done += count
-                report(done)
-            t[:, i] = column / len(disc)
-
-    def again(point: int, light: int) -> float:
-        return float(np.mean([shadow.reference(point, lamp) for lamp in discs[light]]))
-
-    size = t.itemsize * len(t) * (1 + len(lights) * options.components)
-    effort = shadow.effort * max(map(len, discs))
-    note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
-    return t
 
 
 def sun_direction(sun: object, name: str = "sun") -> Array:

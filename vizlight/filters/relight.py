@@ -13,10 +13,10 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, records
+from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
-from vizlight.shading import engine
-from vizlight.shading.options import Bundle, LightOptions
+from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
 from vizlight.shading.results import DEFAULT_NAME, part_name
 
 if TYPE_CHECKING:
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
     from vizlight._types import Given, Keywords
     from vizlight.scene import View
+    from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Facing, ShadingOptions
+    from vizlight.shading.options import Facing
     from vizlight.vtk.normals import Sided
 
 #: Share of the points whose light may differ from the record, such as those on the rim of a cut.
@@ -178,7 +179,7 @@ def from_record(
 
 def terms_from_record(
     mesh: pv.DataSet | pv.MultiBlock, name: str
-) -> tuple[list[Source], Scene, list[engine.Shading]]:
+) -> tuple[list[Source], Scene, list[Shading]]:
     """Return the results of :func:`from_record`, and the light of each source in terms."""
     sources, scene = _read_record(mesh, None, name)
     return sources, scene, _light_again(sources, scene, name, components=True)
@@ -272,24 +273,23 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
 
 def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     """Return the source of light with a cos-theta shadow, which is cast again."""
-    from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
+    from vizlight.filters.relief_shadow import ReliefOptions, Shadows
 
     relief_options = ReliefOptions.of(options | {"lit": True, "components": False})
-    field = mesh.copy(deep=False)
-    # Colours of data, which tint() has put in the place of the light's.
-    field.point_data.pop(part_name(DEFAULT_NAME, "rgb"), None)
     with warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
-        inputs, light = _runs(lambda: relief_shadow(field, scene, **relief_options.changed()))[-1]
-    return Source(mesh, inputs, light, None)
+        surface = mesh if isinstance(mesh, pv.PolyData | Grid) else blocks.surface(mesh, "mesh")
+        shadows = Shadows.of(surface, scene, relief_options)
+    t = shadows.ratios(relief_options, progress_bar=False)
+    return Source(mesh, shadows.inputs(t), ShadingOptions(), None)
 
 
 def _of_fur(
     mesh: pv.DataSet | pv.MultiBlock, options: Mapping[str, Given], scene: Scene
 ) -> list[Source]:
     """Return the sources of fibres and skin, which grow again."""
-    from vizlight.filters.fur import FurOptions, fur
+    from vizlight.filters.fur import FurOptions, grow
 
     _refuse_described("fur", options)
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
@@ -301,28 +301,16 @@ def _of_fur(
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
     fur_options = FurOptions.of(options)
-    runs = _runs(lambda: fur(skin, scene, **fur_options.changed()))
+    grown = grow(skin, scene, fur_options, progress_bar=False)
     return [
         Source(block, inputs, light, None)
-        for block, (inputs, light) in zip((fibres, skin), runs, strict=True)
+        for block, (inputs, light) in zip((fibres, skin), grown.parts, strict=True)
     ]
-
-
-def _runs(work: Callable[[], object]) -> list[tuple[ShadingInputs, ShadingOptions]]:
-    """Return the inputs and the options with which a filter runs the engine."""
-    runs: list[tuple[ShadingInputs, ShadingOptions]] = []
-
-    def keep(inputs: ShadingInputs, _: Scene, __: engine.Shading, options: ShadingOptions) -> None:
-        runs.append((inputs, options))
-
-    with engine.observed(keep):
-        work()
-    return runs
 
 
 def _light_again(
     sources: list[Source], scene: Scene, name: str, *, components: bool = False
-) -> list[engine.Shading]:
+) -> list[Shading]:
     """Return the light of the record, which must match the light of the meshes."""
     parts = [
         (
