@@ -206,7 +206,9 @@ def _inputs(form, scene, offset, size, random):
         normals = _vectors(random, (rows, n), types[2], scene)
         base = _vectors(random, (rows, max(form.base, 1), n), types[3], scene)
     light = scene.lights[0]
-    if light.position is not None and random.random() < 0.1:
+    # Places beyond the largest number of the type are no points.
+    far = light.position is not None and np.abs(light.position).max() > np.finfo(types[0]).max
+    if light.position is not None and random.random() < 0.1 and not far:
         points[0] = light.position
     if random.random() < 0.1:
         points[1], points[2] = np.nan, np.inf

@@ -155,6 +155,7 @@ def test_the_lamps_of_the_ring_go_round_from_above_as_hues_do():
         np.testing.assert_allclose(own / own.sum(), color / color.sum(), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_preset_added_by_the_recipe_is_taken_by_looks_pages_and_the_command_line(tmp_path):
     """In a copy of the package, by the three steps of the page of recipes."""
     package = tmp_path / "vizlight"

@@ -378,7 +378,7 @@ def camera_of(
         return camera_on(mesh, eye.direction, up=up, parallel=eye.parallel, aspect=aspect)
     position, toward = np.array(eye.position), np.array(eye.direction)
     if eye.direction is None:
-        toward = position - np.array(camera_on(mesh).focal_point)
+        toward = position - np.reshape(mesh.bounds, (3, 2)).mean(axis=1)
     eye = View(direction=toward, up=eye.up)
     camera = camera_on((-1, 1, -1, 1, -1, 1), toward.tolist(), up=eye.axes()[1].tolist())
     camera.position = tuple(position)
