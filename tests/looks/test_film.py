@@ -76,6 +76,7 @@ def test_all_steps_have_the_range_of_all(warming: Path, tmp_path: Path) -> None:
 
 
 def test_a_movie_has_one_picture_for_each_step_of_values(warming: Path, tmp_path: Path) -> None:
+    pytest.importorskip("imageio")
     vizlight.look(warming, size=SIZE).save(tmp_path / "x.gif")
     with Image.open(tmp_path / "x.gif") as movie:
         assert movie.n_frames == 3
@@ -83,6 +84,7 @@ def test_a_movie_has_one_picture_for_each_step_of_values(warming: Path, tmp_path
 
 
 def test_the_script_draws_the_same(warming: Path, tmp_path: Path) -> None:
+    pytest.importorskip("imageio")
     look = vizlight.look(warming, size=SIZE)
     look.save(tmp_path / "a.gif")
     script = look.script(tmp_path / "b.gif")

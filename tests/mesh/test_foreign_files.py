@@ -419,6 +419,7 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
 
 
 def test_a_mesh_of_tetgen_without_numbers_is_refused(tmp_path):
+    pytest.importorskip("meshio")
     for name in ("a.node", "a.ele"):
         (tmp_path / name).write_text("# written by a program\n\n")
     with pytest.raises(ValueError, match=r"'a.node' has no numbers"):
