@@ -92,8 +92,10 @@ def test_a_picture_loads_nothing_that_it_does_not_need(tmp_path):
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert picture.exists()
     # SciPy itself loads its parts when they are used.
-    own = ("scipy._", "scipy.version")
-    assert [n for n in run.stdout.rpartition("LOADED")[2].split() if not n.startswith(own)] == []
+    private = ("scipy._", "scipy.version")
+    assert [
+        n for n in run.stdout.rpartition("LOADED")[2].split() if not n.startswith(private)
+    ] == []
 
 
 def test_the_probe_can_fail():

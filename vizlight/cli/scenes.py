@@ -69,8 +69,8 @@ def wishes_of(
     if color is not None:
         array = color.array
         picture |= given_options(scalars=color.scalars, cmap=color.cmap)
-        asked = QUESTIONS.get(lights.question or "")
-        if asked is not None and asked.by_hue and color.scalars is not None:
+        preset = QUESTIONS.get(lights.question or "")
+        if preset is not None and preset.by_hue and color.scalars is not None:
             expected = "no --scalars beside it, whose hues would hide the hues of the light"
             raise ValueError(
                 message(f"--for {lights.question}", expected, f"--scalars {color.scalars}")

@@ -127,14 +127,14 @@ def key(
         steps = [(float(value) - low) / (high - low) for value in values]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
-    asked = _question(topic)
-    x, y, faces = _bar(steps) if asked.is_bar else _disc(HOLE * (asked.key == "disc"))
+    facts = _question(topic)
+    x, y, faces = _bar(steps) if facts.is_bar else _disc(HOLE * (facts.key == "disc"))
     mesh = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
     mesh[RGB] = colors_of(
         scene, x, y, question=topic, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
-    words = list(asked.words)
-    if asked.key == "colors":
+    words = list(facts.words)
+    if facts.key == "colors":
         if clim is None and isinstance(cmap, pv.LookupTable):
             clim = cmap.scalar_range
         names = _names_of(cmap)
@@ -376,8 +376,8 @@ def key_picture(
     scene = required_scene(scene)
     width = _check.integer("width", width, low=8, high=4096)
     question = question_of(scene) if question is None else question
-    asked = _question(question)
-    bar = asked.is_bar
+    facts = _question(question)
+    bar = facts.is_bar
     fine = FINE * width
     across = (np.arange(fine) + 0.5) / fine * 2 - 1
     tall = FINE * max(round(width * BAR), 1) if bar else fine
@@ -386,7 +386,7 @@ def key_picture(
     x, y = (part.ravel() for part in np.meshgrid(across, -down))
     radius = np.hypot(x, y)
     inside = np.ones(len(x), dtype=np.bool_) if bar else radius <= 1
-    if asked.key == "disc":
+    if facts.key == "disc":
         inside &= radius >= HOLE
     rgb = colors_of(
         scene, x[inside], y[inside], question=question, exponent=exponent,

@@ -87,11 +87,8 @@ def save(
 
     Raises
     ------
-    MovieError
-        If the path names a movie and imageio is not installed.
-    TypeError, ValueError
-        If an option does not fit, the data have no steps, or a file cannot be written. No partial
-        file is left.
+    MovieError, BackendError, TypeError, ValueError
+        As for :func:`vizlight.movie.turn`; also if the data have no steps.
     """
     read = {name: options[name] for name in READ if name in options}
     if "time" in read:
@@ -122,20 +119,23 @@ class _Pictures:
     def __iter__(self) -> Iterator[Picture]:
         drift: Drift | None = None
         lasts = np.inf
-        look = next(self._looks, None)
+        look, flow = self._next()
         while look is not None:
-            after = next(self._looks, None)
-            flow = _Flow.of(look) if self._per_step > 1 else None
+            after, then = self._next()
             if flow is None:
                 yield from _drawn(look.plotter(), [None])
             else:
-                then = None if after is None else _Flow.of(after)
                 # The last step has the pace of the step before it.
                 lasts = lasts if then is None else then.time - flow.time
                 if drift is None or not drift.fits(flow.mesh):
                     drift = Drift(flow.mesh, flow.vectors, flow.spacing, flow.length)
                 yield from flow.pictures(drift, then, lasts, self._per_step)
-            look = after
+            look, flow = after, then
+
+    def _next(self) -> tuple[vizlight.Look | None, _Flow | None]:
+        """Return the look at the next step, and its strokes if they move."""
+        look = next(self._looks, None)
+        return look, None if look is None or self._per_step == 1 else _Flow.of(look)
 
 
 def _looks(
@@ -297,8 +297,8 @@ def _pace(times: Sequence[float]) -> float:
 def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywords:
     """Return the options with which all steps of a series are drawn as one of them is."""
     wishes, drawing = look.wishes, look.drawing
-    given = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
-    options: Keywords = {name: value for name, value in given.items() if value is not None}
+    groups = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
+    options: Keywords = {name: value for name, value in groups.items() if value is not None}
     if not options.get("globe"):
         options.pop("globe", None)
     for name in ("view", "size", "style"):
@@ -338,10 +338,9 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
         # The sample may miss them.
         values += [np.array([rows.min(), rows.max()])] if len(rows) else []
     shown = range_shown(np.concatenate(values), lengths=vectors)
-    given = look.wishes.picture.get("cmap")
-    drawn = look.drawing.layers[0].keywords.get("cmap")
     if shown.words(array):
-        return colors_in(shown, given or drawn)
+        drawn = look.drawing.layers[0].keywords.get("cmap")
+        return colors_in(shown, look.wishes.picture.get("cmap") or drawn)
     step = 10.0 ** np.floor(np.log10((shown.high - shown.low) / FINE or 1.0))
     ends = np.floor(shown.low / step) * step, np.ceil(shown.high / step) * step
     return {"clim": tuple(float(f"{end:.9g}") for end in ends)}

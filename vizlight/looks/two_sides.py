@@ -53,7 +53,7 @@ class TwoSides(NamedTuple):
 def of_surface(surface: Step, shown: str) -> TwoSides | None:
     """Return the two sides of a surface on which values differ, None for other surfaces.
 
-    Of a hemisphere of the cortex both sides are always shown.
+    A hemisphere of the cortex always shows both sides.
 
     Parameters
     ----------

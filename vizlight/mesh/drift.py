@@ -113,14 +113,13 @@ class Drift:
 
     def _places(self, mesh: pv.DataSet, spacing: float, length: float) -> Array:
         """Return places in the cells of a mesh, at random with equal density."""
-        k = mesh.GetMaxSpatialDimension()
-        measured = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
-        sizes = np.abs(measured.cell_data[("Length", "Area", "Volume")[k - 1]])
+        sizes = self._carrier.sizes
         total = float(sizes.sum())
-        count = int(np.clip(total / (spacing ** (k - 1) * length), FEWEST, MOST))
+        room = spacing ** (mesh.GetMaxSpatialDimension() - 1) * length
+        count = int(np.clip(total / room, FEWEST, MOST))
         cells = np.sort(self._random.choice(len(sizes), STORE * count, p=sizes / total))
-        own, again = np.unique(cells, return_inverse=True)
-        part = mesh.extract_cells(own.tolist())
+        distinct, again = np.unique(cells, return_inverse=True)
+        part = mesh.extract_cells(distinct.tolist())
         ids, starts = connectivity(part.GetCells())
         corners = np.diff(starts)[again]
         cell = np.repeat(np.arange(len(cells)), corners)

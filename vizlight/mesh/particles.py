@@ -83,12 +83,12 @@ class Carrier:
         # The probe interpolates every array of its source, and all but the vectors in vain.
         self._mesh.clear_point_data()
         self._mesh.clear_cell_data()
-        k = mesh.GetMaxSpatialDimension()
-        sizes = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
-        # A cell that is turned inside out has a negative volume.
-        extent = np.abs(sizes.cell_data[("Length", "Area", "Volume")[k - 1]])
+        #: Lengths, areas or volumes of the cells.
+        self.sizes = _sizes(mesh)
+        extent = self.sizes[self.sizes > 0]
         # The side of a square or cube as large as the typical cell.
-        self._cell = float(np.median(extent[extent > 0])) ** (1 / k) if np.any(extent > 0) else 0.0
+        side = 1 / mesh.GetMaxSpatialDimension()
+        self._cell = float(np.median(extent)) ** side if len(extent) else 0.0
 
     def between(self, first: Array, second: Array) -> None:
         """Take the vectors of the points at both ends of an interval."""
@@ -143,3 +143,11 @@ class Carrier:
         c = self.motion(places + duration / 2 * b, middle)
         d = self.motion(places + duration * c, share + width)
         return np.asarray(places + duration / 6 * (a + 2 * b + 2 * c + d))
+
+
+def _sizes(mesh: pv.DataSet) -> Array:
+    """Return the length, the area or the volume of each cell, by the dimension of the mesh."""
+    k = mesh.GetMaxSpatialDimension()
+    sizes = mesh.compute_cell_sizes(length=k == 1, area=k == 2, volume=k == 3)
+    # A cell that is turned inside out has a negative volume.
+    return np.asarray(np.abs(sizes.cell_data[("Length", "Area", "Volume")[k - 1]]))

@@ -374,7 +374,7 @@ def _hull(mesh: Step) -> list[Layer]:
 
 
 def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
-    """Return the layer of the floor of a box, by which heights are told, if the eye is above it."""
+    """Return the floor of a box as a layer, if the eye is above it: it helps to read heights."""
     low = np.array(box.run().bounds).reshape(3, 2)
     if camera.run().position[2] <= low[2, 1]:
         return []
