@@ -239,7 +239,7 @@ OWN = {
     "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
-    "box_axes.names_above": {"meshes": lambda: pv.MultiBlock({"a": ball()})},
+    "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()})},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "map_frames.graticule": {"mesh": charted, "letters": 2e5},
     "charts.chart": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},

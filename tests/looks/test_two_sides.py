@@ -34,7 +34,7 @@ def test_a_flattened_surface_has_two_sides_where_its_values_differ(sizes, values
     if names is None:
         assert "[]" not in paths
         return
-    assert paths == ["[]", "[]", "render.names_above"]
+    assert paths == ["[]", "[]", "render.captions"]
     assert drawing.layers[0].mesh.arguments[0].run().keys() == names
     # One eye sees all of it, and the lit mesh is the surface alone.
     assert drawing.camera.run().parallel_projection

@@ -1,4 +1,4 @@
-"""Numbers along three edges of a box, as a mesh with letters that face the eye."""
+"""Numbers along edges of a box, and words around blocks, as meshes of letters that face the eye."""
 
 from __future__ import annotations
 
@@ -10,15 +10,17 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.cameras import footprint
-from vizlight.draw.ticks import even_numbers
+from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vizlight._types import Array, Indices
 
-__all__ = ["box_axes", "box_edges", "names_above"]
+__all__ = ["box_axes", "box_edges", "captions"]
 
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
@@ -26,13 +28,15 @@ TICK, LINE, GAP = 0.4, 0.07, 0.25
 SHORTEST, APART = 3.0, 4.0
 #: Most numbers along an edge.
 MOST = 5
+#: Longest bar of lengths, in the width of a block, and its width in heights of letters.
+BAR, THICK = 0.4, 0.2
 
 
 def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: float) -> pv.PolyData:
     """Return ticks, numbers and names x, y, z along three edges of the box of a mesh.
 
     The edges are those between a side that is seen and one that is not, so that nothing stands
-    before or behind the data: the lower ones of x and y, and the left one of z.
+    before or behind the data: the lower ones of x and y, and one of z beside the box.
 
     Parameters
     ----------
@@ -94,10 +98,17 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
     return blocks.polydata(np.concatenate(ends), np.arange(2 * len(ends)).reshape(-1, 2))
 
 
-def names_above(
-    meshes: pv.MultiBlock, camera: pv.Camera, /, height: float, *, size: float
+def captions(
+    meshes: pv.MultiBlock,
+    camera: pv.Camera,
+    /,
+    height: float,
+    *,
+    size: float,
+    ends: Sequence[Sequence[str]] = (),
+    unit: str = "",
 ) -> pv.PolyData:
-    """Return the names of blocks as words above them.
+    """Return words around blocks: their names above them, their ends below, and a bar of lengths.
 
     Parameters
     ----------
@@ -105,6 +116,10 @@ def names_above(
         Meshes with names.
     camera, height, size
         As for :func:`box_axes`.
+    ends : sequence of (str, str), optional
+        Words below the left and the right end of each block.
+    unit : str, optional
+        Unit of the coordinates, with which a bar of a round length stands below the last block.
 
     Returns
     -------
@@ -114,20 +129,47 @@ def names_above(
     Raises
     ------
     TypeError, ValueError
-        If a block has no finite box, or a height is not positive.
+        If a block has no finite box, a height is not positive, or a block has no two ends.
     """
     if not isinstance(meshes, pv.MultiBlock):
         raise TypeError(_check.message("meshes", "a MultiBlock", _check.describe(meshes)))
     height, size = _check.positive("height", height), _check.positive("size", size)
+    if ends and [len(pair) for pair in ends] != [2] * len(meshes):
+        expected = f"two words for each of the {len(meshes)} blocks"
+        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
     eye = _Eye(camera, height)
-    parts = []
+    parts = list[tuple["Array", "Indices"]]()
     for i, name in enumerate(meshes.keys()):
-        box = _box_of(meshes[i])
-        middle = box.mean(axis=1)
-        rows = eye.seen(np.array([middle, *itertools.product(*box)]))[:, 1]
-        place = middle + (rows.max() - rows[0]) * eye.pixel(middle) * eye.up
-        parts.append(_word(place, np.array([0.0, 1.0]), GAP, str(name), eye, size))
+        below = ends[i] if ends else ()
+        is_last = i == len(meshes) - 1
+        parts += _around(_box_of(meshes[i]), str(name), below, unit * is_last, eye, size)
     return blocks.polydata(*letters.union(parts)) if parts else pv.PolyData()
+
+
+def _around(
+    box: Array, name: str, ends: Sequence[str], unit: str, eye: _Eye, size: float
+) -> list[tuple[Array, Indices]]:
+    """Return a name above a box, and words and a bar of lengths below it, in parts."""
+    middle = box.mean(axis=1)
+    spots = eye.seen(np.array([middle, *itertools.product(*box)]))
+    spots = (spots - spots[0]) / size
+    (left, low), (right, high) = spots.min(axis=0), spots.max(axis=0)
+    below = low - 2 * GAP - DIGIT / 2
+    words = [(name, 0.0, high + GAP + DIGIT / 2)]
+    for word, column, side in zip(ends, (left, right), (0.5, -0.5), strict=False):
+        words.append((word, column + side * letters.width(word), below))
+    parts = []
+    if unit:
+        letter = size * float(eye.pixel(middle)[0])
+        length = round_length(BAR * (right - left) * letter)
+        long, word = length / letter, f"{length:g} {unit}"
+        start = -(long + 2 * GAP + letters.width(word)) / 2
+        words.append((word, start + long + 2 * GAP + letters.width(word) / 2, below))
+        low, high = below - THICK / 2, below + THICK / 2
+        bar = np.array([[start, low], [start + long, low], [start + long, high], [start, high]])
+        parts.append((_facing(middle, bar * size, eye), np.array([[0, 1, 2], [0, 2, 3]])))
+    parts += [_written(word, middle, np.array([x, y]), eye, size) for word, x, y in words]
+    return parts
 
 
 def _box_of(mesh: object) -> Array:
@@ -174,19 +216,12 @@ class _Eye:
 
 def _along(box: Array, axis: int, eye: _Eye, size: float) -> list[tuple[Array, Indices]]:
     """Return the ticks, numbers and the name along the best edge of an axis, in parts."""
-    edges = [edge for edge in _edges(box, axis) if len({*_sides_seen(box, axis, edge, eye)}) == 2]
-    if not edges:
+    edge = _edge(box, axis, eye)
+    if edge is None:
         return []
-    # The left one of z, and the lower ones of x and y.
-    edge = min(edges, key=lambda ends: float(eye.seen(ends).mean(axis=0)[0 if axis == 2 else 1]))
-    first, last = eye.seen(edge)
-    along = last - first
-    length = float(np.hypot(*along))
+    length, out = _outward(box, edge, eye)
     if length < SHORTEST * size:
         return []
-    out = np.array([-along[1], along[0]]) / length
-    if out @ ((first + last) / 2 - eye.seen(box.mean(axis=1))) < 0:
-        out = -out
     most = int(np.clip(length / (APART * size) + 1, 2, MOST))
     numbers = even_numbers(float(box[axis, 0]), float(box[axis, 1]), most)
     parts, reach = list[tuple["Array", "Indices"]](), 0.0
@@ -198,6 +233,39 @@ def _along(box: Array, axis: int, eye: _Eye, size: float) -> list[tuple[Array, I
     middle = edge.mean(axis=0)
     parts.append(_word(middle, out, TICK + 3 * GAP + reach, "xyz"[axis], eye, size))
     return parts
+
+
+def _edge(box: Array, axis: int, eye: _Eye) -> Array | None:
+    """Return the best edge along an axis: the lower one for x and y, one beside the box for z.
+
+    Numbers along z stand where they are farthest from those of the edge that meets it, rather left.
+    """
+    edges = [edge for edge in _edges(box, axis) if len({*_sides_seen(box, axis, edge, eye)}) == 2]
+    if not edges:
+        return None
+    if axis < 2:
+        return min(edges, key=lambda ends: float(eye.seen(ends).mean(axis=0)[1]))
+    lower = [edge for edge in (_edge(box, other, eye) for other in range(2)) if edge is not None]
+
+    def crowded(edge: Array) -> tuple[float, float]:
+        way = _outward(box, edge, eye)[1]
+        beside = [
+            float(way @ _outward(box, other, eye)[1]) for other in lower
+            if np.any(np.all(edge[:, np.newaxis] == other, axis=2))
+        ]  # fmt: skip
+        return round(max(beside, default=0.0), 1), float(eye.seen(edge).mean(axis=0)[0])
+
+    return min(edges, key=crowded)
+
+
+def _outward(box: Array, edge: Array, eye: _Eye) -> tuple[float, Array]:
+    """Return the length of an edge in pixels, and the direction in the picture out of the box."""
+    first, last = eye.seen(edge)
+    along = last - first
+    length = float(np.hypot(*along)) or 1.0
+    out = np.array([-along[1], along[0]]) / length
+    inward = out @ ((first + last) / 2 - eye.seen(box.mean(axis=1))) < 0
+    return length, -out if inward else out
 
 
 def _edges(box: Array, axis: int) -> list[Array]:
@@ -243,8 +311,14 @@ def _word(
     place: Array, out: Array, away: float, word: str, eye: _Eye, size: float
 ) -> tuple[Array, Indices]:  # fmt: skip
     """Return a word with its nearest side at a distance from a place, in heights of letters."""
+    return _written(word, place, out * (away + _extent(word, out) / 2), eye, size)
+
+
+def _written(
+    word: str, place: Array, middle: Array, eye: _Eye, size: float
+) -> tuple[Array, Indices]:
+    """Return a word about a middle beside a place, in heights of letters."""
     flat, ids = letters.triangles(word)
-    middle = out * (away + _extent(word, out) / 2)
     flat = flat - (letters.width(word) / 2, DIGIT / 2) + middle
     return _facing(place, flat * size, eye), ids
 

@@ -20,7 +20,7 @@ from vizlight.draw.margins import Margin, ink_on
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.scalar_bars import name_no_data, settle
 from vizlight.draw.sources import sources_of, tinted
-from vizlight.draw.strokes import check_widths, has_pass, stroke_of
+from vizlight.draw.strokes import check_widths, enlarge, has_pass, stroke_of
 from vizlight.filters import relight
 from vizlight.filters.key import WORDS, key, question_of
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
@@ -654,6 +654,8 @@ class Component:
         except (TypeError, ValueError):
             plotter.remove_actor(actor, render=False)
             raise
+        if live.stroke == Stroke():
+            enlarge(actor, plotter.renderer)
         invalid = live.invalid()
         if invalid and live.follow:
             _check.warn(unlit(invalid, live.source.inputs.count))

@@ -43,7 +43,9 @@ PLACES = 60
 AGAIN = 30.0
 #: Points across a number at which other lines are looked for, distance of these and step between
 #: the points of all lines, in heights of letters, and points that are looked at.
-ALONG, CLEAR, STEP, NEIGHBOURS = 5, 0.75, 0.4, 12
+ALONG, CLEAR, STEP, NEIGHBOURS = 5, 0.55, 0.4, 12
+#: Share of these points near other lines from which on a number is not readable.
+CROSSED = 0.3
 #: Distance within which a high or a low is the only one, as a share of the larger side of a map;
 #: height of its letter and of its number, and room around each, in heights of letters.
 REACH, INITIAL, NUMBER, ROOM = 0.1, 1.7, 1.2, 0.15
@@ -407,6 +409,9 @@ def _place(
     steep = np.abs(b - a)[:, 1] / np.where(chord > 0, chord, 1)
     shares = np.linspace(0.1, 0.9, ALONG)[:, np.newaxis, np.newaxis]
     crossed = near(((1 - shares) * a + shares * b).reshape(-1, 2)).reshape(ALONG, -1).mean(axis=0)
+    good &= crossed < CROSSED
+    if not good.any():
+        return None
     best = int(np.argmin(np.where(good, bent + 0.1 * steep + 2 * crossed, math.inf)))
     way = (b[best] - a[best]) / chord[best]
     if way[0] < 0:

@@ -12,6 +12,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.draw.ticks import round_length
 from vizlight.mesh import blocks, charts, georeference, meaning, polylines
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
@@ -389,9 +390,7 @@ def _word_of(value: float, step: float, signs: str) -> str:
 def _bar(box: Array, size: float, metres: float) -> list[Part]:
     """Return a bar of a round length below a map, with its words."""
     left, right, bottom, _ = box
-    most = BAR * (right - left) * metres
-    power = 10.0 ** math.floor(math.log10(most))
-    length = next(s * power for s in (5, 2, 1) if s * power <= most)
+    length = round_length(BAR * (right - left) * metres)
     word = f"{length / 1e3:g} km" if length >= 1e3 else f"{length:g} m"
     high = bottom - (GAP + (DIGIT - THICK) / 2) * size
     end = left + length / metres

@@ -34,8 +34,8 @@ MARGIN, LETTERS = 0.025, 0.032
 #: Width of a bar as a share of a disc, least height of a single one as a share of its strip, and
 #: most numbers for which a bar is made longer.
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
-#: Height of a bar that lies, in letters.
-BAR_HIGH = 0.8
+#: Height of a bar that lies, in letters, and length of one without classes, in that of the data.
+BAR_HIGH, SHORT_BAR = 0.8, 0.65
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
 #: height of its band in letters of keys.
 TITLE_SIZE, SMALLEST_TITLE, BAND = 1.1, 0.75, 2.0
@@ -45,8 +45,11 @@ SHORT = 1.3
 APART = 1.5
 #: Sum of the channels of a background above which words on it are black.
 LIGHT_BACKGROUND = 1.2
+#: Titles of lengths of vectors, of which the first word stands above a bar, and letters of the
+#: longest name that does.
+LENGTHS, LONGEST = re.compile("(Speed|Length) of "), 12
 #: Share of the length of a bar from its end within which no number stands beside that of the end.
-CLOSE = 0.06
+CLOSE = 0.08
 
 
 class Margin:
@@ -134,12 +137,18 @@ class Margin:
         left, low, right, _ = _box_of(renderer, data=False)
         wide, high = renderer.GetRenderWindow().GetSize()
         gap = MARGIN * short
-        upper = self._split + max(low - gap, 0.0) / high if _is_map(renderer) else self._split
+        away = gap if self._keys[0].has_classes else 2 * gap
+        upper = self._split + max(low - away, 0.0) / high if _is_map(renderer) else self._split
         x, bottom, end, _ = self._strip.GetViewport()
         self._strip.SetViewport(x, bottom, end, upper)
         if _is_map(renderer):
             left, _, right, _ = _box_of(renderer, data=True)
         left, right = max(left, gap), min(right, (end - x) * wide - gap)
+        if not self._keys[0].has_classes:
+            # A bar without steps is read as well where it is shorter.
+            left, right = (
+                (left + right) / 2 + sign * SHORT_BAR / 2 * (right - left) for sign in (-1, 1)
+            )
         if right - left < LEAST_BAR * (end - x) * wide:
             left, right = 0.2 * (end - x) * wide, 0.8 * (end - x) * wide
         self._keys[0].lay((left, right), (upper - bottom) * high, LETTERS * short)
@@ -287,6 +296,11 @@ class MarginKey:
         return self._whole if self.lies else self._title
 
     @property
+    def has_classes(self) -> bool:
+        """Whether its colours are classes."""
+        return LEVELS in self._mesh.field_data or NAMES in self._mesh.field_data
+
+    @property
     def is_bar(self) -> bool:
         """Whether it is a bar with words along it, and no disc."""
         return bool(self._marks)
@@ -310,7 +324,12 @@ class MarginKey:
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
         name = self._title.partition(";")[0]
-        head = self._unit if alone else f"{name} ({self._unit})" * bool(name)
+        if kind := LENGTHS.match(name):
+            name = kind[1]
+        if alone and len(name) > max(columns, LONGEST):
+            head = self._unit
+        else:
+            head = f"{name} ({self._unit})" * bool(name)
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.

@@ -20,13 +20,13 @@ from vizlight.draw.backends import (
     probe,
     window_class,
 )
-from vizlight.draw.box_axes import box_axes, box_edges, names_above
+from vizlight.draw.box_axes import box_axes, box_edges, captions
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
-from vizlight.draw.strokes import SUPERSAMPLED, adapt, directions, has_pass, stroke_of, widen
+from vizlight.draw.strokes import adapt, directions, enlarge, stroke_of, widen
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
@@ -58,9 +58,9 @@ __all__ = [
     "box_edges",
     "camera_on",
     "canvas",
+    "captions",
     "choose_backend",
     "make_plotter",
-    "names_above",
     "over_shoulder",
     "pictures",
     "probe",
@@ -467,12 +467,14 @@ def _draw(
             nan_color=NO_DATA,
             # The array is light already, which VTK's lamps would light once more.
             lighting=False,
-            line_width=_pixels(plotter, mesh, width),
+            line_width=width["line_width"],
             show_scalar_bar=False,
         )
         if stroke != Stroke():
             widen(actor, stroke)
             adapt(actor, plotter.renderer, of_data=panel.scalars != DEFAULT_NAME)
+        else:
+            enlarge(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)
@@ -485,18 +487,7 @@ def _add_in_fragments(plotter: pv.Plotter, mesh: pv.DataSet, name: str, width: K
     flat = drawing | {"render_lines_as_tubes": False}
     from vizlight.draw.component import add_recorded
 
-    for options in (drawing, flat):
-        wide = options | {"line_width": _pixels(plotter, mesh, options)}
-        if add_recorded(plotter, mesh, name, **wide):
-            return True
-    return False
-
-
-def _pixels(plotter: pv.Plotter, mesh: pv.DataSet, width: Keywords) -> float:
-    """Return the width that VTK is given; supersampling draws a larger picture and shrinks it."""
-    is_stroke = stroke_of(mesh, dict(width)) != Stroke()
-    supersampled = has_pass(plotter.renderer.GetPass(), "vtkSSAAPass")
-    return float(width["line_width"]) * (SUPERSAMPLED if supersampled and not is_stroke else 1.0)
+    return any(add_recorded(plotter, mesh, name, **options) for options in (drawing, flat))
 
 
 def _lifted(points: Array, camera: pv.Camera, by: float) -> Foreign:
@@ -556,7 +547,10 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
-    plotter.enable_anti_aliasing("msaa", multi_samples=8)
+    if off_screen:
+        plotter.enable_anti_aliasing("ssaa")
+    else:
+        plotter.enable_anti_aliasing("msaa", multi_samples=8)
     return plotter
 
 

@@ -177,10 +177,21 @@ def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
     shader = actor.GetShaderProperty()
     fragment = shader.GetFragmentCustomUniforms()
     fragment.SetUniform3f(GROUND, list(renderer.GetBackground()))
-    samples = SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
+    samples = _samples(renderer)
     fragment.SetUniformf(DARKENED, 0.0 if of_data else DARKER)
     for uniforms in (fragment, shader.GetGeometryCustomUniforms()):
         uniforms.SetUniformf(SAMPLES, samples)
+
+
+def enlarge(actor: vtkActor, renderer: vtkRenderer) -> None:
+    """Give VTK's own lines the width in pixels that they have once a larger picture is shrunk."""
+    prop = actor.GetProperty()
+    prop.SetLineWidth(prop.GetLineWidth() * _samples(renderer))
+
+
+def _samples(renderer: vtkRenderer) -> float:
+    """Return the width of a line that a renderer draws one pixel wide."""
+    return SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
 
 
 def has_pass(step: Foreign, kind: str) -> bool:

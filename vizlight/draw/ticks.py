@@ -40,6 +40,12 @@ def even_levels(low: float, high: float, most: int = 5) -> list[float]:
     return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
 
 
+def round_length(most: float) -> float:
+    """Return the largest round number up to a positive one: 1, 2 or 5 with zeros."""
+    power = 10.0 ** math.floor(math.log10(most))
+    return next(s * power for s in (5, 2, 1) if s * power <= most)
+
+
 def numerals_of(values: Sequence[float]) -> list[str]:
     """Return the digits of round numbers with even steps, with as many places as these need."""
     size = max(abs(value) for value in values)

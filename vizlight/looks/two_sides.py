@@ -12,10 +12,13 @@ from vizlight.looks.steps import Step
 from vizlight.mesh import brains
 
 if TYPE_CHECKING:
+    from vizlight._types import Keywords
     from vizlight.looks.wishes import Wishes
 
 #: Words for the eye.
 WORDS = "from both sides"
+#: Words of the ends of a left hemisphere that is seen from the left.
+ENDS = ["anterior", "posterior"]
 
 
 class TwoSides(NamedTuple):
@@ -27,10 +30,13 @@ class TwoSides(NamedTuple):
         Step that makes them, as blocks with names.
     eye : Viewpoint
         Eye that sees both.
+    captions : dict
+        Keywords of ``render.captions``: words of the ends, and the unit of coordinates.
     """
 
     blocks: Step
     eye: Viewpoint
+    captions: Keywords
 
     def layers(self) -> list[Step]:
         """Return the steps that take the blocks."""
@@ -42,7 +48,8 @@ class TwoSides(NamedTuple):
         height = round(wishes.room[1], 1)
 
         def names(camera: Step) -> Step:
-            return Step("names", "render.names_above", self.blocks, camera, height, size=size)
+            words: Keywords = {"size": size, **self.captions}
+            return Step("captions", "render.captions", self.blocks, camera, height, **words)
 
         alone = wishes.camera(self.blocks, self.eye)
         around = Step("", "pyvista.MultiBlock", [self.blocks, names(alone)])
@@ -63,10 +70,14 @@ def of_surface(surface: Step, shown: str) -> TwoSides | None:
         Name of a point array of values.
     """
     mesh = surface.run()
+    captions: Keywords = {}
     if side := brains.hemisphere(mesh):
         toward, up = (-1.0 if side == "left" else 1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
         eye = Viewpoint(toward, up, True, WORDS)
         names = [f"{side.title()} hemisphere, {view}" for view in ("lateral", "medial")]
+        # The right hemisphere is seen from the right, its front at the right.
+        lateral = ENDS if side == "left" else ENDS[::-1]
+        captions = {"ends": [lateral, lateral[::-1]], "unit": "mm"}
     elif (seen := side_of(mesh, shown)) is not None:
         eye = Viewpoint(seen.toward, seen.up, True, WORDS)
         axis = int(np.argmax(np.abs(eye.toward)))
@@ -75,4 +86,4 @@ def of_surface(surface: Step, shown: str) -> TwoSides | None:
     else:
         return None
     blocks = Step("sides", "render.both_sides", surface, eye.toward, up=eye.up, names=names)
-    return TwoSides(blocks, eye)
+    return TwoSides(blocks, eye, captions)

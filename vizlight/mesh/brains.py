@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Foreign
 
 __all__ = [
-    "SURFACES", "UNITS", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
+    "MEASURES", "SURFACES", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
     "tracks_of_tt", "volume",
 ]  # fmt: skip
 
@@ -34,9 +34,12 @@ VOLUMES = (
 #: Sides of the box of one hemisphere of the cortex in mm, least and largest, and how far it reaches
 #: beyond the middle of the brain.
 SIDES, BEYOND = ((50.0, 95.0), (130.0, 205.0), (85.0, 150.0)), 15.0
-#: Numbers of points of common templates, and units of the arrays that FreeSurfer makes.
+#: Numbers of points of common templates, and words and units of the arrays that FreeSurfer makes.
 TEMPLATES = {2562, 10242, 40962, 163842, 32492}
-UNITS = {"thickness": "mm", "curv": "1/mm", "area": "mm2", "volume": "mm3", "sulc": ""}
+MEASURES = {
+    "thickness": ("cortical thickness", "mm"), "curv": ("curvature", "1/mm"),
+    "area": ("area", "mm2"), "volume": ("volume", "mm3"), "sulc": ("sulcal depth", ""),
+}  # fmt: skip
 #: Largest cosine between axes that are at right angles: affines are in float32.
 SQUARE = 1e-5
 #: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
@@ -81,7 +84,7 @@ def hemisphere(surface: pv.DataSet) -> str:
     if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
         return ""
     is_template = surface.n_points in TEMPLATES
-    if not is_template and UNITS.keys().isdisjoint(surface.point_data.keys()):
+    if not is_template and MEASURES.keys().isdisjoint(surface.point_data.keys()):
         return ""
     bounds = np.reshape(surface.bounds, (3, 2))
     if any(

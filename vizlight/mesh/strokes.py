@@ -42,15 +42,19 @@ class Arrow(NamedTuple):
         Width at the tail and before the head, as shares of the largest.
     head : float
         Length of the head as a share of that of the stroke.
+    tip : float
+        Width of the tip as a share of the largest.
     """
 
     tail: float
     neck: float
     head: float
+    tip: float = 0.0
 
 
-#: Strokes that lie on a surface or move, and those in space, which are drawn as tubes with cones.
-FLAT, TUBE = Arrow(0.17, 0.45, 0.2), Arrow(0.17, 0.36, 0.13)
+#: Strokes that lie on a surface or move, and those in space, which are drawn as tubes with cones,
+#: and go on from one to the next without a break.
+FLAT, TUBE = Arrow(0.17, 0.45, 0.2), Arrow(0.34, 0.38, 0.09, 0.28)
 
 
 class LineSegments(NamedTuple):
@@ -158,8 +162,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) ->
     Returns
     -------
     pyvista.PolyData
-        Strokes with the arrays of the mesh, and the point array ``width``: as the arrow says, and
-        from 1 at the base of a head to 0 at its tip; without heads from 0.3 at the ends to 1.
+        Strokes with the arrays of the mesh, and the point array ``width``: as the arrow says,
+        with 1 at the base of a head; without heads from 0.3 at the ends to 1.
     """
     segments = segments_of(mesh)
     totals = segments.totals()
@@ -224,7 +228,7 @@ def _profile(place: Array, arrow: Arrow, head: Array | float) -> Array:
     shaft = arrow.tail + (arrow.neck - arrow.tail) * place / np.maximum(1 - head, 1e-9)
     rising = shaft + (1 - shaft) * np.clip(1 + from_base / BASE, 0, 1)
     return np.asarray(
-        np.where(from_base > 0, np.maximum(1 - from_base, 0), rising), dtype=np.float32
+        np.where(from_base > 0, np.maximum(1 - from_base, arrow.tip), rising), dtype=np.float32
     )
 
 

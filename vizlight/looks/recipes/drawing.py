@@ -56,6 +56,8 @@ MOST_BORDERS, SEAM = 0.3, 1e-6
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
 
+#: Names of velocities, in lower case.
+VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|vectors?|.*(veloc|wind|flow|current).*")
 #: Width over height of a map from which a key takes less room below it, in that of the picture.
 WIDE = 1.08
 #: Questions whose pictures of maps have north up, whatever their shape is.
@@ -412,6 +414,11 @@ class Case:
             if factor != 1:
                 bar["clim"] = (low / factor, high / factor)
                 bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
+        # A region of one value below all others, such as thickness 0, is where there is no cortex.
+        table = colors.get("cmap")
+        has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING
+        if has_grey and brains.hemisphere(mesh):
+            bar["title"] += "; grey: medial wall"
         return bar
 
     @property
@@ -484,10 +491,9 @@ def colors_in(shown: Range, cmap: Foreign) -> Keywords:
 def titled(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them."""
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
-    unit = attributes.get("units", "") or (
-        brains.UNITS.get(name, "") if brains.hemisphere(mesh) else ""
-    )
-    title = attributes.get("long_name") or attributes.get("standard_name") or name
+    word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
+    unit = attributes.get("units", "") or of_brains
+    title = attributes.get("long_name") or attributes.get("standard_name") or word or name
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
     if series.TIME in mesh.field_data:
@@ -510,9 +516,10 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:
-    """Return the title of the lengths of vectors: their speed, if their unit is that of one."""
+    """Return the title of the lengths of vectors: their speed, if their unit or name is of one."""
     title = titled(mesh, name)
-    return f"{'speed' if title.endswith('/s)') else 'length'} of {title}"
+    is_speed = title.endswith("/s)") or VELOCITY.fullmatch(name.lower())
+    return f"{'speed' if is_speed else 'length'} of {title}"
 
 
 def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:

@@ -95,7 +95,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         return drawing
     lines, levels, factor = contoured
     inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
-    thin = {"line_width": round(case.width / (1.4 if is_relief else 1.5), 1), "halo": False}
+    thin = {"line_width": round(case.width / (2.0 if is_relief else 1.5), 1), "halo": False}
     layers = [
         # A line of one point has no light, and no place in the picture.
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords}, quiet=True)
