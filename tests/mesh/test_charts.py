@@ -55,6 +55,40 @@ def test_the_outline_of_a_map_around_a_pole_is_its_ring():
     assert charts.sheet(flat).extent == pytest.approx((-180, 180, 60, 90), abs=0.6)
 
 
+@pytest.mark.parametrize(("west", "columns"), [(0.0, 72), (0.0, 73), (-180.0, 72), (-180.0, 73)])
+@pytest.mark.parametrize("place", ["points", "cells"])
+def test_the_whole_earth_is_one_map_wherever_its_columns_begin(west, columns, place):
+    grid = sheet_of(west, west + 5 * (columns - 1), -90, 90, 5)
+    data = grid.point_data if place == "points" else grid.cell_data
+    spots = grid if place == "points" else grid.cell_centers()
+    lon, lat = np.radians(np.asarray(spots.points, dtype=float)[:, :2]).T
+    data["warmth"] = np.cos(lon - 0.3) * np.cos(lat)
+    if place == "cells":
+        if columns == 72:
+            # Cells end one step before the whole turn: there is a gap, which no map closes.
+            assert charts.suited(grid) == ""
+            return
+        grid.clear_point_data()
+    flat = cartography.chart(grid)
+    sheet = charts.sheet(flat)
+    assert sheet.extent == pytest.approx((-180, 180, -90, 90), abs=1e-4)
+    assert not sheet.is_around
+    x, _, y, _ = np.asarray(flat.bounds)[[0, 1, 2, 3]]
+    assert (x, y) == pytest.approx((-1.7243e7, -8.3927e6), rel=1e-3)
+    found = flat if place == "points" else flat.cell_centers()
+    shown = flat.point_data if place == "points" else flat.cell_data
+    lon, lat = np.radians(sheet.plane.inverse(np.asarray(found.points, dtype=float)[:, :2])).T
+    expected = np.cos(lon - 0.3) * np.cos(lat)
+    np.testing.assert_allclose(shown["warmth"], expected, atol=0.02 if place == "cells" else 1e-5)
+
+
+def test_vectors_beside_the_seam_of_a_map_do_not_turn_round():
+    grid = sheet_of(-180, 175, -90, 90, 5)
+    grid["v"] = 0 * grid["v"]
+    flat = cartography.chart(grid)
+    np.testing.assert_allclose(np.asarray(flat["u,v"]), [[3, 0, 0]] * flat.n_points, atol=1e-4)
+
+
 def test_the_extent_of_a_map_is_that_in_degrees():
     assert charts.sheet(cartography.chart(sheet_of(*AMERICA))).extent == pytest.approx(
         AMERICA, abs=0.05

@@ -6,7 +6,7 @@ import pyvista as pv
 
 from vizlight.mesh.coasts import coasts
 from vizlight.mesh.georeference import in_degrees
-from vizlight.mesh.globes import globe, is_globe
+from vizlight.mesh.globes import centred, globe, is_globe, middle_of
 
 
 def earth(west=-180.0, columns=73, south=-90.0, rows=37, kind="image"):
@@ -50,6 +50,29 @@ def test_a_ball_is_closed_and_has_the_values_of_its_map(grid):
     assert np.asarray(ball["warmth"]) == pytest.approx(expected, abs=0.01)
     assert is_globe(ball)
     assert not is_globe(grid)
+
+
+@pytest.mark.parametrize(
+    ("grid", "middle"),
+    [
+        (earth(), 0.0),
+        (earth(west=0.0, columns=72), 0.0),
+        (earth(west=2.5, columns=72, south=-87.5, rows=36), 2.5),
+        (earth(columns=60), None),
+        (earth(south=-50.0, rows=20), None),
+    ],
+    ids=["closed", "from 0", "between", "no turn", "no pole"],
+)
+def test_the_middle_of_a_map_around_the_earth(grid, middle):
+    assert middle_of(grid) == middle
+    turned = centred(grid, 90.0)
+    if middle is None:
+        assert turned.n_points == grid.n_points
+        return
+    lon = np.asarray(turned.points, dtype=float)[: turned.dimensions[0], 0]
+    assert lon[-1] - lon[0] == pytest.approx(360)
+    assert np.all(np.diff(lon) > 0)
+    assert abs(lon.mean() - 90) <= 2.5
 
 
 def test_winds_are_tangent_and_turn_about_the_axis():

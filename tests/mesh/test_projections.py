@@ -35,6 +35,7 @@ def test_which_map_has_which_projection(bounds, kind):
     [
         *((projections.suited(bounds), bounds) for bounds, kind in SUITED.items() if kind),
         (ROTATED, (-180, 180, -89, 89)),
+        (projections.around(20.0), (-159.9, 199.9, -89.9, 89.9)),
     ],
 )
 def test_places_are_those_of_proj_and_come_back(text, bounds):
@@ -61,6 +62,23 @@ def test_cones_keep_angles(bounds):
     np.testing.assert_allclose(*lengths, rtol=1e-4)
     cosines = np.einsum("ij,ij->i", east, north) / (lengths[0] * lengths[1])
     np.testing.assert_allclose(cosines, 0, atol=1e-4)
+
+
+def test_equal_earth_keeps_areas_and_both_ends_of_a_turn():
+    plane, earth, step = (
+        projections.of_text(projections.around(0.0)),
+        places((-179, 179, -89, 89)),
+        1e-4,
+    )
+    east, north = (
+        plane.forward(earth + way) - plane.forward(earth - way)
+        for way in (np.array([step, 0]), np.array([0, step]))
+    )
+    area = (east[:, 0] * north[:, 1] - east[:, 1] * north[:, 0]) / np.radians(2 * step) ** 2
+    true = projections.RADIUS**2 * np.cos(np.radians(earth[:, 1]))
+    np.testing.assert_allclose(area, true, rtol=1e-6)
+    ends = plane.forward(np.array([[-180.0, 10], [180.0, 10]]))
+    assert ends[0, 0] == -ends[1, 0] < 0
 
 
 @pytest.mark.parametrize(

@@ -219,17 +219,22 @@ def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
 def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bool]]:
     """Return parts of parallels and meridians, their words, and whether they are meridians."""
     west, east, south, north = sheet.extent
-    is_around = east - west > georeference.AROUND - ALMOST
+    is_around = sheet.is_around
     # The height of letters in degrees where meridians are farthest apart.
     degrees = size * sheet.metres / georeference.METRES
     least = 0.0 if south <= 0 <= north else min(abs(south), abs(north))
     wide = degrees / math.cos(math.radians(min(least, 80.0)))
+    if not is_around:
+        # Their words stand at the lower side, which may be shorter.
+        ends = sheet.plane.forward(np.array([[west, south], [east, south]]) + [[0.1], [-0.1]])
+        long = float(np.linalg.norm(ends[1] - ends[0])) / georeference.METRES
+        wide = max(wide, 0.8 * degrees * (east - west) / long)
     meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)
     parallels = [tick for tick in ticks(south, north, degrees, "NS") if abs(tick[0]) < 90]
     # Not all meridians meet at a pole.
     ends = [value for value, _ in parallels]
-    low = min(ends, default=south) if south == -90 else south - 1
-    high = max(ends, default=north) if north == 90 else north + 1
+    low = min(ends, default=south) if is_around and south == -90 else south - 1
+    high = max(ends, default=north) if is_around and north == 90 else north + 1
     lines, names = [], []
     for value, word in meridians[: len(meridians) - is_around]:
         lat = np.clip(np.linspace(low, high, FINE), -90, 90)
@@ -250,8 +255,7 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
     """Return the outline of a map with the words of its graticule where this meets it."""
     outline = sheet.outline @ turn.T
     parts = [_border(outline, LINE * size)]
-    west, east, *_ = sheet.extent
-    is_around = east - west > georeference.AROUND - ALMOST
+    is_around = sheet.is_around
     near = charts.EDGE * sheet.size
     # Meridians end below a map, and beside one that lies on its side.
     below, beside = np.array([[0.0, -1.0], [-1.0, 0.0]])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -33,6 +34,8 @@ SAMPLES = 60
 BESIDE = 3.0
 #: Halvings of a step of a line where it crosses the outline.
 HALVINGS = 14
+#: Ratio of steps to both sides from which on one crosses the seam of a projection.
+TORN = 3.0
 #: Longest way of a map, as a share of the way around the earth, that is drawn without a tear.
 WHOLE = 0.9
 
@@ -50,9 +53,10 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
         Map, whose field array ``unit`` says ``degree``.
     projection : str, optional
         Keywords of PROJ, such as ``"+proj=lcc +lat_1=30 +lat_2=60 +lon_0=10 +R=6371000"``:
-        ``lcc``, ``eqc``, ``stere`` about a pole, and ``ob_tran`` of ``eqc``, on a sphere; any other
-        reference system needs rasterio, the extra ``maps``. Default: that of the file's grid, else
-        a conformal cone through the map, or the stereographic projection around a pole.
+        ``lcc``, ``eqc``, ``eqearth``, ``stere`` about a pole, and ``ob_tran`` of ``eqc``, on a
+        sphere; any other reference system needs rasterio, the extra ``maps``. Default: that of the
+        file's grid, else a conformal cone through the map, the stereographic projection around a
+        pole, or the Equal Earth projection of a grid around the earth.
 
     Returns
     -------
@@ -87,6 +91,8 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
         expected = "keywords of PROJ on a sphere, or a reference system and rasterio"
         remedy = "name one, or install vizlight[maps]"
         raise ValueError(_check.message("projection", expected, repr(text), remedy))
+    if around := re.search(r"\+proj=eqearth.*\+lon_0=([-+.\de]+)", text):
+        mesh = globes.centred(mesh, float(around[1]))
     flat = _moved(mesh, plane, is_plane="+proj=eqc" in text.split())
     if not np.isfinite(flat.bounds).all():
         expected = f"places on the map of {text!r}"
@@ -108,6 +114,8 @@ def suited(mesh: pv.DataSet, *, straight: bool = False) -> str:
     """
     if PROJECTION in mesh.field_data and not straight:
         return str(mesh.field_data[PROJECTION][0])
+    if not straight and (middle := globes.middle_of(mesh)) is not None:
+        return projections.around(middle)
     return projections.suited(mesh.bounds, straight=straight)
 
 
@@ -166,9 +174,12 @@ def _turn(data: pv.DataSetAttributes, places: Array, plane: Projection) -> None:
     # A degree of longitude is shorter by the cosine of the latitude.
     wide = STEP / np.cos(np.radians(lat))
     zero = np.zeros_like(lon)
+    here = plane.forward(np.column_stack([lon, lat]))
     east, north = (
-        plane.forward(np.column_stack([lon + x, lat + y]))
-        - plane.forward(np.column_stack([lon - x, lat - y]))
+        _slopes(
+            plane.forward(np.column_stack([lon + x, lat + y])) - here,
+            here - plane.forward(np.column_stack([lon - x, lat - y])),
+        )
         for x, y in ((wide, zero), (zero, step))
     )
     for name in names:
@@ -178,6 +189,14 @@ def _turn(data: pv.DataSetAttributes, places: Array, plane: Projection) -> None:
         scale = np.hypot(rows[:, 0], rows[:, 1]) / np.where(length > 0, length, 1.0)
         turned = np.column_stack([flat * scale[:, np.newaxis], rows[:, 2]])
         data[name] = turned.astype(np.asarray(data[name]).dtype)
+
+
+def _slopes(ahead: Array, behind: Array) -> Array:
+    """Return the sums of steps to both sides, twice the shorter one where the other is torn."""
+    sizes = [np.linalg.norm(steps, axis=1)[:, np.newaxis] for steps in (ahead, behind)]
+    shorter = np.where(sizes[0] < sizes[1], ahead, behind)
+    is_torn = np.maximum(*sizes) > TORN * np.minimum(*sizes)
+    return np.asarray(np.where(is_torn, 2 * shorter, ahead + behind))
 
 
 @dataclass(frozen=True)
@@ -257,15 +276,23 @@ class MapSheet:
         inner = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         places = np.concatenate([self.outline, inner[self.holds(inner)]])
         earth = self.plane.inverse(places * self.metres)
-        ring = earth[: len(self.outline), 0]
         earth = earth[np.isfinite(earth).all(axis=1)]
         south, north = earth[:, 1].min(), earth[:, 1].max()
         middle = self.plane.inverse((low + high)[np.newaxis] / 2 * self.metres)[0, 0]
-        if abs(np.sum(_turns(np.diff(ring, append=ring[:1])))) > georeference.AROUND / 2:
+        if self.is_around:
             south, north = (south, 90.0) if north > -south else (-90.0, north)
             return middle - 180.0, middle + 180.0, south, north
         east = _turns(earth[:, 0] - middle) + middle
+        if np.ptp(east) > georeference.AROUND - 1:
+            return middle - 180.0, middle + 180.0, south, north
         return east.min(), east.max(), south, north
+
+    @cached_property
+    def is_around(self) -> bool:
+        """Whether a pole is within the outline."""
+        ring = self.plane.inverse(self.outline * self.metres)[:, 0]
+        turns = np.sum(_turns(np.diff(ring, append=ring[:1])))
+        return bool(abs(turns) > georeference.AROUND / 2)
 
 
 def _turns(degrees: Array) -> Array:

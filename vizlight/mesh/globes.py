@@ -24,6 +24,8 @@ GLOBE = "globe"
 FINE = 1.0
 #: Degrees from a pole within which an edge of a map is closed to it, and those of a circle.
 NEAR_POLE = 15.0
+#: Latitude from which on a map is one of the whole earth, and degrees that are none.
+WHOLE, SLIGHT = 60.0, 1e-3
 
 
 def globe(mesh: pv.DataSet, /) -> pv.PolyData:
@@ -164,6 +166,75 @@ def closed(mesh: pv.DataSet) -> pv.DataSet:
     for name in grid.field_data:
         closed.field_data[name] = grid.field_data[name]
     return closed
+
+
+def middle_of(mesh: pv.DataSet) -> float | None:
+    """Return the middle longitude of a grid around the whole earth, None for all else.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Map in degrees, whose columns are meridians.
+    """
+    lon = _meridians(mesh)
+    south, north = mesh.bounds[2:4]
+    if lon is None or not south < -WHOLE or not north > WHOLE:
+        return None
+    return round(float(_first(lon).min()) + georeference.AROUND / 2, 6)
+
+
+def _first(lon: Array, west: float = -georeference.AROUND / 2) -> Array:
+    """Return longitudes of columns from a western end on, without that of a second turn."""
+    return (lon[:-1] - west + SLIGHT) % georeference.AROUND - SLIGHT + west
+
+
+def _meridians(mesh: pv.DataSet) -> Array | None:
+    """Return the longitudes of the columns of a grid that is closed, None for all else."""
+    columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
+    if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
+        return None
+    points = np.asarray(mesh.points).reshape(rows, columns, -1)
+    lon = np.asarray(points[0, :, 0], dtype=np.float64)
+    if not np.allclose(points[:, :, 0], lon, rtol=0, atol=SLIGHT) or not np.diff(lon).min() > 0:
+        return None
+    if not len(mesh.cell_data):
+        step = (lon[-1] - lon[0]) / (columns - 1)
+        if abs(lon[0] + georeference.AROUND - lon[-1] - step) < 0.01 * step:
+            lon = np.append(lon, lon[0] + georeference.AROUND)
+    return lon if abs(lon[-1] - lon[0] - georeference.AROUND) < SLIGHT else None
+
+
+def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
+    """Return a grid around the earth with its columns from half a turn west of a longitude on.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Map in degrees; one that is no grid around the earth is copied as it is.
+    middle : float
+        Longitude at which a column, half a turn away, is the first.
+    """
+    lon = _meridians(mesh)
+    if lon is None:
+        return mesh.copy(deep=False)
+    columns, rows = mesh.dimensions[:2]
+    first = _first(lon, middle - georeference.AROUND / 2)
+    order = np.argsort(first)
+    taken = np.append(order, order[0])
+    points = np.asarray(mesh.points, dtype=np.float64).reshape(rows, columns, 3)[:, taken]
+    points[..., 0] = np.append(first[order], first[order[0]] + georeference.AROUND)
+    turned = pv.StructuredGrid()
+    turned.dimensions = (len(taken), rows, 1)
+    turned.points = points.reshape(-1, 3)
+    for name, values in mesh.point_data.items():
+        table = np.asarray(values).reshape(rows, columns, *np.shape(values)[1:])[:, taken]
+        turned.point_data[name] = table.reshape(-1, *table.shape[2:])
+    for name, values in mesh.cell_data.items():
+        table = np.asarray(values).reshape(rows - 1, columns - 1, *np.shape(values)[1:])[:, order]
+        turned.cell_data[name] = table.reshape(-1, *table.shape[2:])
+    for name in mesh.field_data:
+        turned.field_data[name] = mesh.field_data[name]
+    return turned
 
 
 def _surface(mesh: pv.DataSet) -> pv.PolyData:

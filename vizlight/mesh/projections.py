@@ -1,7 +1,7 @@
 """Map projections: from longitude and latitude to a plane in metres, and back.
 
-Cones, rotated poles and equirectangular maps are on the sphere of the earth's mean radius; all
-others are left to PROJ, which comes with rasterio.
+Cones, rotated poles, equirectangular and Equal Earth maps are on the sphere of the earth's mean
+radius; all others are left to PROJ, which comes with rasterio.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign
 
-__all__ = ["Projection", "of_attributes", "of_text", "suited"]
+__all__ = ["Projection", "around", "of_attributes", "of_text", "suited"]
 
 #: Radius of the earth, in metres.
 RADIUS = 6_371_008.8
@@ -38,13 +38,15 @@ _KEYWORDS = {
 #: Attributes that write a projection out.
 _WRITTEN = ("crs_wkt", "spatial_ref", "proj4", "proj4_params", "proj4text")
 #: Keywords of the projections on the sphere that need no PROJ.
-_ON_SPHERE = {"lcc", "stere", "ob_tran", "eqc"}
+_ON_SPHERE = {"lcc", "stere", "ob_tran", "eqc", "eqearth"}
 _OF_ELLIPSOIDS = {"a", "b", "rf", "ellps", "datum", "k", "k_0", "lat_ts"}
 #: Share of the latitudes of a map from its sides to the two parallels that are true to scale.
 _INNER = 1 / 6
 #: Extents in degrees: of a map that is taken for flat, of one that a cone can hold, and of one
 #: around the earth; latitudes of a map's middle, and of its end, from which on it is drawn so.
 SMALL, WIDE, AROUND, MIDDLE, POLAR = 5.0, 150.0, 340.0, 25.0, 15.0
+#: Coefficients of the Equal Earth projection, and steps of its inverse.
+EQUAL_EARTH, NEWTON = np.array([1.340264, -0.081106, 0.000893, 0.003796]), 12
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,8 @@ def of_text(text: str) -> Projection | None:
     radius = numbers.get("R", RADIUS)
     if kind == "eqc":
         return _plane(middle, math.cos(math.radians(numbers["lat_ts"])), radius)
+    if kind == "eqearth":
+        return _equal_earth(middle[0], radius)
     if kind == "ob_tran" and words.get("o_proj") == "eqc":
         pole = math.radians(numbers["o_lat_p"])
         return _rotated(pole, middle[0], math.radians(numbers.get("o_lon_p", 0.0)), radius)
@@ -136,8 +140,41 @@ def _plane(middle: tuple[float, float], narrow: float, radius: float) -> Project
 
 def _around(angles: Array, middle: float) -> Array:
     """Return longitudes and latitudes in radians, with longitudes near a middle one."""
-    turns = np.round((angles[:, 0] - middle) / (2 * math.pi))
+    # Both ends of a whole turn stay where they are.
+    turns = np.round((angles[:, 0] - middle) / (2 * math.pi) * (1 - 1e-9))
     return angles - 2 * math.pi * np.column_stack([turns, np.zeros_like(turns)])
+
+
+def _equal_earth(middle: float, radius: float) -> Projection:
+    """Return the Equal Earth projection, whose meridians bend and whose areas are true.
+
+    Savric, Patterson and Jenny, The Equal Earth map projection (2019), equations 5 to 8.
+    """
+    powers = np.array([1, 3, 7, 9])
+
+    def rows(angle: Array) -> tuple[Array, Array]:
+        """Return y of the parametric latitude, and its derivative."""
+        every = angle[:, np.newaxis] ** (powers - 1)
+        return angle * (every @ EQUAL_EARTH), every @ (powers * EQUAL_EARTH)
+
+    def forward(places: Array) -> Array:
+        lon, lat = _around(np.radians(places), middle).T
+        angle = np.arcsin(math.sqrt(3) / 2 * np.sin(lat))
+        y, steep = rows(angle)
+        x = 2 / math.sqrt(3) * (lon - middle) * np.cos(angle) / steep
+        return radius * np.column_stack([x, y])
+
+    def inverse(places: Array) -> Array:
+        x, y = places.T / radius
+        angle = np.clip(y, -math.pi / 3, math.pi / 3)
+        for _ in range(NEWTON):
+            row, steep = rows(angle)
+            angle = np.clip(angle - (row - y) / steep, -math.pi / 3, math.pi / 3)
+        lon = math.sqrt(3) / 2 * x * rows(angle)[1] / np.cos(angle) + middle
+        lat = np.arcsin(np.clip(2 / math.sqrt(3) * np.sin(angle), -1, 1))
+        return np.asarray(np.degrees(np.column_stack([lon, lat])))
+
+    return Projection(forward, inverse)
 
 
 def _rotated(pole: float, meridian: float, start: float, radius: float) -> Projection:
@@ -262,6 +299,11 @@ def _text_of_cone(first: float, second: float, lat: float, lon: float) -> str:
 
 def _text_of_pole(lat: float, lon: float) -> str:
     return f"+proj=stere +lat_0={lat:g} +lon_0={lon:.6g} +R={RADIUS}"
+
+
+def around(lon: float) -> str:
+    """Return the text of the projection of a map around the earth with a middle longitude."""
+    return f"+proj=eqearth +lon_0={lon:.9g} +R={RADIUS}"
 
 
 def suited(bounds: Sequence[float], *, straight: bool = False) -> str:
