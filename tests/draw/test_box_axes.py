@@ -81,3 +81,50 @@ def test_what_is_no_box_is_refused():
     lost = pv.PolyData(np.array([[0.0, 0, 0], [np.inf, 1, 1]]))
     with pytest.raises(ValueError, match="mesh"):
         box_axes(lost, camera, HEIGHT, size=SIZE)
+
+
+def test_captions_stand_around_blocks_and_the_bar_is_as_long_as_it_says():
+    pair = pv.MultiBlock({"front": pv.Box((0, 170, 0, 60, 0, 110))})
+    pair["back"] = pv.Box((200, 370, 0, 60, 0, 110))
+    camera = camera_on(pair, (0, -1, 0), parallel=True)
+    eye = module._Eye(camera, HEIGHT)
+    written = []
+
+    def word(text, place, middle, eye, size):
+        written.append((text, eye.seen(place) + size * middle))
+        return original(text, place, middle, eye, size)
+
+    original = module._written
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "_written", word)
+        ends = [("a", "p"), ("p", "a")]
+        mesh = module.captions(pair, camera, HEIGHT, size=SIZE, ends=ends, unit="mm")
+    assert [text for text, _ in written] == ["front", "a", "p", "back", "p", "a", "50 mm"]
+    corners = eye.seen(np.asarray(pair["front"].points, dtype=float))
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    (x, y), first, second = (spot for _, spot in written[:3])
+    assert y > high
+    assert x == pytest.approx((left + right) / 2, abs=1)
+    assert left < first[0] < second[0] < right
+    assert first[1] == second[1] < low
+    bar = np.asarray(mesh.points, dtype=float)
+    # The longest triangles are those of the bar.
+    faces = bar[mesh.regular_faces]
+    assert np.ptp(faces[:, :, 0], axis=1).max() == pytest.approx(50, rel=1e-5)
+
+
+def test_captions_need_blocks_and_two_ends_for_each():
+    pair, camera = pv.MultiBlock([pv.Box(), pv.Box()]), camera_on(BOX)
+    with pytest.raises(TypeError, match="meshes: expected a MultiBlock"):
+        module.captions(pv.Box(), camera, HEIGHT, size=SIZE)
+    with pytest.raises(ValueError, match="ends: expected two words for each of the 2 blocks"):
+        module.captions(pair, camera, HEIGHT, size=SIZE, ends=[("a", "p")])
+
+
+def test_numbers_along_z_are_not_beside_those_of_another_axis():
+    # From the left and above: the edge of y goes on in that of z at the left.
+    bounds = (-1.3, 1.3, -1.3, 1.3, 0, 0.9)
+    _, words, camera = made((-0.35, -1, 0.75), bounds=bounds)
+    eye = module._Eye(camera, HEIGHT)
+    names = {text: eye.seen(place) for text, place, _ in words if text in "xyz"}
+    assert names["z"][0] > names["x"][0] > names["y"][0]

@@ -59,6 +59,10 @@ def test_a_hemisphere_of_the_cortex_has_named_sides_and_a_unit():
     drawing = vizlight.look(mesh).drawing
     blocks = drawing.layers[0].mesh.arguments[0].run()
     assert blocks.keys() == ["Right hemisphere, lateral", "Right hemisphere, medial"]
-    assert drawing.keys[0]["title"] == "thickness (mm)"
-    # The lateral side is the right one, toward x.
+    assert drawing.keys[0]["title"] == "cortical thickness (mm)"
+    # Its front is at the right of the lateral side, which is the right one, toward x.
+    captions = drawing.layers[-1].mesh
+    assert captions.path == "render.captions"
+    assert captions.keywords["ends"] == [["posterior", "anterior"], ["anterior", "posterior"]]
+    assert captions.keywords["unit"] == "mm"
     assert drawing.layers[0].mesh.arguments[0].arguments[1] == (1.0, 0.0, 0.0)

@@ -49,9 +49,11 @@ def test_strokes_are_equally_long_and_thin_where_they_come_from(arrow):
             assert widths[[0, -1]] == pytest.approx([0.3, 0.3], abs=1e-6)
             assert widths.max() == pytest.approx(1.0, abs=0.05)
             continue
-        # A shaft that grows, and a head, which is a triangle of one length.
+        # A shaft that grows, and a head of one length, which ends as wide as its tip.
         head = run >= run[-1] - arrow.head - 1e-6
-        np.testing.assert_allclose(widths[head], (run[-1] - run[head]) / arrow.head, atol=2e-5)
+        np.testing.assert_allclose(
+            widths[head], np.maximum((run[-1] - run[head]) / arrow.head, arrow.tip), atol=2e-5
+        )
         assert np.all(np.diff(widths[~head]) > 0)
         assert widths[~head][[0, -1]] == pytest.approx(arrow[:2], abs=0.005)
 

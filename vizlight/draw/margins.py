@@ -323,13 +323,12 @@ class MarginKey:
         """
         self._half = self.size * short / 2
         columns = max(int(width / (LETTER * letters)), 6)
-        name = self._title.partition(";")[0]
+        name, _, more = self._title.partition(";")
         if kind := LENGTHS.match(name):
             name = kind[1]
-        if alone and len(name) > max(columns, LONGEST):
-            head = self._unit
-        else:
-            head = f"{name} ({self._unit})" * bool(name)
+        # A title of one part stands above the data, and is not said twice.
+        is_said = alone and (not more or not self.is_bar or len(name) > max(columns, LONGEST))
+        head = self._unit if is_said else f"{name} ({self._unit})" * bool(name)
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
