@@ -226,8 +226,8 @@ def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bo
     wide = degrees / math.cos(math.radians(min(least, 80.0)))
     if not is_around:
         # Their words stand at the lower side, which may be shorter.
-        ends = sheet.plane.forward(np.array([[west, south], [east, south]]) + [[0.1], [-0.1]])
-        long = float(np.linalg.norm(ends[1] - ends[0])) / georeference.METRES
+        corners = sheet.plane.forward(np.array([[west + 0.1, south], [east - 0.1, south]]))
+        long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
         wide = max(wide, 0.8 * degrees * (east - west) / long)
     meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)
     parallels = [tick for tick in ticks(south, north, degrees, "NS") if abs(tick[0]) < 90]
