@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
-from vizlight.mesh import meaning, projections
+from vizlight.mesh import dates, meaning, projections
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -227,11 +227,31 @@ def test_times_that_xarray_has_decoded():
     assert np.diff(mesh.field_data["TimeSteps"]).tolist() == [2]
 
 
+def test_dates_of_datasets_in_memory_need_no_extra(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cftime", None)
+    time = np.array(["1999-12-31T18:00", "2000-01-03"], "datetime64[ns]")
+    data = {"t": (("time", "y", "x"), np.arange(2.0).reshape(2, 1, 1) * np.ones((2, 4, 5)))}
+    mesh = grid(data, axes_of(time=(time,)), time="2000-01-03")
+    assert mesh["t"][0] == 1
+    assert dates.date(mesh.field_data["TimeValue"][0], meaning.of(mesh).time) == "2000-01-03 00:00"
+
+
+def test_dates_of_wrf_are_texts(tmp_path):
+    data = xr.Dataset({"t": (("Time", "y", "x"), np.zeros((2, 4, 5)))})
+    data["Times"] = ("Time", np.array(["2005-09-21_00:00:00", "2005-09-21_03:00:00"], "S19"))
+    data["XTIME"] = ("Time", [0.0, 180.0])
+    data.to_netcdf(tmp_path / "a.nc")
+    for source in (data, tmp_path / "a.nc"):
+        mesh = vizlight.read(source, time="2005-09-21 03")
+        assert dates.date(mesh.field_data["TimeValue"][0], meaning.of(mesh).time).endswith("03:00")
+
+
 def test_dates_of_steps_and_of_an_only_time():
+    pytest.importorskip("cftime")
     clock = {"units": "days since 2001-01-01", "calendar": "360_day"}
     data = {"t": (("time", "y", "x"), np.arange(2.0).reshape(2, 1, 1) * np.ones((2, 4, 5)))}
     coords = axes_of(time=([0.0, 59.0], clock))
-    assert meaning.date(59, meaning.of(grid(data, coords)).time) == "2001-02-30 00:00"
+    assert dates.date(59, meaning.of(grid(data, coords)).time) == "2001-02-30 00:00"
     assert grid(data, coords, time="2001-01-01")["t"][0] == 0
     with pytest.raises(ValueError, match="expected a time of a step"):
         grid(data, coords, time="2001-01-02")

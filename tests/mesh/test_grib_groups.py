@@ -5,7 +5,7 @@ import pytest
 
 import vizlight
 from vizlight import files
-from vizlight.mesh import meaning
+from vizlight.mesh import dates, meaning
 
 pytest.importorskip("cfgrib")
 eccodes = pytest.importorskip("eccodes")
@@ -60,3 +60,33 @@ def test_a_group_is_chosen_by_its_level(tmp_path, height, names, size):
 def test_no_group_has_a_level(tmp_path):
     with pytest.raises(files.FileError, match="no group of variables has"):
         vizlight.read(written(tmp_path / "a.grib", 2.0), at={"heightAboveGround": 80})
+
+
+def test_winds_along_a_polar_grid_are_turned_in_a_file_of_several_groups(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    path = tmp_path / "a.grib"
+    with path.open("wb") as file:
+        for level, name in ((2, "2t"), (10, "10u"), (10, "10v")):
+            message = eccodes.codes_grib_new_from_samples("polar_stereographic_sfc_grib1")
+            keys = {"shortName": name, "level": level, "uvRelativeToGrid": 1}
+            keys |= {"typeOfLevel": "heightAboveGround", "DxInMetres": 2e5, "DyInMetres": 2e5}
+            for key, value in keys.items():
+                eccodes.codes_set(message, key, value)
+            count = eccodes.codes_get(message, "numberOfPoints")
+            eccodes.codes_set_values(message, np.full(count, 5.0 if name == "10u" else 0.0))
+            eccodes.codes_write(message, file)
+            eccodes.codes_release(message)
+    mesh = vizlight.read(path)
+    options = {"filter_by_keys": {"shortName": "10u"}, "indexpath": ""}
+    data = xarray.open_dataset(path, engine="cfgrib", backend_kwargs=options)
+    lon, lat = data["longitude"].values, data["latitude"].values
+    places = np.asarray(mesh.points)[: lon.size]
+    assert np.abs(places[:, 1] - lat.ravel()).max() < 1e-4
+    assert dates.date(mesh.field_data["TimeValue"][0], meaning.of(mesh).time)
+    # A wind along the rows blows from each point to the next of its row.
+    rows = np.asarray(mesh["u10,v10"])[: lon.size].reshape(*lon.shape, 3)[5, 5]
+    east = np.radians((lon[5, 6] - lon[5, 4] + 180) % 360 - 180) * np.cos(np.radians(lat[5, 5]))
+    north = np.radians(lat[5, 6] - lat[5, 4])
+    np.testing.assert_allclose(
+        rows[:2], 5 * np.array([east, north]) / np.hypot(east, north), atol=0.02
+    )

@@ -8,11 +8,13 @@ from vizlight.mesh import meaning
 from vizlight.mesh.meaning import Meaning
 
 
-def mesh_with(*names, **standard):
+def mesh_with(*names, units="", **standard):
     mesh = pv.ImageData(dimensions=(2, 2, 1))
     for name in (*names, *standard):
         mesh[name] = np.ones(4)
     said = Meaning()
+    for name in names:
+        said.add_array(name, {"units": units})
     for name, value in standard.items():
         said.add_array(name, {"standard_name": value})
     meaning.attach(mesh, said)
@@ -31,6 +33,10 @@ def mesh_with(*names, **standard):
         ("east_wind", "north_wind"), ("U10M", "V10M"), ("u_rho", "v_rho"), ("ux", "uy"),
         ("10u", "10v"), ("tauu", "tauv"), ("siu", "siv"), ("xwind", "ywind"), ("uEast", "vNorth"),
         ("u_eastward", "v_northward"), ("ewind", "nwind"), ("vel_e", "vel_n"), ("iews", "inss"),
+        ("um", "vm"), ("we", "wn"), ("ve", "vn", "vu"), ("var165", "var166"), ("windu", "windv"),
+        ("E_wind", "N_wind"), ("utotal", "vtotal"), ("sustr", "svstr"), ("u@10m", "v@10m"),
+        ("ugrd10m", "vgrd10m"), ("U_RHO", "V_RHO"), ("ssu", "ssv"), ("curu", "curv"),
+        ("u-component_of_wind_isobaric", "v-component_of_wind_isobaric"), ("xcomp", "ycomp"),
     ],
 )  # fmt: skip
 def test_components_by_usual_names(group):
@@ -38,17 +44,33 @@ def test_components_by_usual_names(group):
 
 
 def test_any_word_after_the_letter_needs_a_unit():
-    mesh = mesh_with("urot", "vrot", "uu", "uv", "vv")
-    assert meaning.components(mesh) == []
-    said = Meaning()
-    for name in ("urot", "vrot", "uu", "uv", "vv"):
-        said.add_array(name, {"units": "cm/s"})
-    meaning.attach(mesh, said)
+    names = ("urot", "vrot", "uu", "uv", "vv")
+    assert meaning.components(mesh_with(*names)) == []
+    mesh = mesh_with(*names, units="cm2/s2")
     assert meaning.components(mesh) == [("urot", "vrot")]
 
 
+@pytest.mark.parametrize("unit", ["m/s", "m s**-1", "cm.s-1", "knots", "km/h", "mm yr-1", "N m-2"])
+@pytest.mark.parametrize("group", [("uu", "vv"), ("qux", "qvx"), ("viwve", "viwvn")])
+def test_a_letter_anywhere_tells_the_components_of_a_motion(group, unit):
+    assert meaning.components(mesh_with(*group, units=unit)) == [group]
+    assert meaning.components(mesh_with(*group, units="K")) == []
+
+
 @pytest.mark.parametrize(
-    "names", [("u",), ("u", "V"), ("u10", "v100"), ("x", "y"), ("uu", "uv", "vv"), ("lat", "lon")]
+    "names",
+    [
+        ("u",),
+        ("u", "V"),
+        ("u10", "v100"),
+        ("x", "y"),
+        ("uu", "uv", "vv"),
+        ("lat", "lon"),
+        ("mask_u", "mask_v"),
+        ("lon_u", "lon_v"),
+        ("max", "may"),
+        ("MAPFAC_UX", "MAPFAC_UY"),
+    ],
 )
 def test_half_a_pair_is_no_vector(names):
     assert meaning.components(mesh_with(*names)) == []
@@ -136,29 +158,6 @@ def test_a_mesh_without_meaning():
     assert meaning.line(mesh) == ""
     mesh.field_data["meaning"] = ["42"]
     assert meaning.of(mesh) == Meaning()
-
-
-@pytest.mark.parametrize(
-    ("time", "unit", "expected"),
-    [
-        (0, "hours since 1900-01-01", "1900-01-01 00:00"),
-        (1054152, "hours since 1900-1-1 00:00:0.0", "2020-04-04 00:00"),
-        (1054152, "hours since 1900-01-01 00:00:00.0", "2020-04-04 00:00"),
-        (1.5e9, "seconds since 1970-1-1T0:00:00Z", "2017-07-14 02:40"),
-        (0.5, "days since 2000-02-28 18:30", "2000-02-29 06:30"),
-        (1 / 3, "days since 0001-01-01", "0001-01-01 08:00"),
-        (3, "months since 2000-01-01", ""),
-        (60, "days since 2000-01-01, noleap calendar", "2000-03-02 00:00"),
-        (59, "days since 2001-01-01, 360_day calendar", "2001-02-30 00:00"),
-        (20010215.5, "day as %Y%m%d.%f", "2001-02-15 12:00"),
-        (3, "days since 2000-01-01, lunar calendar", ""),
-        (1e12, "days since 2000-01-01", ""),
-        (3, "", ""),
-    ],
-)
-def test_a_time_is_a_date_where_its_unit_names_a_day(time, unit, expected):
-    pytest.importorskip("cftime")
-    assert meaning.date(time, unit) == expected
 
 
 @pytest.mark.parametrize(

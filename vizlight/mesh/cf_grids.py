@@ -14,6 +14,7 @@ import pyvista as pv
 
 from vizlight.geometry.relief import height_field
 from vizlight.mesh import (
+    dates,
     georeference,
     grib_groups,
     listed,
@@ -108,6 +109,8 @@ _LISTS = (
 #: Names that programs give to axes without one, and the longest of such axes that can be kinds.
 _NAMELESS = r"(ncl|dim_?|phony_dim_|fakeDim)\d+"
 _MOST_COLUMNS = 32
+#: Dates in texts.
+_DATE = r"\d{4}-\d\d-\d\d(T\d\d:\d\d(:\d\d)?)?"
 #: Arrays of a mesh for each dimension of a list, and the function that returns their rows.
 _RowsOf: TypeAlias = "Mapping[str, tuple[pv.DataSetAttributes, Callable[[Raw], Raw]]]"
 
@@ -163,9 +166,11 @@ def read(
     with warnings.catch_warnings():
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
+        warnings.filterwarnings("ignore", ".* has non-conforming '_FillValue'")
         # A store of Zarr without a summary of its metadata takes longer to open, no more.
         warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
         if path.suffix.lower() in GRIB:
+            warnings.filterwarnings("ignore", category=FutureWarning, module="cfgrib")
             group, along, note = grib_groups.opened(path, at or {})
             with group as file:
                 reader = _Reader(file, [note] if note else [])
@@ -305,7 +310,8 @@ class _Reader:
             and values.dtype.kind in "iuf"
             and _letter_of(str(name), values.attrs)[0]
         ]
-        return others[0] if len(others) == 1 else None
+        dated = [one for one in others if " since " in str(one.attrs.get("units"))]
+        return (dated or others)[0] if dated or len(others) == 1 else None
 
     def _letter(self, dim: str) -> tuple[str, str]:
         """Return x, y, z or t for a dimension, or an empty text, and what says so."""
@@ -564,6 +570,8 @@ class _Reader:
         calendar = "" if along is None else str(along.attrs.get("calendar", ""))
         if calendar not in ("", "standard", "gregorian"):
             self.said.time += f", {calendar} calendar"
+        if self.said.time and (start := self._start(self.said.time)):
+            self.said.time += f" since {start}"
         step = self._dated(ticking, time)
         if clock is not None:
             single[clock] = step
@@ -581,11 +589,22 @@ class _Reader:
         # A forecast has the time of its start too.
         return moments[-1] if moments else None
 
+    def _start(self, unit: str) -> str:
+        """Return the date of the start of a forecast whose steps are in a unit without one."""
+        starts = [
+            one
+            for one in self.file.variables.values()
+            if one.ndim == 0 and one.attrs.get("standard_name") == "forecast_reference_time"
+        ]
+        if dates.seconds(unit) is None or " since " in unit or not starts:
+            return ""
+        return dates.date(float(starts[0].values), str(starts[0].attrs.get("units", "")))
+
     def _dated(self, ticking: list[float], time: object) -> int:
         """Return the index of a step, by its time or by its date."""
         if isinstance(time, str) and re.match(r"\d{4}-\d", time):
-            dates = [meaning.date(tick, self.said.time) for tick in ticking]
-            steps = [i for i, date in enumerate(dates) if date.startswith(time.replace("T", " "))]
+            written = [dates.date(tick, self.said.time) for tick in ticking]
+            steps = [i for i, date in enumerate(written) if date.startswith(time.replace("T", " "))]
             if steps:
                 return steps[0]
         return series.chosen(ticking, time)
@@ -807,8 +826,10 @@ class _Reader:
             along = meaning.along_grid(self.said.arrays.get(group[0], {}))
             # So are all of WRF, of which only some say it.
             along = True if along is None and "MAP_PROJ" in self.file.attrs else along
+            # cfgrib names all winds eastward and northward; the file tells whether they are.
+            along = self.file[group[0]].attrs.get("GRIB_uvRelativeToGrid", along)
             # On a map in degrees vectors point east and north, else along the axes.
-            if along is None or along != mapped or group[0] not in grid.point_data:
+            if along is None or bool(along) != mapped or group[0] not in grid.point_data:
                 continue
             sign = 1.0 if mapped else -1.0
             cos, sin = np.cos(turn), sign * np.sin(turn)
@@ -965,7 +986,8 @@ def _with_numbers(data: Foreign) -> Foreign:
     import xarray
 
     numbers = {}
-    for name, one in data.variables.items():
+    for name, variable in data.variables.items():
+        one = _with_dates(variable)
         if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,)):
             # Attributes that say the unit of a date would be overwritten, which xarray refuses.
             kept = {key: one.attrs[key] for key in one.attrs if key not in ("units", "calendar")}
@@ -979,6 +1001,16 @@ def _with_numbers(data: Foreign) -> Foreign:
     places = {name: one for name, one in numbers.items() if name in data.coords}
     values = {name: one for name, one in numbers.items() if name not in places}
     return data.assign_coords(places).assign(values) if numbers else data
+
+
+def _with_dates(variable: Foreign) -> Foreign:
+    """Return a variable of texts that are all dates, as those of WRF, with dates for them."""
+    if variable.dtype.kind not in "SU" or variable.ndim > 1:
+        return variable
+    texts = np.char.replace(np.asarray(variable.values, "U"), "_", "T")
+    if not texts.size or not all(re.fullmatch(_DATE, text) for text in texts.flat):
+        return variable
+    return variable.copy(data=texts.astype("datetime64[ns]"))
 
 
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:

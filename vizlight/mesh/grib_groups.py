@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
+import hashlib
 import importlib
+import shutil
+import tempfile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -12,6 +17,24 @@ if TYPE_CHECKING:
     from vizlight._types import Foreign, Keywords
 
 __all__ = ["opened"]
+
+
+@functools.cache
+def _folder() -> str:
+    """Return the folder of the indices that cfgrib makes, which the end of the process removes."""
+    folder = tempfile.mkdtemp(prefix="vizlight-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _options(path: Path, errors: str) -> Keywords:
+    """Return options of cfgrib, which makes an index of its own for each way to treat errors.
+
+    Beside the file an index of another program would be read, fit for none of its variables, and
+    made anew for each.
+    """
+    name = hashlib.sha256(f"{path.resolve()} {errors}".encode()).hexdigest()[:16]
+    return {"errors": errors, "indexpath": f"{_folder()}/{name}.{{short_hash}}"}
 
 
 def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:
@@ -44,7 +67,7 @@ def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, obj
     for errors in ("raise", "warn"):
         options: Keywords = {"engine": "cfgrib", "decode_times": False, "decode_coords": "all"}
         try:
-            whole = xarray.open_dataset(path, backend_kwargs={"errors": errors}, **options)
+            whole = xarray.open_dataset(path, backend_kwargs=_options(path, errors), **options)
         except Exception as error:
             if type(error).__name__ == "DatasetBuildError":
                 return _first_group(path, at)
@@ -60,7 +83,9 @@ def _first_group(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[st
     # No extra has it: who reads GRIB installs it, and xarray finds it.
     cfgrib: Foreign = importlib.import_module("cfgrib")
     try:
-        every: list[Foreign] = cfgrib.open_datasets(str(path), decode_times=False)
+        every: list[Foreign] = cfgrib.open_datasets(
+            str(path), _options(path, "raise"), decode_times=False
+        )
     except KeyError as error:
         raise ValueError(
             f"ecCodes does not know its grid: {error} is missing, as where the file gives only the "
@@ -71,10 +96,10 @@ def _first_group(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[st
     if not groups:
         there = "; ".join(map(_words, every))
         raise ValueError(f"at: no group of variables has {dict(at)}, but there are {there}")
-    whole = groups[0].reset_coords(drop=True)
+    whole = _without_levels(groups[0], dates=True)
     others = []
     for group in groups[1:]:
-        more = group.reset_coords(drop=True)
+        more = _without_levels(group)
         renamed = {
             name: f"{name}_{_level(group)}".replace(" ", "")
             for name in more.data_vars
@@ -102,6 +127,13 @@ def _fits(group: Foreign, at: Mapping[str, object]) -> bool:
         if coordinate != value and f"{coordinate:g}" != str(value):
             return False
     return True
+
+
+def _without_levels(group: Foreign, *, dates: bool = False) -> Foreign:
+    """Return a group without its coordinates of one value, such as a level, or all but dates."""
+    single = [name for name, values in group.coords.items() if values.ndim == 0]
+    kept = [name for name in single if " since " in str(group[name].attrs.get("units"))]
+    return group.drop_vars([*{*single} - {*(kept if dates else ())}])
 
 
 def _level(group: Foreign) -> str:

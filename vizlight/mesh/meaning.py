@@ -7,13 +7,12 @@ import math
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
-from datetime import timedelta
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.mesh import records
+from vizlight.mesh import dates, records
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
-    "only_vectors", "say", "seconds", "usual_unit", "vectors", "ways", "with_named",
+    "only_vectors", "say", "usual_unit", "vectors", "ways", "with_named",
     "without_missing",
 ]  # fmt: skip
 
@@ -145,8 +144,8 @@ def line(mesh: pv.DataSet) -> str:
 
 #: Parts of standard names by which components of one vector differ.
 _STANDARD = (
-    ("grid_eastward", "grid_northward", "grid_upward"),
-    ("eastward", "northward", "upward"),
+    ("grid_east", "grid_north", "grid_up"),
+    ("east", "north", "up"),
     ("zonal", "meridional"),
     ("x_", "y_", "z_"),
     ("u_", "v_", "w_"),
@@ -159,28 +158,38 @@ _USUAL = (
     # Velocity_x, vx, B_z, VelX
     (r"(.+)([xyz])()", "x y z"),
     # x_wind, xwind
-    (r"()([xyz])([_\-. ].+|wind|vel\w*|curr\w*)", "x y z"),
-    # 10u, tauu, siu, ssu, sivelu
-    (r"(\d+|tau|si|ss|sivel)([uv])()", "u v"),
-    # u, u10, uo, uas, UGRD_10m, water_u, 10m_u_component_of_wind
+    (r"()([xyz])([_\-. ].+|wind|vel\w*|curr\w*|comp\w*)", "x y z"),
+    # 10u, tauu, siu, ssu, sivelu, windu, tauuo
+    (r"(\d+|.*tau|si|ss|sivel|w(?:i?nd|spd)|vel|curr?|current|mean)([uv])(o?)", "u v"),
+    # u, u10, um, uo, uas, UGRD_10m, water_u, 10m_u_component_of_wind
     (
-        r"(|.*[_\-. ])([uvw])(|[\d_\-. ].*|[oasgbte]|as|os|ice|bar|surf|sfc"
-        r"|(?:st|curr|vel|comp|wi?nd|grd|g[eo]o|gos|flx|tau).*)",
+        r"(|.*[_\-. ])([uvw])(|[\d_\-. @(].*|[oasgbtem]|as|os|si|ice|bar|surf|sfc"
+        r"|(?:st|cur|vel|comp|wi?nd|grd|g[eo]o|gos|gust|flx|tau|tot|tide|true|mean|av|sp(?:ee)?d).*)",
         "u v w",
     ),
+    # sustr and svstr of ROMS
+    (r"([sb])([uv])(str)", "u v"),
     # NEMO's vozocrtx and vomecrty
     (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
     (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
     # uEast and v_northward
     (r"()[uv]_?(east|north)(.*)", "east north"),
     (r"(.*)(east|north)(.*)", "east north"),
-    # ewind, vel_e
-    (r"()([en])(wind|vel\w*|curr\w*)", "e n"),
-    (r"((?:.*_)?(?:wind|vel\w*|curr\w*)_)([en])()", "e n"),
+    # ewind, E_wind, vel_e, windE, ve
+    (r"()([enu])(_?(?:wind|vel\w*|curr\w*))", "e n u"),
+    (r"((?:.*_)?(?:[vw]|wi?nd|vel\w*|curr\w*)_?)([enu])()", "e n u"),
     # ewss and inss, stresses of ECMWF
     (r"(i?)(ew|ns)(ss?)", "ew ns"),
+    # Numbers of GRIB's tables, which cdo writes where it has no name: var165 and var166
+    *((rf"(var|param|code)({n}|{n + 1})()", f"{n} {n + 1}") for n in (131, 165, 180, 229, 246)),
     (_ANY, "u v w"),
 )
+#: Names of places and of sizes of cells, which end as components do.
+_NO_COMPONENT = (
+    r"ma[xy]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
+)
+#: Letters of axes that stand anywhere in names, if their unit is one of motion or of stress.
+_LETTERS = ("u v w", "x y z", "e n u")
 
 
 def components(mesh: pv.DataSet, /) -> list[tuple[str, ...]]:
@@ -240,11 +249,15 @@ def _by_standard(
 def _described(attributes: Mapping[str, str]) -> str:
     """Return the standard name of an array, else its long name in the form of one."""
     text = attributes.get("standard_name") or attributes.get("long_name", "")
+    if "coordinate" in text:
+        return ""
     return re.sub(r"[^a-z0-9]+", "_", text.lower())
 
 
 def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterator[tuple[str, ...]]:
     """Yield groups of names that differ by the letter of their axis alone."""
+    units = {name: table.get(name, {}).get("units", "") for name in names}
+    names = [name for name in names if not re.fullmatch(_NO_COMPONENT, name, re.IGNORECASE)]
     for pattern, parts in _USUAL:
         groups: dict[tuple[str, ...], dict[str, str]] = {}
         for name in names:
@@ -252,13 +265,37 @@ def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterato
             if match is not None:
                 head, part, tail = match.groups()
                 # The case of the letter counts: "U" and "v" are no pair.
-                key = (head, tail, str(part[0].isupper()), table.get(name, {}).get("units", ""))
+                key = (head, tail, str(part[0].isupper()), units[name])
                 if key[-1] or pattern != _ANY:
                     groups.setdefault(key, {})[part.lower()] = name
         for group in groups.values():
             every = [group[word] for word in parts.split() if word in group]
             if set(parts.split()[:2]) <= set(group):
                 yield tuple(every)
+    yield from _by_letters([name for name in names if _is_of_motion(units[name])], units)
+
+
+def _by_letters(names: Sequence[str], units: Mapping[str, str]) -> Iterator[tuple[str, ...]]:
+    """Yield groups of names of one unit that differ by a letter, wherever it stands in them."""
+    for name in names:
+        for letters in (*_LETTERS, *map(str.upper, _LETTERS)):
+            first, *others = letters.split()
+            places = [found.span() for found in re.finditer(first, name)]
+            groups = [[name[:i] + letter + name[j:] for letter in others] for i, j in places]
+            # Of uu and vv every letter differs; beside them uv makes all three products.
+            if len(places) > 1:
+                groups.append([name.replace(first, letter) for letter in others])
+            there = [group for group in groups if units.get(group[0]) == units[name]]
+            if len(there) == 1:
+                yield (name, *(one for one in there[0] if one in names))
+
+
+def _is_of_motion(unit: str) -> bool:
+    """Return whether a unit is that of a velocity or of a stress."""
+    parts = re.fullmatch(r"(\w+?)(?: */ *|[ .*]+)([a-z]+?)(?:(?:\^|\*\*)?-1)?", unit, re.IGNORECASE)
+    if parts is not None and metres(parts[1]) is not None:
+        return dates.seconds(parts[2]) is not None
+    return re.fullmatch(r"kn|kts?|knots?|ms-1|pa|n.*m.*2", unit, re.IGNORECASE) is not None
 
 
 def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
@@ -425,8 +462,6 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     return 1.0, given
 
 
-#: Unit of times that are dates themselves, such as 20010215.5.
-_ABSOLUTE = "day as %Y%m%d"
 #: Names of degrees Celsius, in lower case and in the singular.
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
@@ -451,47 +486,6 @@ def written(unit: str) -> str:
     if len(known) < len(factors) or not above or len(below) > 1:
         return unit
     return " ".join(above) + "".join(f"/{name}" for name in below)
-
-
-#: Seconds of the units of times, by their first letters.
-_SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
-
-
-def seconds(unit: str) -> float:
-    """Return the length of a unit of time in seconds; 1 for none.
-
-    Parameters
-    ----------
-    unit : str
-        Name of the unit, such as "hours since 1900-01-01".
-    """
-    name = unit.strip().lower()
-    return next((size for word, size in _SECONDS.items() if name.startswith(word)), 1.0)
-
-
-def date(time: float, unit: str) -> str:
-    """Return the date of a time in words, empty where its unit names no day, or cftime is missing.
-
-    Parameters
-    ----------
-    time : float
-        Time.
-    unit : str
-        Its unit and calendar, such as "hours since 1900-01-01 06:00, noleap calendar".
-    """
-    text, _, calendar = unit.strip().partition(", ")
-    if text.startswith(_ABSOLUTE):
-        digits = f"{int(time):08}"
-        text, time = f"days since {digits[:4]}-{digits[4:6]}-{digits[6:]}", time % 1
-    try:
-        import cftime
-
-        when = cftime.num2date(time, text, calendar.removesuffix(" calendar") or "standard")
-        # To the nearest minute: a third of a day has no end in binary digits.
-        when += timedelta(seconds=30)
-    except (ImportError, ValueError, OverflowError):
-        return ""
-    return f"{when.year:04}-{when.month:02}-{when.day:02} {when.hour:02}:{when.minute:02}"
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
 from vizlight.geometry.lines.simplices import Columns
-from vizlight.mesh import georeference, meaning, polylines, records
+from vizlight.mesh import dates, georeference, meaning, polylines, records
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Foreign
@@ -79,7 +79,8 @@ class Carrier:
     def __init__(self, mesh: pv.DataSet) -> None:
         self._mesh = mesh.copy(deep=False)
         # Of a map vectors are metres a second, and times are in the unit of its file.
-        self._seconds = meaning.seconds(meaning.of(mesh).time) if georeference.is_map(mesh) else 1.0
+        size = dates.seconds(meaning.of(mesh).time) if georeference.is_map(mesh) else None
+        self._seconds = 1.0 if size is None else size
         # The probe interpolates every array of its source, and all but the vectors in vain.
         self._mesh.clear_point_data()
         self._mesh.clear_cell_data()

@@ -11,7 +11,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
-from vizlight.mesh import blocks, meaning
+from vizlight.mesh import blocks, dates, meaning
 from vizlight.vtk.arrays import vectors_of
 
 if TYPE_CHECKING:
@@ -262,7 +262,7 @@ def note(mesh: pv.DataSet) -> str:
     times = of(mesh)
     if len(times) < 2:
         return ""
-    when = meaning.date(times[-1], meaning.of(mesh).time)
+    when = dates.date(times[-1], meaning.of(mesh).time)
     last = f"time {times[-1]:g}{f' ({when})' * bool(when)}, the last of {len(times)} steps"
     return f"{last}; --time takes another, --times all of them one by one"
 

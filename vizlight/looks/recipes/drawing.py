@@ -24,7 +24,7 @@ from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
-from vizlight.mesh import brains, globes, meaning, series
+from vizlight.mesh import brains, dates, globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -498,7 +498,7 @@ def titled(mesh: pv.DataSet, name: str) -> str:
         title = _in_common(mesh, name.split(",")) or name
     if series.TIME in mesh.field_data:
         time = float(np.ravel(mesh.field_data[series.TIME])[0])
-        date = meaning.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
+        date = dates.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
         if not date and len(series.of(mesh)) > 1:
             date = f"t = {time:g}"
         title += f", {date}" * bool(date)
