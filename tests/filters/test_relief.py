@@ -13,6 +13,7 @@ import vizlight
 from studies.relief import hills
 from vizlight import Light, Material, Scene, relief_day, relief_shadow
 from vizlight.filters import relight
+from vizlight.filters.relief_shadow import Shadows
 from vizlight.geometry import relief, sun
 from vizlight.geometry.relief import height_field
 
@@ -417,3 +418,25 @@ def test_a_plane_is_lit_alike_at_its_border_and_beside_a_hole(hole):
             warnings.simplefilter("ignore")
             t = relief_shadow(grid, sun=(azimuth, 40))["t"]
         np.testing.assert_allclose(t[there], max(cosine, 0), atol=0.01 if cosine > 0 else 0.05)
+
+
+def test_a_shadow_is_cast_once_for_a_field_and_its_picture(monkeypatch):
+    field = pv.ImageData(dimensions=(12, 12, 1))
+    field["height"] = 2 * np.sin(np.arange(144.0))
+    shadowed = relief_shadow(field, sun=(315, 40), lit=True)
+    cast, ratios = [], Shadows.ratios
+    monkeypatch.setattr(
+        Shadows, "ratios", lambda *args, **options: cast.append(1) or ratios(*args, **options)
+    )
+    (source,), _ = relight.from_record(shadowed)
+    assert not cast
+    np.testing.assert_array_equal(source.inputs.shadow[:, 0], shadowed["t"])
+    # Another light, or an array of another call, does not fit.
+    other = Scene(lights=Light(direction=(1, 0, 1)))
+    relight.from_record(shadowed, other)
+    relief_shadow(shadowed, other, inplace=True, elevation="height")
+    relight.from_record(shadowed)
+    assert len(cast) == 3
+    shadowed["height"][50:90] += 3
+    with pytest.raises(ValueError, match="matches its record"):
+        relight.from_record(shadowed)

@@ -15,11 +15,11 @@ from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
 from vizlight.mesh import blocks, records
-from vizlight.mesh.casters import CasterOptions, caster
+from vizlight.mesh.casters import CasterOptions, FieldCaster, caster
 from vizlight.mesh.height_grids import Grid, elevation_name
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
-from vizlight.scene import Light
+from vizlight.scene import Light, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
 from vizlight.shading.inputs import ShadingInputs
@@ -29,6 +29,7 @@ from vizlight.shading.results import (
     PARTS,
     VALID,
     arrays_of,
+    digest,
     of_filter,
     of_light,
 )
@@ -42,8 +43,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Keywords, Raw
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
-    from vizlight.mesh.casters import FieldCaster, SolidCaster
-    from vizlight.scene import Scene
+    from vizlight.mesh.casters import SolidCaster
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import FeatureAngle
 
@@ -143,6 +143,26 @@ class Shadows(NamedTuple):
         effort = shadow.effort * max(map(len, discs))
         note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
         return t
+
+    @property
+    def ground(self) -> str:
+        """Digest of the nodes of a height field, empty for other surfaces."""
+        is_field = isinstance(self.caster, FieldCaster) and isinstance(self.surface, Grid)
+        return digest(self.caster.points) if is_field else ""
+
+    def recorded(self, options: ReliefOptions, scene: Scene) -> Array | None:
+        """Return t of each point from its array, None where that is of other ground or light.
+
+        Of several lights the array has the mean alone.
+        """
+        record, ground = records.read(self.surface, options.name) or {}, self.ground
+        if len(self.lights) != 1 or not ground or record.get("ground") != ground:
+            return None
+        cast_by = ReliefOptions.of(record["options"] | {"lit": True, "components": False})
+        same = cast_by == options and Scene.from_dict(record["scene"]) == scene
+        if not same or options.name not in records.made(self.surface, options.name):
+            return None
+        return np.asarray(self.surface.point_data[options.name])[:, np.newaxis]
 
     def inputs(self, t: Array) -> ShadingInputs:
         """Return what the engine lights: it multiplies each light by its own column of t."""
@@ -301,7 +321,7 @@ def relief_shadow(
     missing = int(np.count_nonzero(~shadow.valid))
     record = of_filter(
         "relief_shadow", scene, options, precision="float64", points=len(t), invalid=missing,
-        depth=shadow.depth,
+        depth=shadow.depth, ground=cast.ground,
     )  # fmt: skip
     shading = None
     if options.lit:

@@ -272,7 +272,7 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
 
 
 def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
-    """Return the source of light with a cos-theta shadow, which is cast again."""
+    """Return the source of light with a cos-theta shadow, cast again unless its array suffices."""
     from vizlight.filters.relief_shadow import ReliefOptions, Shadows
 
     relief_options = ReliefOptions.of(options | {"lit": True, "components": False})
@@ -281,7 +281,9 @@ def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
         warnings.simplefilter("ignore", UserWarning)
         surface = mesh if isinstance(mesh, pv.PolyData | Grid) else blocks.surface(mesh, "mesh")
         shadows = Shadows.of(surface, scene, relief_options)
-    t = shadows.ratios(relief_options, progress_bar=False)
+    t = shadows.recorded(relief_options, scene)
+    if t is None:
+        t = shadows.ratios(relief_options, progress_bar=False)
     return Source(mesh, shadows.inputs(t), ShadingOptions(), None)
 
 

@@ -76,10 +76,11 @@ class CurveSamples:
         self._seen = -1
         self._stale += int(np.count_nonzero(rows < self._whole))
 
-    def along_curve(self, curve: int) -> tuple[CellPlaces, Array]:
-        """Return the places of a curve's samples, and its directions at them."""
+    def along_curves(self, curves: list[int]) -> tuple[CellPlaces, Array]:
+        """Return the places of the samples of curves, and the directions at them."""
+        rows = np.flatnonzero(np.isin(self.curve[: self._size], curves))
         # Two samples per spacing are enough to look beside a curve.
-        rows = np.flatnonzero(self.curve[: self._size] == curve)[:: SAMPLES // 2]
+        rows = rows[np.argsort(self.curve[rows], kind="stable")][:: SAMPLES // 2]
         return CellPlaces(self.cell[rows], self.weights[rows]), self.along[rows]
 
     def near(
@@ -125,7 +126,7 @@ class CurveSamples:
 
 
 #: Largest number of curves that grow at the same time.
-CROWD = 64
+CROWD = 128
 #: Distances between seeds of the same moment, in spacings: at first, and at least.
 APART, NEAR = 8.0, 1.0
 #: Weight of the difference of normals in the distance of places on a surface, in spacings: two
@@ -201,6 +202,8 @@ class Growth:
         #: Of each end: step at which it came back beside its own curve, or -1; length at its last
         #: sample.
         self.returning, self.sampled = nowhere.cell, np.empty(0)
+        #: Curves that are kept and were not looked beside yet.
+        self.fresh: list[int] = []
         #: Places a spacing beside curves, from which others may start.
         self.beside = nowhere
 
@@ -344,30 +347,33 @@ class Growth:
             self.dropped.add(curve)
             self.samples.drop(curve)
         elif not self.last_gaps:
-            self._look_beside(curve)
+            self.fresh.append(curve)
 
-    def _look_beside(self, curve: int) -> None:
-        """Queue places a spacing beside a curve."""
-        places, along = self.samples.along_curve(curve)
+    def _look_beside(self) -> None:
+        """Queue places a spacing beside the curves that were kept since the last time."""
+        places, along = self.samples.along_curves(self.fresh)
+        self.fresh = []
         if self.flow.normals is not None:
             # On a surface the places beside a curve are to its left and right, across the normal.
             u: Array = np.cross(self.flow.mesh.interpolated(self.flow.normals, places), along)
-            sides = [u, -u]
+            sides = np.concatenate([u, -u])
         else:
             # In a volume: four directions around it, turned at random.
             u = np.cross(along, self.random.normal(size=along.shape))
             v: Array = np.cross(along, u)
-            sides = [u, -u, v, -v]
-        for side in sides:
-            size = np.linalg.norm(side, axis=1, keepdims=True)
-            step = self.spacing * side / np.where(size > 0, size, 1)
-            ends, inside = self.flow.mesh.walk(places, step)
-            # A step that ended at a boundary has not gone a whole spacing.
-            self.beside = self.beside.joined(ends[inside])
+            sides = np.concatenate([u, -u, v, -v])
+        size = np.linalg.norm(sides, axis=1, keepdims=True)
+        step = self.spacing * sides / np.where(size > 0, size, 1)
+        starts = places[np.arange(len(sides)) % len(along)]
+        ends, inside = self.flow.mesh.walk(starts, step)
+        # A step that ended at a boundary has not gone a whole spacing.
+        self.beside = self.beside.joined(ends[inside])
 
     def refill(self, pool: CellPlaces) -> CellPlaces:
         """Start new curves in free space; return the places of the pool still to be tried."""
         spacing = self.spacing
+        if not len(self.beside.cell) and self.fresh:
+            self._look_beside()
         while len(self.growing) <= CROWD // 2 and len(self.beside.cell):
             first, rest = self.beside[:QUEUE], self.beside[QUEUE:]
             # 0.95: rounding on the way beside a curve must not count as crowded.
@@ -380,11 +386,12 @@ class Growth:
         # Random places last: one that is free now may soon be beside a curve that still grows.
         if not self.growing:
             least = WIDE * spacing if self.last_gaps else spacing
-            pool = pool[self.distances(pool, least) >= least]
-            if len(pool.cell):
-                rest = pool[QUEUE:]
-                pool = pool[:QUEUE]
-                pool = pool[~self.start(pool)].joined(rest)
+            free = pool[:0]
+            while len(free.cell) < QUEUE and len(pool.cell):
+                first, pool = pool[:QUEUE], pool[QUEUE:]
+                free = free.joined(first[self.distances(first, least) >= least])
+            if len(free.cell):
+                pool = free[~self.start(free)].joined(pool)
         return pool
 
     def widest(self, places: CellPlaces) -> CellPlaces:

@@ -48,6 +48,8 @@ LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 3.5
+#: Step of lines in distances between strokes, and in cells where these are no smaller.
+STEP, FINEST = 0.1, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
@@ -395,7 +397,11 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
     spacing = float(f"{spacing:.3g}")
     keywords: Keywords = {"tangents": array.name, "spacing": spacing, "confined": True}
     keywords["min_length"] = float(f"{SHORTEST_ON_SURFACE * spacing:.3g}")
+    # Lines of eight strokes, many of which grow at once, and cost less than few long ones.
+    keywords["max_length"] = float(f"{4 * LONG * spacing:.3g}")
     keywords |= {"stroke_length": LONG * spacing, "feature_angle": "auto"}
+    if (step := _fine_step(surface, spacing)) > FINEST:
+        keywords["step"] = step
     triangles = Step("triangles", ".triangulate", mesh)
     strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)
     try:
@@ -404,3 +410,9 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
         # The light tells the direction by itself where no line can be laid.
         return None
     return strokes
+
+
+def _fine_step(surface: pv.DataSet, spacing: float) -> float:
+    """Return the step of lines, in cells, that is a small share of their distance."""
+    cell = np.sqrt(2 * surface.area / surface.n_cells)
+    return float(f"{STEP * spacing / cell:.1g}") if cell > 0 else FINEST
