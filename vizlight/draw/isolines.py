@@ -101,7 +101,7 @@ def isolines(
     ------
     TypeError, ValueError
         If the array is missing or has several components, a level is no finite number, the unit is
-        not positive, or the letters are lower than 1e-5 of the diagonal of the map.
+        not positive, or the letters are too low for a map of this size.
 
     Examples
     --------

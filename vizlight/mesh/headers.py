@@ -5,7 +5,10 @@ Each function takes an open file and returns the reason why it is refused, an em
 
 from __future__ import annotations
 
+import contextlib
 import math
+import mmap
+import os
 import re
 import struct
 import zlib
@@ -13,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
-__all__ = ["FORMATS", "size"]
+__all__ = ["FORMATS", "mapped", "places", "size"]
 
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
@@ -24,6 +27,21 @@ _BYTES = {
     "64": 8, "32": 4, "16": 2, "int8": 1, "idtype": 4, "char": 1, "short": 2, "long_long": 8,
     "long long": 8, "longlong": 8, "long": 4, "int": 4, "float": 4, "double": 8,
 }  # fmt: skip
+
+
+@contextlib.contextmanager
+def mapped(file: BinaryIO) -> Iterator[mmap.mmap]:
+    """Return the content of a file, which is not read at once; it has a byte or more."""
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+        yield text
+
+
+def places(text: mmap.mmap, word: bytes) -> Iterator[int]:
+    """Return the places of a word."""
+    at = text.find(word)
+    while at >= 0:
+        yield at
+        at = text.find(word, at + 1)
 
 
 def size(file: BinaryIO, least: int) -> str:
@@ -56,38 +74,42 @@ def _pnm(file: BinaryIO) -> str:
     return size(file, int(match[1]) * int(match[2]) // 8)
 
 
-def _fields(lines: Sequence[bytes], between: bytes) -> dict[str, str]:
-    """Return the values by their keys, each of which stands once."""
-    pairs = [line.partition(between) for line in lines]
-    fields = {key.decode().strip(): rest.decode().strip() for key, found, rest in pairs if found}
-    if len(fields) < sum(bool(found) for _, found, _ in pairs):
-        raise ValueError("a key stands twice")
-    return fields
+def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
+    texts = [line.decode("utf-8", "surrogateescape").partition(between) for line in lines]
+    return {key.strip(): rest.strip() for key, found, rest in texts if found}
 
 
 def _nrrd(file: BinaryIO) -> str:
     head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
     lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
-    fields = _fields(lines, b": ")
+    fields = _fields(lines, ": ")
+    if len(fields) < sum(b": " in line for line in lines):
+        return "a key stands twice"
     sizes = [int(word) for word in fields["sizes"].split()]
     other = fields.get("data file", fields.get("datafile", ""))
     if not (blank or other):
         return "its header has no end"
     if len(sizes) != int(fields["dimension"]):
         return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
+    if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
+        return ""
     is_raw = fields["encoding"].lower() == "raw"
     return _data(file, sizes, fields["type"], other, is_raw)
 
 
 def _meta(file: BinaryIO) -> str:
-    lines = file.read(_HEAD).split(b"\n")
+    # Some have fields for each of many pictures.
+    lines = file.read(1 << 20).split(b"\n")
     last = [at for at, line in enumerate(lines) if line.startswith(b"ElementDataFile")]
-    fields = _fields(lines[: last[0] + 1] if last else [], b"=")
+    if not last:
+        return "" if file.read(1) else "its header has no end"
+    fields = _fields(lines[: last[0] + 1], "=")
     sizes = [int(word) for word in fields["DimSize"].split()]
     if len(sizes) != int(fields["NDims"]):
         return f"{len(sizes)} sizes for {fields['NDims']} dimensions"
     is_raw = fields.get("CompressedData", "").lower() != "true"
-    other = fields["ElementDataFile"].removeprefix("LOCAL")
+    other = fields["ElementDataFile"]
+    other = "" if other.lower() == "local" else other
     sizes.append(int(fields.get("ElementNumberOfChannels", "1")))
     return _data(file, sizes, fields["ElementType"], other, is_raw)
 
@@ -138,13 +160,15 @@ def _tecplot(file: BinaryIO) -> str:
     data = file.read()
     names = re.search(rb"(?is)VARIABLES\s*=(.*?)^\s*ZONE", data, re.MULTILINE)
     zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
+    if names is None:
+        return "no VARIABLES and ZONE are in it"
     # Some zones share variables, have some at cells, or repeat numbers.
-    if names is None or re.search(rb"(?i)\*|VARSHARE|VARLOCATION|BLOCK", data):
+    if re.search(rb"(?i)\*|VARSHARE|VARLOCATION", data):
         return ""
     columns = len(re.findall(rb'"[^"]*"|[^\s,"]+', names[1]))
     least = 0
     for zone in zones:
-        pairs = re.findall(rb"\b(\w+)\s*=\s*(-?\d+)", zone)
+        pairs = re.findall(rb"(?i)\b(N|NODES|E|ELEMENTS|I|J|K)\s*=\s*(-?\d+)", zone)
         counts = {key.upper(): int(word) for key, word in pairs}
         if min(counts.values(), default=0) < 0:
             return "a count of a zone is negative"
@@ -153,7 +177,7 @@ def _tecplot(file: BinaryIO) -> str:
         points = counts.get(b"N", counts.get(b"NODES", math.prod(counts.get(k, 1) for k in _IJK)))
         cells = counts.get(b"E", counts.get(b"ELEMENTS", 0))
         least += points * columns + cells * corners
-    there = len(data.split())
+    there = len(data.replace(b",", b" ").split())
     return f"{there} of {least} numbers are there" if there < least else ""
 
 
@@ -176,26 +200,26 @@ _SECTIONS = (
 
 def _ensight(file: BinaryIO) -> str:
     """Check the lines of a case, and the files that it names for their parts."""
-    folder, section, parts = Path(file.name).parent, b"", set[bytes]()
+    folder, section = Path(file.name).parent, b""
+    parts: set[bytes] | None = None
     for line in file.read().splitlines():
-        words = line.partition(b"#")[0].split()
-        if words and words[0].upper() in _SECTIONS:
-            section = words[0].upper()
-        elif words and b":" not in line and not re.fullmatch(rb"[\s\d.eE+-]+", line):
+        head, colon, rest = line.partition(b"#")[0].partition(b":")
+        words = [word for word in rest.split() if not word.isdigit()]
+        if head.strip().upper() in _SECTIONS and not colon:
+            section = head.strip().upper()
+        elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
             return f"no such section as {line[:40]!r}"
-        elif words and section in (b"GEOMETRY", b"VARIABLE") and b"constant" not in line:
-            path = folder / words[-1].decode("utf-8").strip('"')
-            # Stars stand for the digits of a step.
-            if "*" in path.name:
-                return ""
-            if not path.is_file():
-                return f"it names {path.name!r}, which is missing"
-            found = _parts(path)
-            if found is None:
-                return ""
-            parts |= found if section == b"GEOMETRY" else set()
-            if other := found - parts:
-                return f"{path.name!r} has the part {min(other)!r}, which the geometry has not"
+        elif words and section in (b"GEOMETRY", b"VARIABLE"):
+            # Stars stand for the digits of a step; numbers without a file, and pairs of files.
+            if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
+                continue
+            name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
+            if not (folder / name).is_file():
+                return f"it names {name!r}, which is missing"
+            found = _parts(folder / name)
+            parts = found if section == b"GEOMETRY" else parts
+            if found is not None and parts is not None and (other := found - parts):
+                return f"{name!r} has the part {min(other)!r}, which the geometry has not"
     return ""
 
 
@@ -208,32 +232,41 @@ def _parts(path: Path) -> set[bytes] | None:
 
 
 def _obj(file: BinaryIO) -> str:
-    return "it has bytes of 0, and text has none" if b"\0" in file.read() else ""
+    with mapped(file) as text:
+        return "it has bytes of 0, and text has none" if text.find(b"\0") >= 0 else ""
 
 
 def _legacy(file: BinaryIO) -> str:
     """Count the numbers of the arrays of fields, without which VTK's reader ends the process."""
-    data = file.read()
-    is_text = b"ASCII" in b"".join(data[:_HEAD].splitlines()[2:3]).upper()
-    for field in re.finditer(rb"(?mi)^[ \t]*FIELD[ \t]+\S+[ \t]*(\d*)", data):
-        at = field.end()
-        for _ in range(int(field[1])):
-            array = _ARRAY.match(data, at)
-            if array is None:
-                return "an array of a field is missing"
-            count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
-            if "string" in kind or kind in ("bit", "long", "unsigned_long"):
-                return ""
-            if is_text:
-                word = _WORD.search(data, at)
-                end = len(data) if word is None else word.start()
-                there = len(data[at:end].split())
-            else:
-                width = next((count for part, count in _BYTES.items() if part in kind), 1)
-                there, end = (len(data) - at) // width, at + count * width
-            if there < count:
-                return f"{there} of {count} numbers of an array of a field are there"
-            at = end
+    is_text = b"ASCII" in b"".join(file.read(_HEAD).splitlines()[2:3]).upper()
+    with mapped(file) as data:
+        reasons = (_field(data, at, is_text) for at in places(data, b"\nFIELD "))
+        return next(filter(None, reasons), "")
+
+
+def _field(data: mmap.mmap, at: int, is_text: bool) -> str:
+    """Return the reason why a field that begins at a place is not whole."""
+    head = re.compile(rb"\sFIELD[ \t]+\S+[ \t]*(\d*)").match(data, at)
+    at = at if head is None else head.end()
+    for _ in range(0 if head is None else int(head[1] or 1)):
+        array = _ARRAY.match(data, at)
+        if array is None:
+            return "an array of a field is missing"
+        count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
+        if "string" in kind or kind in ("bit", "long", "unsigned_long"):
+            return ""
+        if is_text:
+            word = _WORD.search(data, at)
+            end = len(data) if word is None else word.start()
+            there = len(data[at:end].split())
+            if _ODD.search(data, at, end):
+                return "words stand among the numbers of a field"
+        else:
+            width = next((count for part, count in _BYTES.items() if part in kind), 1)
+            there, end = (len(data) - at) // width, at + count * width
+        if there < count:
+            return f"{there} of {count} numbers of an array of a field are there"
+        at = end
     return ""
 
 
@@ -241,7 +274,8 @@ def _legacy(file: BinaryIO) -> str:
 _ARRAY = re.compile(
     rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
 )
-#: A line that does not begin with a number.
+#: What is no part of a number in text, and a line that does not begin with one.
+_ODD = re.compile(rb"(?i)[\x80-\xff]|[ \t](?!nan|inf)[a-z_]")
 _WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
 FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,

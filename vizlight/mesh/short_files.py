@@ -5,7 +5,6 @@ Readers report most faults of a file. These are the faults that they overlook, o
 
 from __future__ import annotations
 
-import mmap
 import re
 import struct
 from typing import TYPE_CHECKING, BinaryIO
@@ -89,13 +88,17 @@ def _xml(file: BinaryIO) -> str:
     if b"</VTKFile>" not in _last(file):
         return "its end is missing"
     # What is packed is at most so much larger.
-    most = _PACKED * file.seek(0, 2)
-    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
-        counts = re.findall(rb'\s(NumberOf\w+|index)="\s*(-?\d+)', text)
-    wrong = (
-        f"{name.decode()} is {word.decode()}" for name, word in counts if not 0 <= int(word) <= most
-    )
-    return next(wrong, "")
+    most, wrong = _PACKED * file.seek(0, 2), ""
+    with headers.mapped(file) as text:
+        for start in (b" NumberOf", b" index="):
+            for match in (_COUNT.match(text, at) for at in headers.places(text, start)):
+                if match and not 0 <= int(match[2]) <= most:
+                    wrong = f"{match[1].decode()} is {match[2].decode()}"
+    return wrong
+
+
+#: A count or an index of VTK's XML.
+_COUNT = re.compile(rb' (\w+)="\s*(-?\d+)')
 
 
 def _grid(file: BinaryIO) -> str:
@@ -105,7 +108,7 @@ def _grid(file: BinaryIO) -> str:
     """
     if lacks := _xml(file):
         return lacks
-    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+    with headers.mapped(file) as text:
         # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
