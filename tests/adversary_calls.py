@@ -239,7 +239,8 @@ OWN = {
     "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
-    "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()})},
+    "box_axes.box_axes": {"size": 10.0},
+    "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},
     "map_frames.graticule": {"mesh": charted, "letters": 2e5},
     "charts.chart": {"mesh": lambda: vizlight.cartography.in_degrees(europe())},
@@ -258,6 +259,7 @@ OWN = {
     "make_plotter": SMALL,
     "render.pictures": SMALL,
     "save_png": SMALL | {"path": lambda: Path("picture.png")},
+    "render.save": {"path": lambda: Path("picture.png")},
     "paraview.save": {"path": lambda: Path("shown.py")},
     "paraview.shader": SATIN,
     "pathlines": {"tangents": "V", "seeds": 4},
@@ -452,7 +454,7 @@ ALIASES = {
     "path": {"file", "output"}, "factor": {"exaggeration"}, "sources": {"piece"},
     "panels": {"scalars"}, "expected": {"output", "file"}, "sequence": {"panels", "scalars"},
     "screenshot": {"output"}, "name": {"warp"}, "exaggeration": {"z"},
-    "turns": {"rotation", "plane", "angle"},
+    "turns": {"rotation", "plane", "angle"}, "data": {"file"}, "mesh": {"output"},
 }  # fmt: skip
 #: Places of results that are documented to be NaN or infinite, as regular expressions, and words of
 #: the documentation that say so.

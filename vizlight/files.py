@@ -193,7 +193,7 @@ def read(
     messages of VTK are told apart by thread, and no stream is redirected. Libraries other than VTK
     may print.
     """
-    _check.instance("at", at, dict, optional=True)
+    _check_selection(time, at)
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
     with _check.held():
@@ -228,7 +228,7 @@ def read_parts(
     TypeError, FileError
         As for :func:`vizlight.read`.
     """
-    _check.instance("at", at, dict, optional=True)
+    _check_selection(time, at)
     with _check.held():
         return _read(path, time, overlay, at, nodata, whole=False)
 
@@ -295,6 +295,13 @@ def _read(
     if notes:
         _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
     return meshes
+
+
+def _check_selection(time: object, at: object) -> None:
+    if getattr(time, "ndim", 0):
+        expected = "the time of a step, or its index"
+        raise TypeError(_check.message("time", expected, _check.describe(time)))
+    _check.instance("at", at, dict, optional=True)
 
 
 def _check_there(path: Path, overlays: Sequence[Path]) -> None:
@@ -889,10 +896,10 @@ def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
     Raises
     ------
     TypeError, ValueError
-        If it is no dataset, or the factor is not finite.
+        If it is no dataset, or the factor is not finite and positive.
     """
     _dataset(mesh)
-    factor = _check.number("factor", factor)
+    factor = _check.positive("factor", factor)
     return blocks.moved(georeference.in_metres(mesh), np.zeros(3), np.array([1.0, 1.0, factor]))
 
 
@@ -900,14 +907,18 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> Raw:
     """Return a point array of one component, or raise an error that names the argument."""
     data = mesh.point_data
     _check.text(argument, name, expected="the name of a point array")
-    if name in data and data[name].ndim == 1:
+    names = [key for key in (*data, *mesh.cell_data) if _are_numbers(mesh[key])]
+    if name in data and name in names:
         return data[name]
     got = repr(name)
     if name in data:
-        got = f"{name!r} with {data[name].shape[1]} components"
-    names = [key for key in (*data, *mesh.cell_data) if mesh[key].ndim == 1]
+        got = f"{name!r} of {_check.describe(data[name])}"
     expected = f"an array of one component, {_check.one_of(names)}"
     raise ValueError(_check.message(argument, expected, got))
+
+
+def _are_numbers(values: Raw) -> bool:
+    return values.ndim == 1 and values.dtype.kind in "biuf"
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:

@@ -180,7 +180,7 @@ def bands(
     Raises
     ------
     TypeError, ValueError
-        If a level is no finite number, or the limits do not ascend.
+        If a level is no finite number, the limits do not ascend, or no map has the name.
 
     Examples
     --------
@@ -193,7 +193,9 @@ def bands(
     low, high = _check.limits("limits", limits)
     if not low < high:
         raise ValueError(_check.message("limits", f"a number above {low:g} at the end", high))
-    edges = np.unique([low, *np.clip(_check.coordinates("levels", levels), low, high), high])
+    edges = np.unique(
+        [low, *np.clip(_check.coordinates("levels", levels).ravel(), low, high), high]
+    )
     start, end = low, high
     if min(-low, high) >= _TWO_SIDED * max(-low, high):
         start, end = -max(-low, high), max(-low, high)
@@ -202,8 +204,12 @@ def bands(
     middles = (0.5 * (edges[1:] + edges[:-1]))[np.searchsorted(edges[1:-1], values)]
     shares = (middles - start) / (end - start)
     table = pv.LookupTable(n_values=_FINE)
-    # PyVista types names of maps one by one.
-    colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]
+    try:
+        # PyVista types names of maps one by one.
+        colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]
+    except (TypeError, ValueError) as error:
+        expected, got = "the name of a colour map", _check.describe(cmap)
+        raise ValueError(_check.message("cmap", expected, got)) from error
     table.values = np.round(255 * np.asarray(colors)).astype(np.uint8)
     table.nan_color = MISSING
     table.scalar_range = (low, high)

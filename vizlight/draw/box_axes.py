@@ -57,7 +57,7 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
     Raises
     ------
     TypeError, ValueError
-        If the mesh has no finite box, or a height is not positive.
+        If the mesh has no finite box, the camera is none, or a height is not positive.
     """
     box = _box_of(mesh)
     height, size = _check.positive("height", height), _check.positive("size", size)
@@ -86,7 +86,7 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
     Raises
     ------
     TypeError, ValueError
-        If the mesh has no finite box.
+        If the mesh has no finite box, or the camera is none.
     """
     box, eye = _box_of(mesh), _Eye(camera, 1.0)
     ends = [
@@ -192,6 +192,8 @@ class _Eye:
     """
 
     def __init__(self, camera: pv.Camera, height: float) -> None:
+        if not isinstance(camera, pv.Camera):
+            raise TypeError(_check.message("camera", "a camera", _check.describe(camera)))
         self._camera, self._height = camera, height
         self.place = np.array(camera.position, dtype=np.float64)
         self.away = np.array(camera.GetDirectionOfProjection())

@@ -103,6 +103,8 @@ def save_gltf(
     for name in options.keys() - LIGHT:
         expected = "an option of vizlight.illuminate"
         raise TypeError(_check.message("options", expected, repr(name)))
+    if scalars is not None:
+        _check.text("scalars", scalars, expected="the name of an array")
     sources, used = sources_in_scene(mesh, scene, options)
     names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
     file, fixed = _File(), set()

@@ -32,6 +32,8 @@ __all__ = ["isolines"]
 #: Room around a number within its line, and least distance between numbers, and what is added
 #: to that between numbers of one line, in heights of letters.
 GAP, APART, FAR = 0.35, 4.0, 14.0
+#: Least height of letters, as a share of the diagonal of the map.
+SMALLEST = 1e-5
 #: Largest length of the arc below a number, in lengths of its chord: where a line is as straight.
 STRAIGHT = 1.06
 #: Length of lines that count as long, in heights of letters, and share of the length of all in long
@@ -100,8 +102,8 @@ def isolines(
     Raises
     ------
     TypeError, ValueError
-        If the array is missing or has several components, a level is no finite number, or the
-        letters or the unit are not positive.
+        If the array is missing or has several components, a level is no finite number, the unit is
+        not positive, or the letters are too low for a map of this size.
 
     Examples
     --------
@@ -112,7 +114,12 @@ def isolines(
     >>> cartography.isolines(slope, "x", [-10, 0, 10], letters=1.0)["lines"].n_lines
     6
     """
+    if not isinstance(mesh, pv.DataSet):
+        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
     letters = _check.positive("letters", letters)
+    if letters < SMALLEST * mesh.length:
+        expected = f"a height of at least {SMALLEST * mesh.length:g}"
+        raise ValueError(_check.message("letters", expected, f"{letters:g}"))
     values = _check.coordinates("levels", levels).ravel()
     texts = [f"{level:.6g}" for level in values] if words is None else list(words)
     if len(texts) != len(values):
@@ -340,11 +347,18 @@ def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
         expected = f"the name of an array, {_words.one_of(there)}"
         raise ValueError(_check.message("name", expected, _check.describe(name)))
     mesh = records.averaged(mesh, name)
-    values = np.asarray(mesh.point_data[name], dtype=np.float64)
-    if not np.isfinite(values).all():
-        mesh = mesh.threshold(
-            (np.nanmin(values), np.nanmax(values)), scalars=name, all_scalars=True
-        )
+    values = np.asarray(mesh.point_data[name])
+    if values.ndim != 1 or values.dtype.kind not in "biuf":
+        expected, got = "an array of one component", f"{name!r} of {_check.describe(values)}"
+        raise ValueError(_check.message("name", expected, got))
+    there = np.isfinite(values) & np.isfinite(mesh.points).all(axis=1)
+    if not there.any():
+        return []
+    if not there.all():
+        mesh = mesh.copy(deep=False)
+        mesh.point_data[name] = np.where(there, values, np.nan)
+        low, high = values[there].min(), values[there].max()
+        mesh = mesh.threshold((low, high), scalars=name, all_scalars=True)
     lines = mesh.contour(np.unique(levels).tolist(), scalars=name, compute_normals=False)
     if not lines.n_lines:
         return []

@@ -260,7 +260,7 @@ class MarginKey:
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
         self.size, self.lies = size, lying
         self._mesh = mesh.copy()
-        self._flat = np.asarray(mesh.points, dtype=np.float64)
+        self._flat = np.array(mesh.points, dtype=np.float64)
         # A swatch before a bar is a part of its length.
         start = min(float(self._flat[:, 0].min()), -1.0)
         #: What stands above the data, and above the key: its unit, or all where there are several.

@@ -142,7 +142,10 @@ def with_sharp_edges(mesh: pv.DataSet, light: LightOptions) -> pv.DataSet:
     is_auto = light.feature_angle == "auto"
     if carried and is_auto:
         vectors = np.asarray(surface.point_data[carried])
-        if are_of_faces(surface, vectors) or not creases(surface, has_normals=True):
+        # Those of another number of components are refused where the mesh is lit.
+        if vectors.shape[1:] != (3,) or are_of_faces(surface, vectors):
+            return mesh
+        if not creases(surface, has_normals=True):
             return mesh
     split = split_where_computed(surface, light.feature_angle)
     if split is surface:

@@ -63,6 +63,10 @@ def both_sides(
     """
     if not isinstance(surface, pv.PolyData):
         raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
+    carried = surface.point_data.active_normals
+    if carried is not None and carried.shape[1:] != (3,):
+        got = _check.describe(carried)
+        raise ValueError(_check.message("surface", "normals of 3 components", got))
     back, upward = _check.unit("toward", toward), _check.unit("up", up)
     if not isinstance(names, list | tuple) or len(names) != 2:
         raise ValueError(_check.message("names", "two names", _check.describe(names)))

@@ -80,6 +80,7 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
     """
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.coordinates("mesh", mesh.bounds)
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"
         raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))

@@ -20,8 +20,8 @@ _NAMED = {
 }
 
 
-def outside(path: Path) -> list[str]:
-    """Return the names of the files that a file takes from elsewhere than its own folder.
+def named(path: Path) -> dict[Path, str]:
+    """Return the files that a file takes, with their names in it; links are not followed.
 
     Parameters
     ----------
@@ -30,9 +30,20 @@ def outside(path: Path) -> list[str]:
     """
     pattern = _NAMED.get(path.suffix.lower())
     if pattern is None:
-        return []
-    named = {unquote(os.fsdecode(name)) for name in re.findall(pattern, path.read_bytes())}
+        return {}
+    names = {unquote(os.fsdecode(name)) for name in re.findall(pattern, path.read_bytes())}
     folder = path.parent.absolute()
+    return {Path(os.path.normpath(folder / name)): name for name in names}
+
+
+def outside(path: Path) -> list[str]:
+    """Return the names of the files that a file takes from elsewhere than its own folder.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file, of any format.
+    """
     # By the words alone, as links within the folder are its owner's.
-    places = {name: Path(os.path.normpath(folder / name)) for name in named}
-    return sorted(name for name, place in places.items() if not place.is_relative_to(folder))
+    folder = path.parent.absolute()
+    return sorted(name for place, name in named(path).items() if not place.is_relative_to(folder))

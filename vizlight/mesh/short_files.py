@@ -5,7 +5,6 @@ Readers report most faults of a file. These are the faults that they overlook, o
 
 from __future__ import annotations
 
-import mmap
 import re
 import struct
 from typing import TYPE_CHECKING, BinaryIO
@@ -14,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import series
+from vizlight.mesh import headers, references, series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
@@ -25,12 +24,17 @@ __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
 #: Bytes at the end of a file in which its last words stand.
 _END = 512
+#: Largest ratio of data to what a compressor of VTK makes of them.
+_PACKED = 8000
+#: Ends of names of files that name their pieces, all of which are read.
+_INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 
 
 def missing_part(path: Path, /) -> str:
     """Return the part that a file lacks of the size or the end that it states.
 
-    These are the XML files of VTK, netCDF, HDF5 and STL.
+    These are the XML files of VTK with their pieces, netCDF, HDF5, STL, and what
+    :mod:`.headers` has.
 
     Parameters
     ----------
@@ -47,9 +51,14 @@ def missing_part(path: Path, /) -> str:
         return ""
     with path.open("rb") as file:
         try:
-            return lacks(file)
+            lacking = lacks(file)
         except (LookupError, ValueError, struct.error) as error:
             return f"its header cannot be read: {error}"
+    if lacking or path.suffix.lower() not in _INDICES:
+        return lacking
+    pieces = (piece for piece in references.named(path) if piece.is_file() and piece != path)
+    parts = ((piece.name, missing_part(piece)) for piece in pieces)
+    return next((f"'{name}': {lacking}" for name, lacking in parts if lacking), "")
 
 
 def warn_of_last_line(path: Path, data: bytes) -> None:
@@ -66,12 +75,6 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
 
-def _size(file: BinaryIO, least: int) -> str:
-    """Compare the size of a file with the least that it states."""
-    size = file.seek(0, 2)
-    return f"{size} of {least} bytes are there" if size < least else ""
-
-
 def _last(file: BinaryIO) -> bytes:
     """Return the last bytes of a file."""
     file.seek(-min(_END, file.seek(0, 2)), 2)
@@ -82,7 +85,20 @@ def _xml(file: BinaryIO) -> str:
     """Look for the end of a file, which stands after its data."""
     if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
         return ""  # VTK's reader says so
-    return "" if b"</VTKFile>" in _last(file) else "its end is missing"
+    if b"</VTKFile>" not in _last(file):
+        return "its end is missing"
+    # What is packed is at most so much larger.
+    most, wrong = _PACKED * file.seek(0, 2), ""
+    with headers.mapped(file) as text:
+        for start in (b" NumberOf", b" index="):
+            for match in (_COUNT.match(text, at) for at in headers.places(text, start)):
+                if match and not 0 <= int(match[2]) <= most:
+                    wrong = f"{match[1].decode()} is {match[2].decode()}"
+    return wrong
+
+
+#: A count or an index of VTK's XML.
+_COUNT = re.compile(rb' (\w+)="\s*(-?\d+)')
 
 
 def _grid(file: BinaryIO) -> str:
@@ -92,7 +108,7 @@ def _grid(file: BinaryIO) -> str:
     """
     if lacks := _xml(file):
         return lacks
-    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+    with headers.mapped(file) as text:
         # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
@@ -117,7 +133,7 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
-        return _size(file, end) if end else "its header is not whole"
+        return headers.size(file, end) if end else "its header is not whole"
     # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
@@ -143,10 +159,11 @@ def _stl(file: BinaryIO) -> str:
     # Binary files may begin with this word, too, but a text has no bytes of 0.
     if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
         return "" if b"endsolid" in _last(file).lower() else "its end is missing"
-    return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
+    return headers.size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
 
 
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
+    **headers.FORMATS,
     **dict.fromkeys((".vtm", ".vtp", ".vtu"), _xml),
     **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
     **dict.fromkeys((".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"), _xml),

@@ -62,6 +62,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     sizes = tuple(size for size in mesh.dimensions if size > 1)
     if len(sizes) != 2:
         raise ValueError(_check.message("mesh", "a grid of one layer", mesh.dimensions))
+    _check.text("name", name, expected="the name of an array")
     if name not in mesh.point_data or np.ndim(mesh.point_data[name]) != 1:
         expected = "the name of an array of one component at points"
         raise ValueError(_check.message("name", expected, repr(name)))

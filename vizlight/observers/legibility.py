@@ -10,6 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.glsl import Stroke
+from vizlight.draw.render import LARGEST_SIDE
 from vizlight.draw.sources import with_sharp_edges
 from vizlight.draw.strokes import SUPERSAMPLED, stroke_of
 from vizlight.filters.tint import color_table, values_of_blocks
@@ -221,7 +222,8 @@ def legibility(
     dpi = _check.number("dpi", dpi, low=10.0, high=2400.0)
     size = ON_SCREEN
     if screen is None:
-        across = PRINT[0] if size_mm is None else _check.positive("size_mm", size_mm)
+        most = LARGEST_SIDE / dpi * MM_PER_INCH
+        across = PRINT[0] if size_mm is None else _check.positive("size_mm", size_mm, high=most)
         wide = round(across / MM_PER_INCH * dpi)
         size = max(wide, 8), max(round(wide / ASPECT), 8)
     reading(size[0], size_mm, **how)
