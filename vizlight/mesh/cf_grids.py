@@ -350,7 +350,7 @@ class _Reader:
         middles = self._middles()
 
         def rank(values: Foreign) -> tuple[bool, int]:
-            """A table may be larger than a field, but its axes are not said to be x and y."""
+            # A table may be larger than a field, but its axes are not said to be x and y.
             return {"x", "y"} <= {self.letters[dim][0] for dim in values.dims}, int(values.size)
 
         # One grid has one set of axes, which those of the largest field are.

@@ -131,10 +131,11 @@ def _shape(actor: Foreign) -> pv.PolyData | None:
     if data is None or not data.GetNumberOfPoints():
         return None
     colors = _colors(data, mapper.GetLookupTable())
+    if colors is not None:
+        data.GetPointData().SetScalars(None)
     # What the importer made goes with it.
     shape: pv.PolyData = pv.wrap(data).copy()
     if colors is not None:
-        shape.GetPointData().SetScalars(None)
         shape.point_data["color"] = colors
     return shape
 

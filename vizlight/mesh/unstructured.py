@@ -27,7 +27,9 @@ _TABLES = re.compile(
     re.IGNORECASE,
 )
 #: Names of tables of the nodes of solids.
-_SOLIDS = re.compile(r"(.*[_\W])?(tet(s|ras?|rahedra)|hexa(s|hedra)?|prisms?|wedges?)", re.IGNORECASE)
+_SOLIDS = re.compile(
+    r"(.*[_\W])?(tet(s|ras?|rahedra)|hexa(s|hedra)?|prisms?|wedges?)", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
