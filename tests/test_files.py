@@ -760,3 +760,21 @@ def test_many_writers_of_one_file(tmp_path):
         assert {*pool.map(lambda _: files.write_mesh(mesh, path), range(40))} == {path}
     assert [one.name for one in tmp_path.iterdir()] == ["a.vtp"]
     assert pv.read(path).n_points == 9
+
+
+def test_points_that_float32_does_not_resolve_are_noted(tmp_path):
+    plane = pv.Plane(center=(5e5, 5e6, 0), i_size=10, j_size=10, i_resolution=20, j_resolution=20)
+    plane.clear_data()
+    plane.points = np.asarray(plane.points, np.float32)
+    plane.save(tmp_path / "a.vtp")
+    with pytest.warns(
+        UserWarning, match="float32, which are .* apart .*: points may fall together"
+    ):
+        vizlight.read(tmp_path / "a.vtp")
+
+
+def test_curves_of_obj_are_noted(tmp_path):
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\ncstype bspline\ndeg 1\ncurv 0 1 1 2\nparm u 0 0 1 1\nend\n"
+    (tmp_path / "a.obj").write_text(text)
+    with pytest.warns(UserWarning, match="free-form curves and surfaces .* are left out"):
+        vizlight.read(tmp_path / "a.obj")

@@ -101,12 +101,15 @@ _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
 #: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
-#: keys of ParaView's are metadata, and conditions at the boundary of CGNS are no cells.
+#: keys of ParaView's and ranges of NaN are metadata, conditions at the boundary of CGNS no cells.
 _HARMLESS = re.compile(
-    "bad X server connection|Could not locate key|Skipping BC_t node|glTF extension .* is used in"
+    "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
+    "|glTF extension .* is used in"
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
+#: Lines of OBJ that VTK skips.
+_FREE_FORM = re.compile(rb"^(curv2?|surf)\s", re.MULTILINE)
 #: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
 #: after which one of these is swept.
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
@@ -282,7 +285,7 @@ def _read(
     errors = [error for error in errors if not any(search(error) for search in harmless)]
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
-        got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
+        got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
     if errors:
@@ -290,6 +293,8 @@ def _read(
     _warn_of_unread(path, unread)
     if isinstance(data, pv.MultiBlock):
         notes += _left_out(data, meshes)
+    if path.suffix.lower() == ".obj" and _FREE_FORM.search(path.read_bytes()):
+        notes.append("its free-form curves and surfaces (curv, surf) are left out")
     if path.is_file() and (elsewhere := references.outside(path)):
         notes.append(f"it takes files from outside of its folder: {', '.join(elsewhere)}")
     if notes:
@@ -371,6 +376,7 @@ def _whole(
         notes += [note] if (note := joined.note()) else []
     if isinstance(mesh, pv.DataSet):
         normals.drop_empty(mesh)
+        notes += [note] if (note := _rounded(mesh)) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
@@ -1040,17 +1046,33 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
             folder.rmdir()
 
 
+def _rounded(mesh: pv.DataSet) -> str:
+    """Return a note on points in float32 that are too far from the origin, else an empty text."""
+    if not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) or not mesh.n_cells:
+        return ""
+    step = float(np.finfo(np.float32).eps * np.abs(blocks.near_origin(mesh)).max())
+    if mesh.points.dtype != np.float32 or step < FINE * (cell := _shortest(mesh)):
+        return ""
+    return (
+        f"its points are read as float32, which are {step:.2g} apart at this distance from the "
+        f"origin, and sides of cells have {cell:.2g}: points may fall together"
+    )
+
+
+def _shortest(mesh: pv.DataSet) -> float:
+    """Return the length than which few sides of cells are shorter, infinity without sides."""
+    # Rows may be closer to each other than columns.
+    if isinstance(mesh, pv.ImageData):
+        return float(min(mesh.spacing[:2]))
+    corners = np.asarray(mesh.points, dtype=np.float64)[simplices(mesh)]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min(axis=1)
+    return float(np.percentile(sides[sides > 0], SHORT)) if sides.any() else np.inf
+
+
 def _resolved(mesh: DataSetT) -> DataSetT:
     """Return a mesh moved to the origin if float32, which .stl has, does not resolve its points."""
     origin = np.array(blocks.near_origin(mesh))
-    # Rows may be closer to each other than columns.
-    if isinstance(mesh, pv.ImageData):
-        cell = min(mesh.spacing[:2])
-    else:
-        corners = np.asarray(mesh.points, dtype=np.float64)[simplices(mesh)]
-        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min(axis=1)
-        cell = float(np.percentile(sides[sides > 0], SHORT)) if sides.any() else np.inf
-    if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * cell:
+    if np.finfo(np.float32).eps * np.abs(origin).max() < FINE * _shortest(mesh):
         return mesh
     words = ", ".join(f"{-part:.9g}" for part in origin)
     _check.warn(

@@ -172,3 +172,15 @@ def test_a_copy_of_an_actor_is_said_to_stay():
     plotter.add_actor(actor.copy(deep=True))
     with pytest.warns(UserWarning, match="a copy of an actor has light that does not follow"):
         plotter.screenshot(return_img=True)
+
+
+def test_colours_of_as_many_cells_as_points_are_those_of_cells():
+    faces = [3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2]
+    mesh = pv.PolyData(np.vstack([np.zeros(3), np.eye(3)]), faces)
+    mesh.cell_data["red"] = np.tile(np.array([255, 0, 0], np.uint8), (4, 1))
+    for of_cells in (False, True):
+        colored, name = keywords.colored(
+            mesh, "red", {"rgb": True, "preference": "cell" if of_cells else "point"}
+        )
+        assert name in colored.cell_data
+        assert name not in colored.point_data

@@ -182,3 +182,15 @@ def test_without_a_library_that_draws_the_data_decide(monkeypatch):
     monkeypatch.setattr(fields, "SPACING", 1 / 8)
     monkeypatch.setattr(type(vizlight.look(pv.Sphere())), "figures", no_picture)
     assert "with strokes" in vizlight.look(sheet(0.05)).drawing.words
+
+
+def test_streamlines_of_a_flat_map_have_its_frame_and_no_box():
+    grid = pv.ImageData(dimensions=(41, 31, 1), origin=(0, 50, 0), spacing=(0.5, 0.5, 1))
+    grid["wind"] = np.tile([10.0, 10.0, 0.0], (grid.n_points, 1))
+    grid = vizlight.cartography.in_degrees(grid)
+    look = vizlight.look(grid, "flow", tangents="wind")
+    assert any(layer.mesh.path == "vizlight.cartography.frame" for layer in look.drawing.layers)
+    assert not any(layer.mesh.path == "render.box_edges" for layer in look.drawing.layers)
+    lines = look.drawing.layers[0].mesh.run()
+    assert str(lines.field_data["unit"][0]) == "metre"
+    assert "projection" in lines.field_data

@@ -395,3 +395,14 @@ def test_a_grid_says_in_which_projection_it_is_straight():
     mesh = grid({"t": (("y", "x"), x), "polar": ((), 0, pole)}, axes)
     assert str(mesh.field_data["crs"][0]) == "+proj=stere +lat_0=90"
     assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+def test_a_table_that_is_larger_than_a_field_is_not_shown(tmp_path):
+    data = {
+        "weights": (("links", "parts"), np.random.default_rng(0).random((500, 4))),
+        "t": (("lat", "lon"), HEIGHTS),
+    }
+    xr.Dataset(data, coords={"lat": LAT, "lon": LON}).to_netcdf(tmp_path / "a.nc")
+    mesh = vizlight.read(tmp_path / "a.nc")
+    assert mesh.n_points == HEIGHTS.size
+    assert "t" in mesh.array_names

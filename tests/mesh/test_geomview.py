@@ -110,3 +110,14 @@ def test_packed_files(tmp_path):
     (tmp_path / "d.stl.gz").write_bytes(gzip.compress(data[:200]))
     with pytest.raises(FileError, match="d.stl.gz"):
         vizlight.read(tmp_path / "d.stl.gz")
+
+
+def test_lines_may_break_anywhere(tmp_path):
+    mesh = read(tmp_path, "OFF 5 2 0 0 0 0 1\n0 0 1 1 0 0 1\n0 0 0 1\n4 0 1 2 3 3 0 1 4\n")
+    assert (mesh.n_points, mesh.n_cells) == (5, 2)
+
+
+def test_edges_and_points(tmp_path):
+    edges = read(tmp_path, "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n2 0 1\n2 1 2\n")
+    assert (edges.n_lines, edges.n_points) == (2, 3)
+    assert read(tmp_path, "OFF\n2 0 0\n0 0 0\n1 0 0\n").n_verts == 2

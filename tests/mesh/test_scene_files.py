@@ -49,3 +49,62 @@ def test_colors_of_points(tmp_path):
     (shape,) = scene_files.read(written(tmp_path, TETRAHEDRON.removesuffix("} }") + colors))
     expected = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]
     np.testing.assert_array_equal(shape["color"], expected)
+
+
+def turn(axis, angle):
+    """Return the matrix of a turn, by Rodrigues."""
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def test_center_and_orientation_of_the_scale(tmp_path):
+    fields = "center 1 2 3 rotation 1 1 0 0.7 scale -2 3 4 scaleOrientation 0 1 1 0.4"
+    (shape,) = scene_files.read(
+        written(tmp_path, f"Transform {{ {fields} translation 5 6 7 children [ {TETRAHEDRON} ] }}")
+    )
+    lean = turn(np.array([0, 1, 1]), 0.4)
+    matrix = turn(np.array([1, 1, 0]), 0.7) @ lean @ np.diag([-2, 3, 4]) @ lean.T
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    center = np.array([1, 2, 3])
+    expected = (corners - center) @ matrix.T + center + (5, 6, 7)
+    np.testing.assert_allclose(shape.points, expected, atol=1e-3)
+
+
+#: Scenes, each with the ends of its shapes along x.
+OTHERS = {
+    "used again": (
+        f"""DEF A Transform {{ translation 1 0 0 children {TETRAHEDRON} }}
+Transform {{ translation 5 0 0 children [ USE A ] }} ROUTE A.b TO A.c""",
+        (1, 7),
+    ),
+    "group": (
+        f"""Group {{ children [ {TETRAHEDRON} Anchor {{ url "a" children Transform {{
+translation 6 0 0 children [ {TETRAHEDRON} ] }} description "# {{" }} ] bboxSize 1 1 1 }}""",
+        (0, 7),
+    ),
+    "levels": (
+        f"LOD {{ range [ 1 ] level [ {TETRAHEDRON} Shape {{ geometry Box {{ }} }} ] }}",
+        (0, 1),
+    ),
+    "choice": (
+        f"Switch {{ whichChoice 1 choice [ Shape {{ geometry Box {{ }} }} {TETRAHEDRON} ] }}",
+        (0, 1),
+    ),
+    "size": ("Shape { geometry Box { } }", (-1, 1)),
+}
+
+
+@pytest.mark.parametrize(("text", "ends"), OTHERS.values(), ids=OTHERS)
+def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
+    # VTK leaves memory as it was, which is right now and then.
+    for _ in range(3):
+        shapes = scene_files.read(written(tmp_path, text))
+        assert shapes.bounds[:2] == pytest.approx(ends, abs=1e-6)
+
+
+def test_the_first_version_is_refused(tmp_path):
+    path = tmp_path / "a.wrl"
+    path.write_text("#VRML V1.0 ascii\nSeparator { }\n")
+    with pytest.raises(vizlight.files.FileError, match="VRML 1, which VTK does not read: save it"):
+        vizlight.read(path)

@@ -129,3 +129,24 @@ def test_meshes_of_fewer_faces_than_corners():
     mesh = vizlight.read(xr.Dataset({**values, **table, **places}))
     np.testing.assert_allclose(mesh.compute_cell_sizes()["Area"], [1, 0.5])
     np.testing.assert_array_equal(mesh["v"], [5, 6])
+
+
+def test_names_of_nodes_and_rows_that_0_fills(tmp_path):
+    node = np.arange(4.0)
+    data = {
+        "grid_node_x": ("node", node % 2),
+        "grid_node_y": ("node", node // 2),
+        "quads": (("face", "corner"), np.array([[1, 2, 4, 3], [1, 2, 4, 0]])),
+        "T": ("node", node),
+    }
+    xr.Dataset(data).to_netcdf(tmp_path / "a.nc")
+    mesh = vizlight.read(tmp_path / "a.nc")
+    assert [mesh.get_cell(i).n_points for i in range(2)] == [4, 3]
+    assert mesh.area == pytest.approx(1.5)
+    # A temperature T is no time.
+    assert {"T"} == {*mesh.point_data}
+    assert "TimeValue" not in mesh.field_data
+    data["tets"] = data.pop("quads")
+    xr.Dataset(data).to_netcdf(tmp_path / "b.nc")
+    with pytest.raises(files.FileError, match="'tets' has the nodes of solids"):
+        vizlight.read(tmp_path / "b.nc")

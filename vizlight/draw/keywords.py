@@ -149,9 +149,14 @@ def colored(
         return mesh, scalars
     name = BYTES if rgb else GIVEN
     result = (
-        block if values is None else _attached(block, name, values, rgb=rgb, of_cells=of_cells)
+        block
+        if values is None
+        else _attached(
+            block, name, values, rgb=rgb,
+            of_cells=scalars in block.cell_data and (of_cells or scalars not in block.point_data),
+        )
         for block, values in zip(every, at, strict=True)
-    )
+    )  # fmt: skip
     return blocks.like(mesh, result), name
 
 

@@ -76,6 +76,7 @@ _NAMES = {
 }
 #: Names of lengths along x and y of the nodes of a mesh.
 _NODES = r"(.*_)?[xy](_?(nodes?|vert\w*|coord\w*))?"
+_OF_NODES = r".*(node|vert(ex|ices)?|coord)s?_?([xy])"
 #: Pressures in hectopascals of other units.
 _PRESSURES = {
     "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
@@ -315,6 +316,8 @@ class _Reader:
 
     def _letter(self, dim: str) -> tuple[str, str]:
         """Return x, y, z or t for a dimension, or an empty text, and what says so."""
+        if self.topology is not None and dim in (self.topology.nodes, self.topology.faces):
+            return "", ""  # a temperature T of the nodes is no time
         along = self._coordinate(dim)
         letter = ("", "") if along is None else _letter_of(str(along.name), along.attrs)
         return letter if letter[0] else _letter_of(dim, {})
@@ -351,8 +354,13 @@ class _Reader:
     ) -> pv.DataSet:
         """Return the grid of the axes of the largest of some variables, with those that fit."""
         middles = self._middles()
-        # One grid has one set of axes, which those of the largest variable are.
-        largest = max(fields.values(), key=lambda values: int(values.size))
+
+        def rank(values: Foreign) -> tuple[bool, int]:
+            # A table may be larger than a field, but its axes are not said to be x and y.
+            return {"x", "y"} <= {self.letters[dim][0] for dim in values.dims}, int(values.size)
+
+        # One grid has one set of axes, which those of the largest field are.
+        largest = max(fields.values(), key=rank)
         named = self._named([middles.get(dim, dim) for dim in largest.dims])
         # A section has its place along x and its height along y.
         dims = [named[letter] for letter in "xyz" if letter in named]
@@ -874,6 +882,8 @@ def _node_letter(name: str, attributes: Mapping[str, Foreign]) -> str:
     """Return x or y for coordinates of the nodes of a mesh, else an empty text."""
     letter, _ = _letter_of(name, attributes)
     plain = re.fullmatch(_NODES, name.lower()) or attributes.get("axis")
+    if not letter and (of_nodes := re.fullmatch(_OF_NODES, name.lower())):
+        return of_nodes[3]
     earth = _in_degrees(name, attributes, strict=True)
     return letter if letter in ("x", "y") and (plain or earth) else ""
 

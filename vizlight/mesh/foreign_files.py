@@ -81,6 +81,13 @@ def missing(path: Path) -> str:
     return ""
 
 
+def way_out(path: Path) -> str:
+    """Return the remedy for a file that no reader takes: a package, or another format."""
+    if PACKAGES.get(path.suffix.lower(), ("",))[0] not in ("meshio", "h5py"):
+        return missing(path)
+    return missing(path) or "save it as .vtu, .vtk or .stl by the program that wrote it"
+
+
 def read(
     path: Path,
     time: object = None,
@@ -150,7 +157,7 @@ def _of_meshio(path: Path) -> pv.DataSet:
         reader = getattr(meshio, kind)
         try:
             data = reader.read(path)
-        except meshio.ReadError:
+        except (meshio.ReadError, LookupError, ValueError):
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
                 raise

@@ -5,18 +5,21 @@ Source: the manual of Geomview, "OFF Files" and "MESH Files". A line holds a ver
 
 from __future__ import annotations
 
+import itertools
 import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
+from vizlight.mesh import blocks
+
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
 #: Name of the point array of places in 4-space.
 POSITIONS = "positions"
@@ -57,7 +60,9 @@ def read_off(path: Path) -> pv.PolyData:
         raise ValueError("no numbers of vertices and faces in an OFF file")
     points, faces = (_count(word, "number of vertices and faces") for word in rows[0][:2])
     if len(rows) - 1 < points + faces:
-        raise ValueError(f"{len(rows) - 1} of {points + faces} vertices and faces are there")
+        words = [word for row in rows[1:] for word in row]
+        size = width + 3 * bool(normal) + 4 * bool(coloured) + 2 * bool(textured)
+        rows[1:] = _broken(words, points, faces, size)
     table = _table(rows[1 : points + 1])
     mesh = _with_vertices(table, width, bool(normal), bool(coloured), bool(textured))
     ids, ends, colors = [], [0], []
@@ -68,10 +73,37 @@ def read_off(path: Path) -> pv.PolyData:
         ids += [_count(word, "number of a vertex") for word in row[1 : size + 1]]
         ends.append(len(ids))
         colors.append(row[size + 1 :])
-    mesh.SetPolys(pv.CellArray.from_arrays(np.array(ends), np.array(ids, dtype=int)))
-    if colors and {len(row) for row in colors} in ({3}, {4}):
+    sizes, corners = np.diff(ends), np.array(ids, dtype=int)
+    mesh.SetPolys(_of_sizes(corners, sizes, sizes > 2))
+    mesh.SetLines(_of_sizes(corners, sizes, sizes == 2))
+    if not faces:
+        mesh.SetVerts(blocks.cell_array(np.arange(points), np.arange(points + 1)))
+    if colors and mesh.n_lines == 0 and {len(row) for row in colors} in ({3}, {4}):
         mesh.cell_data["color"] = _bytes(_table(colors))
     return mesh
+
+
+def _of_sizes(corners: Indices, sizes: Indices, chosen: Bools) -> pv.CellArray:
+    """Return some of the cells that follow one another among corners."""
+    ends = np.concatenate([[0], np.cumsum(sizes[chosen])])
+    return blocks.cell_array(corners[np.repeat(chosen, sizes)], ends)
+
+
+def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list[bytes]]:
+    """Return the rows of words whose lines break anywhere: vertices of one size, then faces.
+
+    Raises
+    ------
+    ValueError
+        If they are too few.
+    """
+    ends = [size * i for i in range(points + 1)]
+    while len(ends) <= points + faces and ends[-1] < len(words):
+        ends.append(ends[-1] + 1 + _count(words[ends[-1]], "number of corners"))
+    if len(ends) <= points + faces or ends[-1] > len(words):
+        there = sum(end <= len(words) for end in ends[1:])
+        raise ValueError(f"{there} of {points + faces} vertices and faces are there")
+    return [words[start:end] for start, end in itertools.pairwise(ends)]
 
 
 def read_mesh(path: Path) -> pv.PolyData:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 import threading
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -11,13 +14,35 @@ import pyvista as pv
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterator, Sequence
 
-    from vizlight._types import Foreign, Raw
+    from vizlight._types import Array, Foreign, Raw
 
 SUFFIXES = (".wrl", ".vrml", ".3ds")
 #: VTK's parser of VRML keeps its state in variables of the process.
 _LOCK = threading.Lock()
+#: Words, runs of numbers, texts, brackets and comments of VRML 2.
+_TOKENS = re.compile(r'#[^\n]*|"(?:\\.|[^"\\])*"|[\[\]{}]|[-+.\d][-+.\deE\s,]*|[^\s,\[\]{}"#]+')
+#: Most tokens of a scene whose nodes that are used again are written out.
+_MOST_TOKENS = 1 << 24
+#: Sizes of nodes that do not state them; those of VTK are half of it.
+_SIZES = {
+    "Box": "size 2 2 2", "Sphere": "radius 1", "Cylinder": "height 2 radius 1",
+    "Cone": "height 2 bottomRadius 1",
+}  # fmt: skip
+#: Fields of a Transform with their values where a file has none.
+_FIELDS: dict[str, tuple[float, ...]] = {
+    "translation": (0.0, 0.0, 0.0), "center": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 1.0, 0.0),
+    "scale": (1.0, 1.0, 1.0), "scaleOrientation": (0.0, 0.0, 1.0, 0.0),
+}  # fmt: skip
+#: Those that VTK leaves out.
+_LEFT_OUT = {"center", "scaleOrientation"}
+#: Nodes of others, which VTK puts anywhere: they become Transforms.
+_GROUPS = ("Anchor", "Billboard", "Collision", "Group", "LOD", "Switch")
+#: Fields with what is in nodes.
+_CHILDREN = ("children", "level", "choice")
+#: Places of a shape by which its transforms are told.
+_ORIGIN, _AXES = np.zeros(3), np.eye(3)
 
 
 def read(path: Path) -> pv.MultiBlock:
@@ -27,46 +52,92 @@ def read(path: Path) -> pv.MultiBlock:
     ----------
     path : pathlib.Path
         Path of a file with a suffix among ``SUFFIXES``.
-    """
-    from vtkmodules.vtkIOImport import vtk3DSImporter, vtkVRMLImporter
 
-    of_3ds = path.suffix.lower() == ".3ds"
-    importer: Foreign = vtk3DSImporter() if of_3ds else vtkVRMLImporter()
-    importer.SetFileName(str(path))
-    shapes, empty = pv.MultiBlock(), 0
-    with _LOCK:
-        importer.Update()
-        actors = importer.GetRenderer().GetActors()
-        every = [actors.GetItemAsObject(i) for i in range(actors.GetNumberOfItems())]
-        for actor in every:
-            if (shape := _placed(actor)) is not None:
-                shapes.append(shape)
-            else:
-                empty += 1
-    if empty and shapes.n_blocks:
+    Raises
+    ------
+    ValueError
+        If it is of the first version of VRML.
+    """
+    from vtkmodules.vtkIOImport import vtk3DSImporter
+
+    with _LOCK, tempfile.TemporaryDirectory() as folder:
+        if path.suffix.lower() == ".3ds":
+            importer: Foreign = vtk3DSImporter()
+            importer.SetFileName(str(path))
+            every = _imported(importer)
+        else:
+            every = _of_vrml(path, Path(folder) / "scene.wrl")
+    shapes = pv.MultiBlock(
+        [
+            # Normals are turned as normals, which a scale of unequal factors leaves upright.
+            shape.transform(matrix, transform_all_input_vectors=False, inplace=False)
+            for shape, matrix in every
+            if shape is not None
+        ]
+    )
+    if (empty := len(every) - shapes.n_blocks) and shapes.n_blocks:
         _check.warn(f"file: '{path}': {empty} of {len(every)} shapes are left out: no points")
     return shapes
 
 
-def _placed(actor: Foreign) -> pv.PolyData | None:
-    """Return the shape of an actor where it stands, None if it has no points."""
+def _of_vrml(path: Path, draft: Path) -> list[tuple[pv.PolyData | None, Array]]:
+    """Return the shapes of a scene of VRML, each with its matrix.
+
+    VTK keeps the place, the turn and three lengths of a product of transforms, which are not all of
+    it where lengths differ: the places of the ends of the shapes' axes tell the rest.
+    """
+    from vtkmodules.vtkIOImport import vtkVRMLImporter
+
+    text = path.read_bytes().decode("latin-1")
+    if text.startswith("#VRML V1"):
+        raise ValueError("it is VRML 1, which VTK does not read: save it as VRML 2, .glb or .obj")
+    tokens = _written_out(text)
+    nodes = list(_nodes(tokens))
+    scales = [node.fields["scale"][1] for node in nodes if "scale" in node.fields]
+    skewed = any(len({*scale}) > 1 or scale[0] < 0 for scale in scales)
+    results = []
+    for place in [_ORIGIN, *(_AXES if skewed else ())]:
+        draft.write_text(_plain(tokens, nodes, place), encoding="latin-1")
+        # Two importers at a time end the process.
+        importer: Foreign = vtkVRMLImporter()
+        importer.SetFileName(str(draft))
+        results.append(_imported(importer))
+        del importer
+    shapes, *ends = results
+    for i, (_, matrix) in enumerate(shapes):
+        for axis, others in enumerate(ends):
+            matrix[:3, axis] = others[i][1][:3, 3] - matrix[:3, 3]
+    return shapes
+
+
+def _imported(importer: Foreign) -> list[tuple[pv.PolyData | None, Array]]:
+    """Return each shape of a scene, None for one without points, with its matrix."""
+    importer.Update()
+    actors = importer.GetRenderer().GetActors()
+    every = [actors.GetItemAsObject(i) for i in range(actors.GetNumberOfItems())]
+    return [
+        (_shape(actor), np.array(pv.array_from_vtkmatrix(actor.GetMatrix()), dtype=np.float64))
+        for actor in every
+    ]
+
+
+def _shape(actor: Foreign) -> pv.PolyData | None:
+    """Return a copy of the shape of an actor, None if it has no points."""
     mapper = actor.GetMapper()
     if mapper is None:
         return None
     mapper.Update()
-    shape = mapper.GetInput()
-    if shape is None or not shape.GetNumberOfPoints():
+    data = mapper.GetInput()
+    if data is None or not data.GetNumberOfPoints():
         return None
-    colors = _colors(shape, mapper.GetLookupTable())
+    colors = _colors(data, mapper.GetLookupTable())
     if colors is not None:
-        shape.GetPointData().SetScalars(None)
-    # Normals are turned as normals, which a scale of unequal factors leaves upright.
-    placed: pv.PolyData = pv.wrap(shape).transform(
-        pv.array_from_vtkmatrix(actor.GetMatrix()), transform_all_input_vectors=False, inplace=False
-    )
+        data.GetPointData().SetScalars(None)
+    # What the importer made goes with it.
+    shape: pv.PolyData = pv.wrap(data).copy()
     if colors is not None:
-        placed.point_data["color"] = colors
-    return placed
+        shape.point_data["color"] = colors
+    return shape
 
 
 def _colors(shape: Foreign, table: Foreign) -> Raw | None:
@@ -80,3 +151,147 @@ def _colors(shape: Foreign, table: Foreign) -> Raw | None:
     if numbers.ndim > 1 or not 0 <= numbers.min() <= numbers.max() < len(colors):
         return None
     return np.asarray(colors[numbers, :3])
+
+
+def _written_out(text: str) -> list[str]:
+    """Return the tokens of a scene with its nodes in all places where they are used.
+
+    VTK leaves out the transforms of a node that is used again, and keeps names from file to file.
+    """
+    tokens: list[str] = []
+    names: dict[str, list[str]] = {}
+    # Brackets that are open: the name of what they hold, and where it begins.
+    stack: list[tuple[str, int]] = []
+    named, words = ("", 0), (match[0] for match in _TOKENS.finditer(text))
+    for word in words:
+        if word == "DEF":
+            named = next(words, ""), len(tokens)
+        elif word == "USE":
+            tokens += names.get(next(words, ""), ())
+        elif word == "ROUTE":
+            for _ in range(3):
+                next(words, "")
+        elif word[0] != "#":
+            tokens.append(word)
+            if word in "[{":
+                stack.append(named)
+                named = "", 0
+                if word == "{" and len(tokens) > 1:
+                    tokens.append(_SIZES.get(tokens[-2], ""))
+            elif word in "]}" and stack:
+                name, begin = stack.pop()
+                if name:
+                    names[name] = tokens[begin:]
+        if len(tokens) > _MOST_TOKENS:
+            raise ValueError("its nodes are used too often")
+    return tokens
+
+
+class _Node(NamedTuple):
+    """A Transform, a Shape or a group among tokens.
+
+    Attributes
+    ----------
+    name : str
+        Name of the kind of node.
+    begin, end : int
+        Numbers of the tokens of its name and of its last bracket.
+    fields : dict
+        Token and numbers of each field of a Transform.
+    children : list of int
+        Numbers of the token ``children``, or its like, and of the last of what follows.
+    """
+
+    name: str
+    begin: int
+    end: int
+    fields: dict[str, tuple[int, Sequence[float]]]
+    children: list[int]
+
+
+def _nodes(tokens: Sequence[str]) -> Iterator[_Node]:
+    """Yield the Transforms, the Shapes and groups, the inner ones first."""
+    stack: list[_Node] = []
+    for i, word in enumerate(tokens):
+        if word and word in "[{":
+            before = tokens[i - 1] if word == "{" and i else ""
+            stack.append(_Node(before, i - 1, 0, {}, []))
+        elif word and word in "]}" and stack:
+            closed = stack.pop()
+            if closed.name in ("Shape", "Transform", *_GROUPS):
+                yield closed._replace(end=i)
+            if stack and len(stack[-1].children) == 1:
+                stack[-1].children.append(i)
+        elif stack and word in _FIELDS:
+            values = tokens[i + 1].replace(",", " ").split()
+            # A PROTO may set it.
+            if len(values) == len(_FIELDS[word]):
+                stack[-1].fields[word] = i, [float(value) for value in values]
+        elif stack and word in _CHILDREN:
+            stack[-1].children[:] = [i]
+
+
+def _plain(tokens: Sequence[str], nodes: Sequence[_Node], place: Array) -> str:
+    """Return a scene of Transforms without what VTK leaves out, and with shapes at a place.
+
+    A Transform is a product of plain ones, T C R O S O⁻¹ C⁻¹ in this order. Source: ISO/IEC
+    14772-1, 6.52.
+    """
+    words = list(tokens)
+    for node in nodes:
+        if node.name == "Shape" and place.any():
+            words[node.begin] = f"Transform {{ translation {_text(place)} children [ Shape"
+            words[node.end] += " ] }"
+        if node.name in _GROUPS:
+            words[node.begin] = "Transform"
+            first, last = _kept(words, node)
+            for i in (*range(node.begin + 2, first), *range(last + 1, node.end)):
+                words[i] = ""
+            words[node.begin + 2] = "children [" + words[node.begin + 2]
+            words[node.end] = "] " + words[node.end]
+        if len(node.children) < 2 or not _LEFT_OUT & node.fields.keys():
+            continue
+        numbers = _FIELDS | {name: field[1] for name, field in node.fields.items()}
+        *axis, angle = numbers["scaleOrientation"]
+        center = np.array(numbers["center"])
+        for i, _ in node.fields.values():
+            words[i : i + 2] = "", ""
+        steps = (
+            f"translation {_text(center + numbers['translation'])}"
+            f" rotation {_text(numbers['rotation'])}",
+            f"rotation {_text([*axis, angle])} scale {_text(numbers['scale'])}",
+            f"rotation {_text([*axis, -angle])}",
+            f"translation {_text(-center)}",
+        )
+        begin, end = node.children
+        words[begin] = f"{' children [ Transform { '.join(steps)} children"
+        words[end] += " } ]" * (len(steps) - 1)
+    return "#VRML V2.0 utf8\n" + "\n".join(words)
+
+
+def _kept(words: Sequence[str], node: _Node) -> tuple[int, int]:
+    """Return the first and the last word that count of what is in a group."""
+    if len(node.children) < 2:
+        return node.end, node.end - 1
+    first, last = node.children
+    if words[first + 1] != "[":
+        return first + 1, last
+    first, last = first + 2, last - 1
+    number = {"LOD": 0, "Switch": -1}.get(node.name)
+    if number is None:
+        return first, last
+    if "whichChoice" in words[node.begin : node.end]:
+        number = int(words[words.index("whichChoice", node.begin) + 1])
+    depth, ends = 0, [first]
+    for i in range(first, last + 1):
+        brackets = [word.strip() for word in words[i].split()]
+        depth += sum((word in ("[", "{")) - (word in ("]", "}")) for word in brackets)
+        if "}" in brackets and not depth:
+            ends.append(i + 1)
+    if not 0 <= number < len(ends) - 1:
+        return node.end, node.end - 1
+    return ends[number], ends[number + 1] - 1
+
+
+def _text(numbers: Sequence[float] | Array) -> str:
+    return " ".join(f"{number:.9g}" for number in numbers)

@@ -21,9 +21,14 @@ __all__ = ["Topology", "surface", "tables", "topology"]
 _CORNERS = range(3, 17)
 #: Names of tables of the nodes of faces, among others of such files.
 _TABLES = re.compile(
-    r"(.*[_\W])?(ele(m|ments?)?|tri(s|angles?)?|faces?|cells?|nv|ikle\w*|connect\w*)([_\W].*)?"
+    r"(.*[_\W])?(ele(m|ms|ments?)?|tri(s|angles?)?|quads?|polygons?|faces?|cells?|nv|ien|ikle\w*"
+    r"|connect\w*|topology)([_\W].*)?"
     r"|.*(node|vert|corner).*",
     re.IGNORECASE,
+)
+#: Names of tables of the nodes of solids.
+_SOLIDS = re.compile(
+    r"(.*[_\W])?(tet(s|ras?|rahedra)|hexa(s|hedra)?|prisms?|wedges?)", re.IGNORECASE
 )
 
 
@@ -131,6 +136,8 @@ def _guessed(
         if {*dims} - {faces} & {*map(str, file.variables)}:
             continue
         sizes = [count for dim, count in file.sizes.items() if dim not in dims]
+        if _SOLIDS.fullmatch(name) and any(_numbers(variable, count) for count in sizes):
+            raise ValueError(f"{name!r} has the nodes of solids, not of faces: save it as .vtu")
         if _TABLES.fullmatch(name) and any(_numbers(variable, count) for count in sizes):
             tables.append(name)
         for nodes, pair in places.items():
@@ -220,6 +227,5 @@ def surface(
 
 
 def _start(rows: Array, count: int) -> int:
-    """Return the number of the first node of a table that does not say it."""
-    numbers = rows[np.isfinite(rows) & (rows >= 0)]
-    return int(numbers.size and numbers.min() >= 1 and numbers.max() == count)
+    """Return the number of the first node of a table that does not say it: 0 may fill its rows."""
+    return int(np.nanmax(rows, initial=0) == count)

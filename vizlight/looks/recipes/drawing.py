@@ -348,7 +348,7 @@ class Case:
         eye = self.eye(mesh) if eye is None else eye
         if self.frame is not None:
             # There is room for what stands around the map.
-            mesh = Step("", "pyvista.MultiBlock", [mesh, self.frame])
+            mesh, boxed = Step("", "pyvista.MultiBlock", [mesh, self.frame]), False
         elif self.on_globe:
             # The ball is seen whole, wherever there are data.
             mesh = map_parts.ball()

@@ -284,7 +284,9 @@ def flow(case: Case) -> Drawing:
         notes += [
             f"lines shorter than {least}, four times their distance, are left out: {left_out}"
         ]
-    layers = [lines, *_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
+    layers = [lines]
+    if case.frame is None:
+        layers += [*_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
