@@ -7,6 +7,8 @@ dark. Middle and right: with ``t = d / r`` for two depths ``d``, against the len
 through the figure to the light: ears and tongue glow as if of wax, and the body stays dark.
 """
 
+# sphinx_gallery_thumbnail_number = 1
+import matplotlib.pyplot as plt
 import numpy as np
 
 import vizlight
@@ -27,3 +29,18 @@ for title, depth in (("cosine", 0.0), ("d = 0.006", 0.006), ("d = 0.02", 0.02)):
 
 plotter = render.make_plotter(panels, camera=camera, size=(1800, 800), background="#0c1016")
 plotter.show()
+
+# %%
+# The ratio beside light that is scattered, ``exp(-a r)``: both fall as the way r through the solid
+# grows, at first the ratio faster, later the exponential. The source on cos-theta shadows calls
+# them qualitatively alike.
+
+r = np.geomspace(0.002, 1, 200)
+for depth in (0.006, 0.02):
+    plt.semilogx(r, np.minimum(depth / r, 1), label=f"d / r, d = {depth}")
+    plt.semilogx(
+        r, np.exp(-np.log(2) * r / (2 * depth)), "--", label=f"exp(-a r), a = ln 2 / {2 * depth}"
+    )
+plt.gca().set(xlabel="length r inside of the solid", ylabel="light")
+plt.legend()
+plt.show()

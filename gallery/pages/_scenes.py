@@ -37,11 +37,13 @@ SECTIONS = {
     "How steep is it, and which end is near?": {
         "plot_read_slope": "Arch of nerve fibres: tan tubes, and white to dark by slope",
         "plot_read_heading": "Arch of nerve fibres in grays, and in hues of the near end",
+        "plot_depth": "Streamlines three times: bright all over, and fading with depth",
         "plot_fur": "Head and shoulders of a golden dog whose hair lies back",
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
         "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in hues with dark folds",
+        "plot_highlights": "Balls in six rows, with round highlights and some that wrap around",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },
     "What is the value?": {
@@ -68,7 +70,10 @@ ALTS = {script: alt for scripts in SECTIONS.values() for script, alt in scripts.
 ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
-FIRST = ("plot_principal_lines", "plot_read_direction", "plot_satin")
+FIRST = (
+    "plot_codimension", "plot_depth", "plot_fur", "plot_highlights", "plot_principal_lines",
+    "plot_read_direction", "plot_satin", "plot_seeping_light",
+)  # fmt: skip
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
 #: thumbnails show the whole.
@@ -77,6 +82,8 @@ PARTS = {
     "plot_codimension": (0.0, 0.56, 0.5, 1.0),
     "plot_carotid": (0.1, 0.05, 0.9, 0.9),
     "plot_complex_curve": (0.1, 0.05, 0.85, 1.0),
+    "plot_depth": (0.67, 0.06, 1.0, 0.7),
+    "plot_highlights": (0.2, 0.04, 0.97, 0.36),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),
     "plot_read_direction": (0.67, 0.53, 1.0, 1.0),

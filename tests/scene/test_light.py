@@ -6,7 +6,8 @@ import pyvista as pv
 from refusals import refusals
 from vectors import unit
 
-from vizlight import Light, View
+from vizlight import Light, Material, Scene, View
+from vizlight.model import falloff
 from vizlight.scene.conversion import lights_of
 
 
@@ -62,6 +63,44 @@ def test_headlight_follows_the_view():
     assert (unseen.position, unseen.direction) == (None, (1.0, 1.0, 1.0, 1.0))
     fixed = Light(direction=(1, 0, 0))
     assert fixed.seen_from(None) is fixed
+
+
+@pytest.mark.parametrize(
+    ("law", "most"), [((0, 0, 1), 1000.0), ((0.2, 0.1, 0), 5.0), ((3, 1, 0), 2.0)]
+)
+def test_a_lamp_without_the_clamp_is_its_law_up_to_a_bound(law, most):
+    light = Light.unclamped(position=(0, 0, 0), intensity=0.5, attenuation=law, most=most)
+    d = np.geomspace(1e-3, 1e3, 61)
+    value = light.intensity * falloff.distance(d, *light.attenuation)
+    expected = 0.5 * np.minimum(most, 1 / (law[0] + law[1] * d + law[2] * d * d))
+    np.testing.assert_allclose(value, expected, rtol=1e-14)
+
+
+test_bad_bounds = refusals(
+    lambda arguments: Light.unclamped(position=(1, 0, 0), **arguments),
+    ({"most": 0}, "most: expected a number above 0"),
+    ({"intensity": 2e6}, "intensity: expected"),
+    ({"attenuation": (0, 0, -1)}, "attenuation: expected"),
+)
+
+
+@pytest.mark.opengl
+@pytest.mark.parametrize("law", [(0, 0, 1), (0.5, 0.2, 0.1), (1, 0.2, 0.1)])
+def test_a_near_lamp_of_a_plotter_has_the_light_of_vtk(law):
+    plotter = pv.Plotter(off_screen=True, lighting="none", window_size=(100, 100))
+    lamp = pv.Light(position=(0, 0, 0.6), light_type="scene light", intensity=0.2)
+    lamp.positional, lamp.cone_angle, lamp.attenuation_values = True, 90, law
+    plotter.add_light(lamp)
+    plane = pv.Plane(i_size=2, j_size=2, i_resolution=100, j_resolution=100)
+    plotter.add_mesh(plane, ambient=0, diffuse=1.0, specular=0, color="white")
+    plotter.view_xy()
+    middle = plotter.screenshot(return_img=True)[50, 50, 0]
+    lit = plane.vizlight.illuminate(
+        Scene.from_plotter(plotter).replace(material=Material(ambient=0, diffuse=1, specular=0))
+    )
+    light = lit["luminance"][plane.find_closest_point((0, 0, 0))]
+    assert 255 * light == pytest.approx(middle, abs=2)
+    plotter.close()
 
 
 def camera():

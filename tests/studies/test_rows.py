@@ -13,6 +13,7 @@ from studies import (
     bundle,
     engine,
     fur,
+    highlights,
     isoluminance,
     legibility,
     lines,
@@ -61,6 +62,17 @@ def test_more_segments_of_fur_are_nearer():
     (row,) = fur.measure(32, 3, repeats=1)
     few, many = (fur.along_fibres(n) for n in (1, 12))
     assert few > 3 * row.error > 6 * many > 0
+
+
+def test_a_near_eye_or_lamp_has_errors_below_the_bound_of_its_largest_angle():
+    for near in ("eye", "lamp", "eye and lamp"):
+        errors = []
+        for distance in (2.0, 5.0, np.inf):
+            rows = highlights.measure(near, distance, 20_000, repeats=1)
+            assert all(row.error < row.more["bound"] for row in rows)
+            errors.append([row.error for row in rows])
+        assert np.all(np.diff(errors, axis=0) < 0)
+        assert errors[-1] == pytest.approx([63.75, 33.05], abs=0.6)
 
 
 def test_contours_of_smooth_normals_and_of_the_solid_are_circles():

@@ -177,10 +177,11 @@ def max_pixel_error(
     ``(1 - a x)^r - (1 - x)^(f r / 2)`` with a = 2 cos^2(beta) or a = 2. The logarithm of the ratio
     of its derivative's two terms has one turning point, so each side of that point holds at most
     one root, which bisection finds to the last digit; there is no starting value and no local
-    optimum. The result bounds the error **in every codimension**. The absolute error of ``error``
-    is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it tends to
-    ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3, where some
-    last digits are off by one.
+    optimum. The result bounds the error **in every codimension**; for an eye or a lamp at a position
+    the largest over the angles that occur is a bound (study ``highlights``). The absolute error of
+    ``error`` is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it
+    tends to ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3,
+    where some last digits are off by one.
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
@@ -227,7 +228,7 @@ def best_factor(light_eye_angle: ArrayLike, r: ArrayLike, /, *, by: Measure = "w
     As f grows Phong exceeds Blinn by more and falls short by less, so the worst error is least
     where both are equal, a root that bisection finds. The other two measures are quadratures over
     normals, minimised over f to 1e-4 by SciPy's bounded minimiser; that of the volume, which has
-    kinks, moves f by up to 2 %. The study ``highlights`` prints the table.
+    kinks, moves f by up to 2 %.
     """
     _check.choice("by", by, get_args(Measure))
     angle = _angles("light_eye_angle", light_eye_angle).astype(np.float64)

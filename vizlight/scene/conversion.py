@@ -30,6 +30,9 @@ LARGEST_POWER = 128.0
 #: Lower limit for the cosine of half the angle between light and eye, where the half vector
 #: vanishes.
 LEAST_COSINE = 2.5e-4
+#: Constant of an attenuation below which a lamp of VTK is taken to have this one: a point that
+#: gets a thousand times the intensity of its lamp is white in any case.
+LEAST_CONSTANT = 1e-3
 #: Error of a highlight, in pixel values from 0 to 255, above which a warning is given.
 VISIBLE_ERROR = 2.0
 
@@ -295,12 +298,13 @@ def lights_of(lights: Iterable[vtkLight], camera: vtkCamera | None) -> Iterator[
                     f"vizlight takes a spotlight of cone angle {light.GetConeAngle():g} degrees as "
                     "a light that shines in all directions"
                 )
-            yield Light(
-                position=position,
-                attenuation=light.GetAttenuationValues(),
-                intensity=intensity,
+            coefficients = light.GetAttenuationValues()
+            # VTK does not clamp its attenuation, which is at most 1 / c1.
+            most = 1 / min(max(coefficients[0], LEAST_CONSTANT), 1.0)
+            yield Light.unclamped(
+                position=position, attenuation=coefficients, most=most, intensity=intensity,
                 color=color,
-            )
+            )  # fmt: skip
         elif any(toward):
             yield Light(direction=toward, intensity=intensity, color=color, follows_view=follows)
         else:

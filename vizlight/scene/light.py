@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Light"]
 
 WHITE = (1.0, 1.0, 1.0)
-NO_ATTENUATION = (1.0, 0.0, 0.0)
+NO_ATTENUATION, INVERSE_SQUARE = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -38,7 +38,8 @@ class Light:
         Intensity, unitless, from 0 to 1e9.
     attenuation : (c1, c2, c3), default: (1, 0, 0)
         Coefficients of ``min(1, 1/(c1 + c2 d + c3 d^2))``, where d is the distance from the
-        point to a light with a position. (Lecture, effect of distance.)
+        point to a light with a position (Lecture, effect of distance);
+        :meth:`unclamped` is without the bound of 1.
     color : (r, g, b) or str, optional
         Channels that scale the intensity in the array ``rgb``. They do not affect luminance.
     follows_view : bool, default: False
@@ -55,6 +56,7 @@ class Light:
     See Also
     --------
     Light.headlight : Light in the direction of the eye.
+    Light.unclamped : Lamp by ``1 / d^2`` itself, as VTK has it.
     Light.seen_from : Light where a view has it.
     """
 
@@ -150,6 +152,56 @@ class Light:
         Light
         """
         return cls(intensity=intensity, color=color, follows_view=True)
+
+    @classmethod
+    def unclamped(
+        cls,
+        *,
+        position: VectorLike,
+        intensity: float = 1.0,
+        attenuation: VectorLike = INVERSE_SQUARE,
+        most: float = 1000.0,
+        color: ColorLike | None = None,
+    ) -> Light:
+        """Return a lamp by ``1 / d^2``, brighter than its intensity where a point is near.
+
+        The attenuation of a light is at most 1, also at a distance of 0, where ``1 / d^2`` has no
+        bound. Here the bound is ``most``: the law holds at all distances where it is below that.
+
+        Parameters
+        ----------
+        position : vector of n components
+            Position of the light, in the unit of the mesh.
+        intensity : float, default: 1.0
+            Intensity, unitless: the light at a distance of 1 where the attenuation is ``1 / d^2``.
+        attenuation : (c1, c2, c3), default: (0, 0, 1)
+            Coefficients of ``min(most, 1/(c1 + c2 d + c3 d^2))``.
+        most : float, default: 1000.0
+            Bound, above 0. ``1 / d^2`` is below it at distances above ``1 / sqrt(most)``.
+        color : (r, g, b) or str, optional
+            Channels that scale the intensity in the array ``rgb``.
+
+        Returns
+        -------
+        Light
+            Light of the intensity ``most * intensity``, at most 1e9, with all coefficients times
+            ``most``.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If a value does not fit.
+
+        Notes
+        -----
+        VTK and OpenGL have no bound: a plotter's lamps are read with one of 1000, or of ``1 / c1``.
+        """
+        most = _check.positive("most", most, high=_check.LARGEST)
+        coefficients = np.multiply(falloff.attenuation("attenuation", attenuation), most)
+        intensity = _check.number("intensity", intensity, low=0.0, high=_check.LARGEST / most)
+        return cls(
+            position=position, intensity=most * intensity, attenuation=coefficients, color=color
+        )
 
     def seen_from(self, view: View | None, *, n: int = 3) -> Light:
         """Return the light with the fixed direction or position that it has in a view.

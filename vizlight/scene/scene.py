@@ -55,7 +55,8 @@ class Scene:
         anything else that depends on the eye, such as lights that follow the view, is as from
         :meth:`View.isometric`.
     ambient_intensity : float, default: 1.0
-        Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9.
+        Intensity Ia of the ambient light (Lecture), unitless, from 0 to 1e9. ``occlusion=`` of
+        :func:`vizlight.illuminate` varies it with the place.
     ambient_color : (r, g, b) or str, optional
         Channels of the ambient light in the array ``rgb``. Default: white.
     depth_cue : DepthCue, optional
