@@ -31,7 +31,13 @@ _BYTES = {
 
 @contextlib.contextmanager
 def mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
-    """Return the content of a file, which is not read at once."""
+    """Return the content of a file, which is not read at once.
+
+    Parameters
+    ----------
+    file : binary file
+        File that is open.
+    """
     if not file.seek(0, 2):
         yield b""
         return
@@ -40,7 +46,15 @@ def mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
 
 
 def places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
-    """Return the places of a word."""
+    """Return the places of a word.
+
+    Parameters
+    ----------
+    text : mmap.mmap or bytes
+        Content of a file.
+    word : bytes
+        Word.
+    """
     at = text.find(word)
     while at >= 0:
         yield at
@@ -48,7 +62,15 @@ def places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
 
 
 def size(file: BinaryIO, least: int) -> str:
-    """Compare the size of a file with the least that it states."""
+    """Compare the size of a file with the least that it states.
+
+    Parameters
+    ----------
+    file : binary file
+        File that is open.
+    least : int
+        Least number of bytes.
+    """
     count = file.seek(0, 2)
     return f"{count} of {least} bytes are there" if count < least else ""
 
