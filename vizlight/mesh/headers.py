@@ -30,14 +30,31 @@ _BYTES = {
 
 
 @contextlib.contextmanager
-def mapped(file: BinaryIO) -> Iterator[mmap.mmap]:
-    """Return the content of a file, which is not read at once; it has a byte or more."""
+def mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
+    """Return the content of a file, which is not read at once.
+
+    Parameters
+    ----------
+    file : binary file
+        File that is open.
+    """
+    if not file.seek(0, 2):
+        yield b""
+        return
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
         yield text
 
 
-def places(text: mmap.mmap, word: bytes) -> Iterator[int]:
-    """Return the places of a word."""
+def places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
+    """Return the places of a word.
+
+    Parameters
+    ----------
+    text : mmap.mmap or bytes
+        Content of a file.
+    word : bytes
+        Word.
+    """
     at = text.find(word)
     while at >= 0:
         yield at
@@ -45,7 +62,15 @@ def places(text: mmap.mmap, word: bytes) -> Iterator[int]:
 
 
 def size(file: BinaryIO, least: int) -> str:
-    """Compare the size of a file with the least that it states."""
+    """Compare the size of a file with the least that it states.
+
+    Parameters
+    ----------
+    file : binary file
+        File that is open.
+    least : int
+        Least number of bytes.
+    """
     count = file.seek(0, 2)
     return f"{count} of {least} bytes are there" if count < least else ""
 
@@ -244,7 +269,7 @@ def _legacy(file: BinaryIO) -> str:
         return next(filter(None, reasons), "")
 
 
-def _field(data: mmap.mmap, at: int, is_text: bool) -> str:
+def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
     """Return the reason why a field that begins at a place is not whole."""
     head = re.compile(rb"\sFIELD[ \t]+\S+[ \t]*(\d*)").match(data, at)
     at = at if head is None else head.end()
