@@ -71,6 +71,32 @@ def numbered(points: Array) -> Indices:
     return number
 
 
+def _across(edges: Array) -> tuple[Array, Array]:
+    """Return vectors across the sides of simplices, and the squares of their volumes.
+
+    Parameters
+    ----------
+    edges : ndarray, shape (M, k, 3)
+        Edges from the first vertex of each to the others.
+
+    Returns
+    -------
+    across : ndarray, shape (M, k, 3)
+        Gradients of the weights 1 to k times the second result, in the planes of triangles.
+    volume : ndarray, shape (M,)
+        Determinant of the products of the edges.
+    """
+    a, b = edges[:, 0], edges[:, 1]
+    normal = np.cross(a, b)
+    if edges.shape[1] == 2:
+        across = [np.cross(b, normal), np.cross(normal, a)]
+        return np.stack(across, axis=1), np.einsum("mi,mi->m", normal, normal)
+    c = edges[:, 2]
+    volume = np.einsum("mi,mi->m", normal, c)
+    across = [np.cross(b, c), np.cross(c, a), normal]
+    return np.stack(across, axis=1) * volume[:, np.newaxis, np.newaxis], volume**2
+
+
 class Simplices:
     """Triangles or tetrahedra in 3-space, and their neighbours across sides.
 
@@ -92,21 +118,15 @@ class Simplices:
         self.k = self.cells.shape[1] - 1
         corners = self.points[self.cells]
         edges = corners[:, 1:] - corners[:, :1]
-        # Rows of the pseudoinverse are the gradients of the weights 1 to k; all sum to zero.
-        gram = edges @ np.swapaxes(edges, 1, 2)
         with np.errstate(all="ignore"):
             size = np.einsum("mij,mij->m", edges, edges)
             # Relative to the size of the cell: slivers have no direction across, whatever their
             # unit.
             scale = np.where(size > 0, size, 1)[:, np.newaxis, np.newaxis]
-            gram = gram / scale
-            volume = np.linalg.det(gram)
-        self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
-        # A single singular matrix would be an error for all cells. Of the same matrix whose
-        # determinant is not zero no pivot is.
-        gram[~self.good] = np.eye(self.k)
-        # By the edges' products, so that gradients of triangles lie in the planes of these.
-        rest = np.linalg.solve(gram, edges / scale)
+            across, volume = _across(edges / np.sqrt(scale))
+            self.good: Bools = np.isfinite(volume) & (volume > 1e-24)
+            # Rows of the pseudoinverse are the gradients of the weights 1 to k; all sum to zero.
+            rest = across / (volume[:, np.newaxis, np.newaxis] * np.sqrt(scale))
         rest[~self.good] = 0
         self.gradients = np.concatenate([-rest.sum(axis=1, keepdims=True), rest], axis=1)
         self._extents = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
@@ -130,12 +150,17 @@ class Simplices:
         k = self.k
         cells = np.flatnonzero(self.good)
         # The side opposite vertex i has all vertices but i; two equal sides make two cells
-        # neighbours.
-        sides = np.stack(
-            [np.delete(self.merged[cells], i, axis=1) for i in range(k + 1)], axis=1
-        ).reshape(-1, k)
-        sides.sort(axis=1)
-        order = np.lexsort(sides.T)
+        # neighbours. Of sorted corners each side is sorted.
+        corners = self.merged[cells]
+        rank = np.argsort(corners, axis=1)
+        corners = np.take_along_axis(corners, rank, axis=1)
+        sides = np.stack([np.delete(corners, i, axis=1) for i in range(k + 1)], axis=1)
+        sides = sides.reshape(-1, k)
+        count = int(corners.max(initial=0)) + 1
+        if count**k < 2**63:
+            # One number for each side is sorted faster than k.
+            sides = (sides @ count ** np.arange(k))[:, np.newaxis]
+        order = np.lexsort(sides.T) if sides.shape[1] > 1 else np.argsort(sides[:, 0])
         ranked = sides[order]
         same = np.all(ranked[1:] == ranked[:-1], axis=1)
         before, after = np.append(False, same), np.append(same, False)
@@ -147,7 +172,7 @@ class Simplices:
         across.ravel()[a] = cells[b // (k + 1)]
         across.ravel()[b] = cells[a // (k + 1)]
         neighbours = np.full(self.cells.shape, -1, dtype=np.intp)
-        neighbours[cells] = across
+        neighbours[cells] = np.take_along_axis(across, np.argsort(rank, axis=1), axis=1)
         return neighbours
 
     @cached_property
