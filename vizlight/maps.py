@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import LinearSegmentedColormap, ListedColormap, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, is_color_like, to_rgba
 
 from vizlight import _check
 
@@ -235,7 +235,8 @@ def kinds(
     Raises
     ------
     ValueError
-        If none is given, one is no whole number, or they are more than 65536 apart.
+        If none is given, one is no whole number, they are more than 65536 apart, or ``colors`` has
+        no colours.
 
     Examples
     --------
@@ -252,12 +253,16 @@ def kinds(
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"
         raise ValueError(_check.message("values", expected, values))
+    shades_of = {} if colors is None else colors
+    if not isinstance(shades_of, Mapping) or not all(map(is_color_like, shades_of.values())):
+        expected = "a mapping of kinds to colours, such as {1: '#ff0000'}"
+        raise ValueError(_check.message("colors", expected, colors))
     # VTK gives a table of one colour a second one.
     table = pv.LookupTable(n_values=max(int(np.ptp(rows)) + 1, 2))
     # A table with transparent colours would make all of a mesh translucent.
     shades = np.tile(np.uint8(255 * np.array(to_rgba(MISSING))), (table.n_values, 1))
     for place, value in enumerate(rows):
-        color = np.array(to_rgba((colors or {}).get(float(value), _KINDS[place % len(_KINDS)])))
+        color = np.array(to_rgba(shades_of.get(float(value), _KINDS[place % len(_KINDS)])))
         shades[int(value - rows[0])] = np.round(255 * color)
     if len(rows) == 1:
         shades[1] = shades[0]
