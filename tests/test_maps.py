@@ -117,3 +117,11 @@ def test_bands_of_two_sides_have_their_middle_at_zero(limits, middle):
 def test_bands_that_do_not_fit(levels, limits, words):
     with pytest.raises(ValueError, match=words):
         maps.bands(levels, limits)
+
+
+def test_kinds_have_the_colours_that_are_named():
+    table = maps.kinds({1: "sea", 2: "land"}, colors={2: "#00ff00"})
+    assert table.values[1].tolist() == [0, 255, 0, 255]
+    assert table.values[0].tolist() == maps.kinds([1, 2]).values[0].tolist()
+    with pytest.raises(ValueError, match="colors: expected a mapping of kinds to colours"):
+        maps.kinds([1], colors={1: "no colour"})

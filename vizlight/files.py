@@ -385,8 +385,13 @@ def _whole(
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
             cf_grids.add(mesh, _found(path, time), path)
             continue
-        for name, rows in brains.overlay(path, mesh.n_points).items():
+        arrays, meant = brains.overlay(path, mesh.n_points)
+        for name, rows in arrays.items():
             mesh.point_data[name] = rows
+        if meant.arrays:
+            said = meaning.of(mesh)
+            said.arrays |= meant.arrays
+            meaning.attach(mesh, said)
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
     if suffix in GLTF and GLTF_COLORS in mesh.point_data:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import LinearSegmentedColormap, ListedColormap, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, is_color_like, to_rgba
 
 from vizlight import _check
 
@@ -216,7 +216,12 @@ def bands(
     return table
 
 
-def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
+def kinds(
+    values: Sequence[float] | Mapping[float, str],
+    /,
+    *,
+    colors: Mapping[float, str] | None = None,
+) -> pv.LookupTable:
     """Return a lookup table that gives each of some whole numbers a colour of its own.
 
     Parameters
@@ -224,6 +229,8 @@ def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
     values : sequence of float, or mapping of float to str
         Kinds, such as the materials or labels of a mesh, in any order; of a mapping with their
         names in keys. Colours repeat after 16.
+    colors : mapping of float to str, optional
+        Colours of kinds, such as those of an atlas. Default: all are chosen.
 
     Returns
     -------
@@ -234,7 +241,8 @@ def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
     Raises
     ------
     ValueError
-        If none is given, one is no whole number, or they are more than 65536 apart.
+        If none is given, one is no whole number, they are more than 65536 apart, or ``colors`` has
+        no colours.
 
     Examples
     --------
@@ -251,16 +259,20 @@ def kinds(values: Sequence[float] | Mapping[float, str], /) -> pv.LookupTable:
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"
         raise ValueError(_check.message("values", expected, values))
+    shades_of = {} if colors is None else colors
+    if not isinstance(shades_of, Mapping) or not all(map(is_color_like, shades_of.values())):
+        expected = "a mapping of kinds to colours, such as {1: '#ff0000'}"
+        raise ValueError(_check.message("colors", expected, colors))
     # VTK gives a table of one colour a second one.
     table = pv.LookupTable(n_values=max(int(np.ptp(rows)) + 1, 2))
     # A table with transparent colours would make all of a mesh translucent.
-    colors = np.tile(np.uint8(255 * np.array(to_rgba(MISSING))), (table.n_values, 1))
+    shades = np.tile(np.uint8(255 * np.array(to_rgba(MISSING))), (table.n_values, 1))
     for place, value in enumerate(rows):
-        color = np.array(to_rgba(_KINDS[place % len(_KINDS)]))
-        colors[int(value - rows[0])] = np.round(255 * color)
+        color = np.array(to_rgba(shades_of.get(float(value), _KINDS[place % len(_KINDS)])))
+        shades[int(value - rows[0])] = np.round(255 * color)
     if len(rows) == 1:
-        colors[1] = colors[0]
-    table.values = colors
+        shades[1] = shades[0]
+    table.values = shades
     table.nan_color = MISSING
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): names.get(value, f"{value:g}") for value in rows}

@@ -84,6 +84,31 @@ def test_values_alone_say_how_they_are_given(name, tmp_path):
     np.testing.assert_array_equal(mesh[key], values)
 
 
+@pytest.mark.parametrize("name", ["lh.parts.annot", "parts.label.gii"])
+def test_regions_have_the_names_and_colours_of_their_file(name, tmp_path):
+    path, kinds = tmp_path / name, np.arange(BALL.n_points) % 2
+    colors = np.array([[25, 5, 25, 0, 1], [220, 20, 100, 0, 2]], np.int32)
+    if name.endswith(".annot"):
+        nibabel.freesurfer.write_annot(path, kinds, colors, ["none", "insula lobe"], fill_ctab=True)
+    else:
+        table = nibabel.gifti.GiftiLabelTable()
+        for key, text in enumerate(("none", "insula lobe")):
+            label = nibabel.gifti.GiftiLabel(key, *colors[key, :3] / 255, 1.0)
+            label.label = text
+            table.labels.append(label)
+        values = nibabel.gifti.GiftiDataArray(kinds.astype(np.int32), "NIFTI_INTENT_LABEL")
+        nibabel.save(nibabel.GiftiImage(labeltable=table, darrays=[values]), path)
+    BALL.save(tmp_path / "lh.vtp")
+    mesh = vizlight.read(tmp_path / "lh.vtp", overlay=path)
+    key = name.removesuffix(".gii")
+    assert meaning.flags(mesh, key) == {0: "none", 1: "insula lobe"}
+    assert meaning.flags(mesh, key, "colors") == {0: "#190519", 1: "#dc1464"}
+    look = vizlight.look(mesh, array=key, size=(90, 60))
+    assert "colors={0: '#190519', 1: '#dc1464'}" in look.script().replace("0.0:", "0:").replace(
+        "1.0:", "1:"
+    )
+
+
 def test_frames_other_than_that_of_the_points_are_noted(tmp_path):
     header = {"head": [2, 0, 20], "valid": "1", "filename": "a.mgz", "volume": [9, 9, 9]}
     header |= {"voxelsize": [1.0] * 3, "xras": [-1.0, 0, 0], "yras": [0, 0, -1.0]}

@@ -340,6 +340,29 @@ def test_values_in_a_list_are_no_image():
         vizlight.read(nodes)
 
 
+@pytest.mark.parametrize("turned", [0, 1])
+def test_a_list_that_stands_row_by_row_is_a_grid(turned):
+    lon, lat = np.meshgrid(170.0 + 5 * np.arange(5), np.array([10.0, 4, 1, 0]))
+    values = lat + 100 * lon
+    values[1::2] = values[1::2, ::-1] if turned else values[1::2]
+    data = {"t": (("points",), values.ravel(), {"GRIB_alternativeRowScanning": turned})}
+    coords = {"lon": ("points", (lon.ravel() + 180) % 360 - 180), "lat": ("points", lat.ravel())}
+    mesh = grid(data, coords)
+    assert mesh.dimensions == (5, 4, 1)
+    np.testing.assert_allclose(mesh["t"], mesh.points[:, 1] + 100 * mesh.points[:, 0])
+
+
+def test_a_grid_that_bends_on_its_way_around_the_earth_shows_no_part_twice():
+    lon, lat = np.meshgrid(np.arange(0.0, 361, 10), np.arange(-45.0, 46, 10))
+    lon = lon + np.where(lat > 0, lat, 0)
+    data = {"t": (("j", "i"), np.cos(np.radians(lon)) + lat)}
+    mesh = grid(data, {"lon": (("j", "i"), lon % 360), "lat": (("j", "i"), lat)})
+    assert mesh.bounds[:2] == (-180, 180)
+    # At the date line values are between those of the columns beside it.
+    expected = np.cos(np.radians(mesh.points[:, 0])) + mesh.points[:, 1]
+    np.testing.assert_allclose(mesh["t"], expected, atol=0.02)
+
+
 def test_a_mapping_that_xarray_cannot_decode_names_no_axis(tmp_path):
     data = xr.Dataset({"t": (("lat", "lon"), np.arange(12.0).reshape(3, 4))},
                       {"lat": [0.0, 1, 2], "lon": [0.0, 1, 2, 3]})  # fmt: skip

@@ -23,7 +23,7 @@ from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
-from vizlight.looks.wishes import even_light
+from vizlight.looks.wishes import even_light, is_whole_earth
 from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 
 if TYPE_CHECKING:
@@ -678,4 +678,6 @@ def _others(contents: Contents, case: Case) -> tuple[Other, ...]:
     ]
     if case.question != "shape" and contents.flat_axis is None and contents.dimension > 1:
         others.append(Other("shape", None, "question='shape'", "--for shape"))
+    if is_whole_earth(contents.mesh):
+        others.insert(0, Other(case.question, None, "globe=True", "--globe"))
     return tuple(others[:MOST_OTHERS])

@@ -52,6 +52,11 @@ SMALL = 0.85
 BOX = (-1, 1, -1, 1, -1, 1)
 
 
+def is_whole_earth(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a map in degrees around the earth, which can be put on a ball."""
+    return georeference.has_degrees(mesh) and float(mesh.bounds_size[0]) >= GLOBAL
+
+
 def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     """Return the step of the scene of a question, where a user gives none.
 
@@ -298,8 +303,8 @@ class Wishes:
             If it is no map in degrees, or not around the earth.
         """
         flat = mesh.run()
-        wide = float(flat.bounds_size[0]) if georeference.has_degrees(flat) else None
-        if wide is None or wide < GLOBAL:
+        if not is_whole_earth(flat):
+            wide = float(flat.bounds_size[0]) if georeference.has_degrees(flat) else None
             got = "no map in degrees" if wide is None else f"one of {wide:.4g} degrees"
             expected = f"a map of the whole earth, of at least {GLOBAL:g} degrees of longitude,"
             raise ValueError(message("globe", f"{expected} for a globe", got, "leave out globe"))

@@ -242,8 +242,10 @@ def _of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.Str
     return grid
 
 
-def overlay(path: Path, count: int) -> dict[str, AnyArray]:
+def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meaning]:
     """Return the arrays of a file for the points of a surface, by the name of the file.
+
+    The meaning has the names and colours of regions, as .annot and GIFTI have them.
 
     Parameters
     ----------
@@ -260,14 +262,19 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
 
     name = re.sub(r"\.gz$", "", path.name)
     stem = name.removesuffix(".gii")
+    regions: list[tuple[int, str, Sequence[float]]] = []
     if name.endswith(".mz3"):
         # Such a file may have a surface beside its values.
         arrays = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
     elif name.endswith(".gii"):
         _, _, arrays, _ = _gifti(path)
+        labels: Foreign = nibabel.load(path)
+        regions = [(one.key, one.label or "", one.rgba) for one in labels.labeltable.labels]
     elif name.endswith(".annot"):
-        # Indices of regions in the table of colours, -1 for none; colours and names are left out.
-        arrays = {"values": nibabel.freesurfer.read_annot(path)[0]}
+        # Indices of regions in the table of colours, -1 for none.
+        values, colors, names = nibabel.freesurfer.read_annot(path)
+        arrays = {"values": values}
+        regions = [(i, names[i].decode(), row[:3] / 255) for i, row in enumerate(colors)]
     elif path.name.lower().endswith(VOLUMES):
         volume: Foreign = nibabel.load(path)
         # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
@@ -278,9 +285,14 @@ def overlay(path: Path, count: int) -> dict[str, AnyArray]:
     if other or not arrays:
         got = f"{min(other)} values" if other else "no values"
         raise ValueError(f"its overlay '{path}' has {got} for a surface of {count} points")
-    if len(arrays) == 1:
-        return {stem: next(iter(arrays.values()))}
-    return {f"{stem}_{key}": rows for key, rows in arrays.items()}
+    single = len(arrays) == 1
+    arrays = {stem if single else f"{stem}_{key}": rows for key, rows in arrays.items()}
+    said = meaning.Meaning()
+    if regions:
+        for key, rows in arrays.items():
+            if rows.dtype.kind in "iu":
+                said.add_kinds(key, regions)
+    return arrays, said
 
 
 def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str]]:

@@ -7,7 +7,7 @@ import re
 import warnings
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -97,6 +97,10 @@ _DEPTHS = r"(sea_floor_depth|depth).*|.*_depth(_below.*)?"
 _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECASE)
 
 
+#: Attribute of cfgrib of values of which every second row of the grid runs back.
+_TURNING = "GRIB_alternativeRowScanning"
+#: Degrees beyond 360 from which a grid shows a part of the earth twice.
+_MORE_THAN_ALL = 10.0
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
 
@@ -283,6 +287,9 @@ def add(mesh: pv.DataSet, other: Foreign, path: Path) -> None:
     meaning.attach(mesh, said)
 
 
+_PlacesT = TypeVar("_PlacesT", pv.PolyData, pv.RectilinearGrid)
+
+
 class _Reader:
     """Reader of one dataset, which notes what the grid means."""
 
@@ -410,6 +417,8 @@ class _Reader:
             self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
         self._say(source, words)
         if places is not None:
+            # Components are told by the names and units of the arrays.
+            meaning.attach(grid, self.said)
             ordered = [
                 np.take(np.take(part, axes[1].order, 0), axes[0].order, 1) for part in places
             ]
@@ -435,7 +444,8 @@ class _Reader:
         lacking, wide = _astray(grid, place)
         found: pv.DataSet = grid
         left = 0
-        if wide.any():
+        # Rows that bend on their way around the earth would show a part of it twice.
+        if wide.any() or grid.bounds_size[0] > 360 + _MORE_THAN_ALL:
             found, left = unrolled.of_grid(grid, place)
         elif lacking.any():
             left = int(lacking.sum())
@@ -487,14 +497,15 @@ class _Reader:
 
     def _points(
         self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
-    ) -> pv.PolyData:
-        """Return the points of a list with their values."""
+    ) -> pv.PolyData | pv.RectilinearGrid:
+        """Return the points of a list with their values, as a grid if they stand on one."""
         # The places of a track are those of its times.
         single.pop(of.dim, None)
         scale, unit = self._unit(of.x, of.y)
         x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
         mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
-        self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
+        if isinstance(mesh, pv.PolyData):
+            self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
         words = f"x {of.x!r} and y {of.y!r} of each value"
         rows_of: _RowsOf = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
         return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
@@ -514,13 +525,13 @@ class _Reader:
 
     def _with_values(
         self,
-        mesh: pv.PolyData,
+        mesh: _PlacesT,
         rows_of: _RowsOf,
         single: dict[str, int],
         of_axes: tuple[str, str],
         nodata: float | None,
         source: str,
-    ) -> pv.PolyData:
+    ) -> _PlacesT:
         """Return a mesh with the values along some dimensions.
 
         ``rows_of`` has where these are kept, and a function of the rows of the file that returns
@@ -528,7 +539,7 @@ class _Reader:
         """
         words = []
         for name, variable in self._of_lists({*rows_of}):
-            dims = [str(dim) for dim in variable.dims]
+            dims: list[str] = [str(dim) for dim in variable.dims]
             (along,) = {*dims} & {*rows_of}
             others = {dim: single.get(dim, 0) for dim in dims if dim != along}
             self._note_first([dim for dim in others if dim not in single])
@@ -536,6 +547,8 @@ class _Reader:
             values = _within(np.asarray(variable.isel(others).values), variable.attrs)
             values, missing = meaning.without_missing(name, values, nodata)
             words += [missing] if missing else []
+            if isinstance(mesh, pv.RectilinearGrid) and variable.attrs.get(_TURNING) == 1:
+                values = listed.with_turned_rows(values, mesh.dimensions[0])
             data, of_mesh = rows_of[along]
             data[name] = of_mesh(self._heights(name, values, variable.attrs, flat=True))
         unit, axes = of_axes

@@ -34,7 +34,10 @@ def _options(path: Path, errors: str) -> Keywords:
     made anew for each.
     """
     name = hashlib.sha256(f"{path.resolve()} {errors}".encode()).hexdigest()[:16]
-    return {"errors": errors, "indexpath": f"{_folder()}/{name}.{{short_hash}}"}
+    # Of grids that cfgrib does not know it returns lists, in which every second row may run back.
+    keys = ["alternativeRowScanning"]
+    path_of_index = f"{_folder()}/{name}.{{short_hash}}"
+    return {"errors": errors, "indexpath": path_of_index, "read_keys": keys}
 
 
 def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:

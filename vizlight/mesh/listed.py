@@ -14,9 +14,9 @@ from vizlight.mesh import unrolled
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vizlight._types import Array, Bools, Foreign, Indices
+    from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["Listed", "cells", "listed", "points", "seem_radians"]
+__all__ = ["Listed", "cells", "listed", "points", "seem_radians", "with_turned_rows"]
 
 #: Decimals of corners that are one, in degrees or in metres.
 _SAME = 6
@@ -109,8 +109,10 @@ def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
     return laid(nodes.real, nodes.imag, ids[whole], there[whole]), whole
 
 
-def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
-    """Return points in the plane, and the row of the list of each.
+def points(
+    x: Array, y: Array, *, degrees: bool
+) -> tuple[pv.PolyData | pv.RectilinearGrid, Indices]:
+    """Return points in the plane, and the row of the list of each; a grid if they stand on one.
 
     Parameters
     ----------
@@ -126,7 +128,42 @@ def points(x: Array, y: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
         # A region across the date line is not parted by it.
         eastward = np.where(x < 0, x + 360.0, x)
         x = min(x, eastward, key=lambda angles: float(np.ptp(angles)) if angles.size else 0.0)
-    return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept
+    order = _rows_and_columns(x, y)
+    if order is None:
+        return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept
+    return pv.RectilinearGrid(x[order[0]], y[order[:, 0]], np.zeros(1)), kept[order.ravel()]
+
+
+def with_turned_rows(rows: Raw, width: int) -> Raw:
+    """Return a list of which every second row of a grid runs back, with all rows alike.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (N,)
+        Values.
+    width : int
+        Number of values of a row.
+    """
+    turned = rows.reshape(-1, width).copy()
+    turned[1::2] = turned[1::2, ::-1]
+    return turned.ravel()
+
+
+def _rows_and_columns(x: Array, y: Array) -> Indices | None:
+    """Return the indices of points that stand row by row on a grid, shape (ny, nx), else None."""
+    for slow, fast in ((y, x), (x, y)):
+        turns = np.flatnonzero(np.diff(slow)) + 1
+        width = int(turns[0]) if turns.size else 0
+        if width < 2 or len(slow) % width:
+            continue
+        rows, columns = slow.reshape(-1, width), fast.reshape(-1, width)
+        if np.ptp(rows, axis=1).any() or np.ptp(columns, axis=0).any():
+            continue
+        by_row, by_column = np.argsort(rows[:, 0]), np.argsort(columns[0])
+        if np.diff(rows[by_row, 0]).all() and np.diff(columns[0, by_column]).all():
+            order = np.arange(len(slow)).reshape(rows.shape)[np.ix_(by_row, by_column)]
+            return order if fast is x else order.T
+    return None
 
 
 def seem_radians(x: Array, y: Array) -> bool:

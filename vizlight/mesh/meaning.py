@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
@@ -77,8 +78,19 @@ class Meaning:
         if kept:
             self.arrays[name] = kept
 
+    def add_kinds(self, name: str, kinds: Sequence[tuple[int, str, Sequence[float]]]) -> None:
+        """Keep the number, the name, and the red, green and blue from 0 to 1, of kinds."""
+        pairs = [(number, re.sub(r"\s+", "_", text)) for number, text, _ in kinds if text]
+        hues = [
+            (number, "".join(f"{round(255 * part):02x}" for part in color[:3]))
+            for number, _, color in kinds
+        ]
+        of_array = self.arrays.setdefault(name, {})
+        of_array["flags"] = " ".join(itertools.starmap("{}:{}".format, pairs))
+        of_array["colors"] = " ".join(itertools.starmap("{}:#{}".format, hues))
 
-def flags(mesh: pv.DataSet, name: str) -> dict[float, str]:
+
+def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
     """Return the names of the kinds of an array by their numbers, none where its file has none.
 
     Parameters
@@ -86,8 +98,10 @@ def flags(mesh: pv.DataSet, name: str) -> dict[float, str]:
     mesh : pyvista.DataSet
     name : str
         Name of an array.
+    key : {"flags", "colors"}
+        Names, or colours such as "#ff0000".
     """
-    words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get("flags", "").split()]
+    words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get(key, "").split()]
     return {float(number): text.replace("_", " ") for number, _, text in words}
 
 

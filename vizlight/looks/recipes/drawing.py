@@ -538,7 +538,10 @@ def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
         return keywords
     names = meaning.flags(mesh.run(), array.name)
     named = {kind: names.get(kind, f"{kind:g}") for kind in kinds}
-    table = Step("", "vizlight.maps.kinds", named if names else list(kinds))
+    colors = meaning.flags(mesh.run(), array.name, "colors")
+    of_file = {kind: colors[kind] for kind in kinds if kind in colors}
+    own: Keywords = {"colors": of_file} if of_file else {}
+    table = Step("", "vizlight.maps.kinds", named if names else list(kinds), **own)
     return keywords | {"cmap": table}
 
 
