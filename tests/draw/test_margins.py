@@ -48,6 +48,16 @@ def test_the_key_stands_in_a_margin_and_the_data_in_the_rest(size):
     assert (np.abs(plate - lightest).max(axis=2) <= 3).any()
 
 
+def test_a_wide_word_above_a_bar_stays_in_the_picture():
+    mesh = pv.Sphere()
+    mesh["Wwwmmmmwww"] = mesh.points[:, 2]
+    look = vizlight.look(mesh, size=(600, 400))
+    plotter = look.plotter()
+    seen = plotter.screenshot(return_img=True).astype(int)
+    plotter.close()
+    assert (np.abs(seen[:, -5:] - 255) < 2).all()
+
+
 def test_keys_stack_in_the_margin():
     one, _ = picture(keys=1)
     three, _ = picture(keys=3)

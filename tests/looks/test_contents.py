@@ -61,6 +61,15 @@ def test_labels_are_kinds_and_scans_are_values():
     assert roles == {"labels": "kinds", "scan": "values"}
 
 
+def test_a_scan_with_even_parts_has_no_labels():
+    """Its edges pass through the values between, of which each has a row."""
+    x = np.arange(60**3) % 60
+    scan = pv.ImageData(dimensions=(60, 60, 60))
+    scan["scan"] = np.clip(11 * np.abs(x - 30) - 7 * (x // 2), 40, 200).astype(np.uint8)
+    scan["scan"] += (np.arange(60**3) // 3600 % 11).astype(np.uint8)
+    assert Contents(scan).arrays[0].role == "values"
+
+
 def test_flat_sheets_and_slabs():
     assert Contents(pv.Plane()).flat_axis == 2
     assert Contents(pv.ImageData(dimensions=(200, 1, 150))).flat_axis == 1
@@ -77,6 +86,7 @@ def test_tables_of_a_mesh_and_tangents_of_textures_are_no_data():
         mesh[name] = rows
     mesh["TANGENT"] = np.tile((1.0, 0.0, 0.5), (mesh.n_points, 1)) * rows[:, np.newaxis]
     mesh["RGBA"] = np.full((mesh.n_points, 4), 200, np.uint8)
+    mesh["secondary_structures_begin"], mesh["gmsh:dim_tags"] = rows, np.stack([rows, rows], axis=1)
     assert Contents(mesh).arrays == ()
     mesh["cell_area"], mesh["x"] = rows, rows
     assert [array.name for array in Contents(mesh).arrays] == ["cell_area", "x"]

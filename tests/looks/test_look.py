@@ -292,6 +292,9 @@ def test_lines_show_their_values_and_few_are_wider_than_many():
     look = vizlight.look(few, size=SIZE)
     assert (look.question, look.array) == ("value", "radius")
     assert vizlight.look(few, "heading", size=SIZE).question == "heading"
+    few.clear_data()
+    few["atom_type"] = np.arange(60) // 20 + 6
+    assert vizlight.look(few, size=SIZE).array == "atom_type"
 
 
 def test_points_without_cells_show_the_length_of_their_vectors(tmp_path):

@@ -240,6 +240,7 @@ def test_a_volume_of_freesurfer_and_colours(tmp_path):
     nibabel.save(image, tmp_path / "a.mgz")
     mesh = vizlight.read(tmp_path / "a.mgz")
     assert mesh.bounds == (-2, 0, 0, 3, 0, 4)
+    assert mesh.point_data.keys() == ["MGH"]
     kind = np.dtype([("R", "u1"), ("G", "u1"), ("B", "u1")])
     colors = np.array([(1, 2, 3)] * 8, kind).reshape(2, 2, 2)
     mesh = nifti(tmp_path / "c.nii", colors, np.eye(4))

@@ -182,6 +182,18 @@ def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
+def test_an_array_of_meshio_without_rows_for_some_cells_is_left_out(tmp_path):
+    pytest.importorskip("meshio")
+    path = tmp_path / "a.fem"
+    grids = [(1, 0, 0), (2, 1, 0), (3, 0, 1), (4, 1, 1)]
+    lines = [f"GRID,{i},,{x}.0,{y}.0,0.0" for i, x, y in grids]
+    lines += ["CBAR,1,,1,2", "CTRIA3,2,7,1,2,3", "CTRIA3,3,8,2,4,3"]
+    path.write_text("\n".join(["BEGIN BULK", *lines, "ENDDATA", ""]))
+    with pytest.warns(UserWarning, match=r"'nastran:ref' has 2 rows for 3 cells, and is left out"):
+        mesh = vizlight.read(path)
+    assert (mesh.n_points, mesh.array_names) == (4, [])
+
+
 def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.wkt"

@@ -195,6 +195,25 @@ def test_hidden_cells_and_thick_grids_are_read_as_a_whole():
     assert not hull.in_parts(mesh)
 
 
+@pytest.mark.parametrize("flip", [False, True])
+def test_walls_of_solid_cells_are_there_once_with_their_data(flip):
+    solid = pv.ImageData(dimensions=(3, 4, 2)).cast_to_unstructured_grid()
+    outside = solid.extract_surface(algorithm="dataset_surface")
+    walls = outside.extract_cells(range(7)).extract_surface(algorithm="dataset_surface")
+    walls = walls.flip_faces() if flip else walls
+    solid.clear_data(), walls.clear_data()
+    solid["ref"], walls["ref"] = np.zeros(solid.n_cells, int), np.arange(1, 8)
+    lines = pv.Line((0, 0, 0), (1, 0, 0))
+    lines["ref"] = [9]
+    surface, _ = hull.outer_surface(pv.merge([lines, walls, solid]))
+    found = pv.PolyData(surface)
+    assert (found.n_lines, found.GetNumberOfPolys()) == (1, outside.n_cells)
+    assert found.n_open_edges == 0
+    assert sorted(found["ref"]) == [0] * (outside.n_cells - 7) + [*range(1, 8), 9]
+    # All face outward, those of the walls too.
+    assert pv.PolyData(found.points, found.faces).volume == pytest.approx(6)
+
+
 @pytest.mark.parametrize("kind", [24, 25, 26, 27, 29])
 def test_the_faces_of_curved_cells_share_their_points_and_face_outward(kind):
     source = vtkCellTypeSource()

@@ -16,6 +16,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkPolyDataMapper2D,
     vtkRenderer,
     vtkTextActor,
+    vtkTextRenderer,
 )
 
 from vizlight.draw.live import in_view, items
@@ -48,6 +49,8 @@ LIGHT_BACKGROUND = 1.2
 #: Titles of lengths of vectors, of which the first word stands above a bar, and letters of the
 #: longest name that does.
 LENGTHS, LONGEST = re.compile("(Speed|Length) of "), 12
+#: Resolution in which VTK draws letters.
+_DPI = 72
 #: Share of the length of a bar from its end within which no number stands beside that of the end.
 CLOSE = 0.08
 
@@ -276,6 +279,7 @@ class MarginKey:
         #: Words of a disc, which stand below it.
         self._below = "" if self._marks else words[0]
         self._lines: list[str] = []
+        self._room = 0.0
         mapper, in_pixels = vtkPolyDataMapper2D(), vtkCoordinate()
         in_pixels.SetCoordinateSystemToViewport()
         mapper.SetInputData(self._mesh)
@@ -321,7 +325,7 @@ class MarginKey:
         alone : bool
             Whether the title right above the data is that of the key.
         """
-        self._half = self.size * short / 2
+        self._half, self._room = self.size * short / 2, width
         columns = max(int(width / (LETTER * letters)), 6)
         name, _, more = self._title.partition(";")
         if kind := LENGTHS.match(name):
@@ -351,6 +355,7 @@ class MarginKey:
         for text in (self._heading, *self._labels):
             text.GetTextProperty().SetFontSize(size)
         self._heading.SetInput("\n".join(self._lines))
+        _narrow(self._heading, self._room)
         words = LINE * letters * len(self._lines)
         if not self._marks:
             self._heading.SetPosition(x, y - box[1] / 2)
@@ -534,6 +539,14 @@ def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
 def ink_on(background: pv.Color) -> Color:
     """Return the colour of words on a background: black or white."""
     return (0.0, 0.0, 0.0) if sum(background.float_rgb) > LIGHT_BACKGROUND else (1.0, 1.0, 1.0)
+
+
+def _narrow(actor: vtkTextActor, room: float) -> None:
+    """Make the letters of an actor smaller, where its words are wider than their room in pixels."""
+    style, box = actor.GetTextProperty(), [0, 0, 0, 0]
+    vtkTextRenderer.GetInstance().GetBoundingBox(style, actor.GetInput(), box, _DPI)
+    if (width := box[1] - box[0] + 1) > room:
+        style.SetFontSize(int(style.GetFontSize() * room / width))
 
 
 def _text(word: str, ink: Color) -> vtkTextActor:

@@ -23,8 +23,9 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
-#: Share of neighbouring rows of labels that are equal: regions are larger than their borders.
-EQUAL = 0.5
+#: Largest share of runs of equal labels that have one row only: regions are larger than that, while
+#: the edges of a scan pass through all its values.
+ALONE = 0.5
 #: Extent across a flat surface, across a slab that is taken for one, and across a slab that is seen
 #: from above, as a share of the second side.
 FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
@@ -32,9 +33,9 @@ FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
 #: bounds, masks.
 _NO_DATUM = {
     "id", "ids", "gid", "gids", "index", "indices", "rank", "number", "mask", "ghost", "ghosts",
-    "valid", "normal", "normals", "bnds", "bounds", "point", "points", "coord", "coords",
-    "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons", "lat",
-    "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
+    "valid", "normal", "normals", "bnds", "bounds", "begin", "end", "point", "points", "coord",
+    "coords", "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons",
+    "lat", "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
 }  # fmt: skip
 #: Words that names of coordinates of nodes, and of tables of which belongs to which, consist of.
 _TABLE_WORDS = {
@@ -42,6 +43,9 @@ _TABLE_WORDS = {
     "edges", "vertex", "vertices", "elem", "center", "centre", "centroid", "mesh", "in", "on",
     "of", "d", "connectivity", "links",
 }  # fmt: skip
+#: Names of other tables: the tangents of glTF belong to textures, and PyVista's splines have their
+#: length.
+_TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "class", "classes", "domain", "group", "groups", "label", "labels", "layer",
@@ -275,8 +279,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
     if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
         return None
-    # The tangents of glTF belong to textures, and PyVista's splines have their length.
-    if named and (_is_table(name) or name in ("TANGENT", "arc_length", "gmsh:bounding_entities")):
+    if named and (_is_table(name) or name in _TABLES):
         return None
     lower = name.lower()
     if are_colors(values):
@@ -334,7 +337,9 @@ def _are_labels(values: Raw) -> bool:
     run = run[np.isfinite(run)].astype(np.int64)
     inside = (run[1:] != 0) & (run[:-1] != 0)
     steps = np.abs(np.diff(run))[inside]
-    if len(steps) < 2 or np.mean(steps == 0) < EQUAL:
+    changes = np.flatnonzero(np.diff(run))
+    alone = np.diff(changes)[run[changes[1:]] != 0] == 1
+    if np.sum(alone) > ALONE * len(alone):
         return False
     jumps = steps[steps > 0]
     return len(jumps) > 0 and float(np.median(jumps)) > 1

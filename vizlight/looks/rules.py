@@ -95,7 +95,7 @@ def _is_loaded(contents: Contents) -> bool:
 
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
-    Rule("lines", _is_lines, "value", ("values",), lines.lines, "lines with values"),
+    Rule("lines", _is_lines, "value", ("values", "kinds"), lines.lines, "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
     Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,
          "points with values"),

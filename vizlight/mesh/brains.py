@@ -25,6 +25,8 @@ __all__ = [
     "tracks_of_tt", "volume",
 ]  # fmt: skip
 
+#: Name of the array of a volume by the end of the name of its file, where that is not NIfTI.
+FORMATS = {".mnc": "MINC", ".mgz": "MGH", ".mgh": "MGH", ".head": "AFNI", ".brik": "AFNI"}
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
 SURFACES = (".gii", ".gii.gz", ".mz3", ".annot")
 #: Ends of names of volumes.
@@ -213,7 +215,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     grid = _of_affine(affine, counts)
     kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
     flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
-    grid.point_data["NIFTI"] = flat
+    grid.point_data[FORMATS.get(path.suffix.lower(), "NIFTI")] = flat
     grid.field_data[UNIT] = ["millimetre"]
     said = meaning.Meaning(axes=[*meaning.ANATOMY])
     said.axes[-1] += (

@@ -166,11 +166,21 @@ def _of_meshio(path: Path) -> pv.DataSet:
     if not data.cells:
         raise ValueError("it has no cells")
     data.cell_sets = {}
+    _drop_short(data)
     mesh = pv.from_meshio(data)
     if _SAID.texts:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
+
+
+def _drop_short(data: Foreign) -> None:
+    """Leave out arrays without a row for each cell: meshio skips the groups of bars of Nastran."""
+    n_cells = sum(len(cells.data) for cells in data.cells)
+    for name, rows in [*data.cell_data.items()]:
+        if (count := sum(map(len, rows))) != n_cells:
+            del data.cell_data[name]
+            _check.warn(f"file: {name!r} has {count} rows for {n_cells} cells, and is left out")
 
 
 #: Ends of names of the two files of a mesh of TetGen.

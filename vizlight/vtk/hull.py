@@ -86,7 +86,8 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
 
     Each curved cell is replaced by a flat cell with the same nodes; those of a cell of Bezier are
     the places of its surface at the parameters of its control points. Points without cells
-    have a surface of all points without cells.
+    have a surface of all points without cells. Where a flat polygon lies on the face of a solid
+    cell, the surface has it once, wound as the face and with the data of the polygon.
     """
     if not mesh.GetNumberOfCells():
         bare, points = vtkPolyData(), vtkPoints()
@@ -114,12 +115,16 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         # An array of the mesh may have VTK's own name, whose surface was taken before.
         take.SetOriginalPointIdsName(NUMBERS)
         take.PassThroughPointIdsOn()
+        take.SetOriginalCellIdsName(NUMBERS)
+        take.SetPassThroughCellIds(walled := _has_walls(mesh))
     take.SetInputData(numbered)
     take.Update()
     surface: vtkPolyData = take.GetOutput()
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
     if not curved:
+        if walled:
+            _join_walls(surface, mesh)
         return surface, ids
     cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))
     surface.GetCellData().RemoveArray(NUMBERS)
@@ -128,6 +133,40 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         cells = cells[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
         surface.SetPolys(_outward(surface, mesh, cells))
     return _merged(surface, ids)
+
+
+def _has_walls(mesh: Dataset) -> bool:
+    """Return whether a dataset has flat polygons beside solid cells."""
+    return {_SOLID - 1, _SOLID}.issubset(map(_dimension, cell_types(mesh)))
+
+
+def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
+    """Take the faces that lie on polygons out of the surface of a grid, by its numbered cells."""
+    before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))[before:]
+    surface.GetCellData().RemoveArray(NUMBERS)
+    ids, offsets = connectivity(surface.GetPolys())
+    ids, sizes, doubled = ids.copy(), np.diff(offsets), []
+    kinds = np.array([grid.GetCellType(cell) for cell in cells.tolist()])
+    solid = np.isin(kinds, [kind for kind in np.unique(kinds) if _dimension(kind) == _SOLID])
+    for size in np.unique(sizes).tolist():
+        polygons = np.flatnonzero(sizes == size)
+        corners = offsets[polygons][:, np.newaxis] + np.arange(size)
+        rows = np.sort(ids[corners], axis=1)
+        # Equal ones stand beside each other, a wall before the face.
+        order = np.lexsort((solid[polygons], *rows.T))
+        pairs = np.all(np.diff(rows[order], axis=0) == 0, axis=1)
+        pairs &= np.diff(solid[polygons[order]].astype(np.int8)) == 1
+        wall, face = order[:-1][pairs], order[1:][pairs]
+        ids[corners[wall]] = ids[corners[face]]
+        doubled += polygons[face].tolist()
+    wound = vtkCellArray()
+    wound.SetData(as_vtk(offsets), as_vtk(ids))
+    surface.SetPolys(wound)
+    surface.BuildCells()
+    for polygon in doubled:
+        surface.DeleteCell(before + polygon)
+    surface.RemoveDeletedCells()
 
 
 def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) -> vtkCellArray:

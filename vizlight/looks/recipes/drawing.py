@@ -488,8 +488,11 @@ def colors_in(shown: Range, cmap: Foreign) -> Keywords:
     return {"cmap": table, "clim": ends}
 
 
-def titled(mesh: pv.DataSet, name: str) -> str:
-    """Return the name of an array with its date and its unit, where the mesh says them."""
+def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
+    """Return the name of an array with its date and its unit, where the mesh says them.
+
+    The course of a vector has no unit.
+    """
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
     unit = attributes.get("units", "") or of_brains
@@ -502,7 +505,7 @@ def titled(mesh: pv.DataSet, name: str) -> str:
         if not date and len(series.of(mesh)) > 1:
             date = f"t = {time:g}"
         title += f", {date}" * bool(date)
-    return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") else title
+    return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") and not course else title
 
 
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:

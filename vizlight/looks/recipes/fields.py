@@ -146,7 +146,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    keys = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
+    keys = [{"scene": scene, "title": titled(mesh.run(), array.name, course=True)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
 
 
@@ -257,7 +257,7 @@ def flow(case: Case) -> Drawing:
     # Lines that are asked for have their light in files.
     light = scene if case.wishes.question == "auto" else case.scene(camera)
     lit = _streamlines(case, mesh, light, keywords)
-    keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name)}]
+    keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name, course=True)}]
     wide = round(WIDE_IN_VOLUME * case.width, 1)
     if not keywords.get("line_field"):
         wide = _head_width(case, lit, camera, WIDTHS_IN_VOLUME)
