@@ -177,9 +177,9 @@ def max_pixel_error(
     ``(1 - a x)^r - (1 - x)^(f r / 2)`` with a = 2 cos^2(beta) or a = 2. The logarithm of the ratio
     of its derivative's two terms has one turning point, so each side of that point holds at most
     one root, which bisection finds to the last digit; there is no starting value and no local
-    optimum. The result bounds the error **in every codimension**; for an eye or a lamp at a position
-    the largest over the angles that occur is a bound (study ``highlights``). The absolute error of
-    ``error`` is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it
+    optimum. The result bounds the error **in every codimension**; for an eye or a lamp at a
+    position the largest over the angles that occur is a bound (study ``highlights``). The absolute
+    error of ``error`` is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it
     tends to ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3,
     where some last digits are off by one.
     """
