@@ -179,9 +179,9 @@ def max_pixel_error(
     one root, which bisection finds to the last digit; there is no starting value and no local
     optimum. The result bounds the error **in every codimension**; for an eye or a lamp at a
     position the largest over the angles that occur is a bound (study ``highlights``). The absolute
-    error of ``error`` is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with f = 4 it
-    tends to ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo, table 3,
-    where some last digits are off by one.
+    error of ``error`` is at most ``255 (4 eps)`` for every exponent. As r goes to infinity with
+    f = 4 it tends to ``255 (1 - C) C^(C / (1 - C))``, C = cos^2(beta). Source: Fisher and Woo,
+    table 3, where some last digits are off by one.
     """
     angle = _angles("light_eye_angle", light_eye_angle)
     r, factor = _powers("r", r), _powers("factor", factor)
