@@ -9,9 +9,7 @@ skin. A machine that follows strokes reads the way of the hair with a median err
 on PyVista's tubes of 7.5.
 """
 
-# sphinx_gallery_thumbnail_number = 1
 import numpy as np
-import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
@@ -34,33 +32,4 @@ groomed = {"length": "length", "toward": "lie", "bend": 0.96, "curl": 0.05, "tur
 coat = vizlight.fur(dog, scene, fibres=250_000, segments=6, absorption=0.7, **groomed)
 look = {"size": (1300, 930), "background": "#1b252e", "line_width": 1}
 plotter = render.make_plotter(render.Panel(coat, "rgb"), camera=camera, **look)
-plotter.show()
-
-# %%
-# Illustration 3 of Banks, *Illumination in Diverse Codimensions*, with its numbers: a torus with
-# radii 1.5 and 0.75 and 2,408,448 segments. A: fibres lit as lines. B: with the self-shadow of the
-# torus. C: dimmed by the fur above them too. The paper gives the density 0.02 without a unit; here
-# the whole length absorbs half of the light that crosses it. The part around the edge of the
-# shadow is shown, where fibres stand out one by one.
-
-torus = pv.ParametricTorus(1.5, 0.75, u_res=128, v_res=128, w_res=128)
-torus = torus.compute_normals(split_vertices=False, auto_orient_normals=True)
-camera = render.camera_on((0.5, 2.2, -2.0, -0.3, -0.5, 1.1), (0.3, -1, 0.8), aspect=0.75, zoom=1.5)
-scene = Scene(
-    lights=Light(direction=(-1, -0.6, 0.9)),
-    view=View.from_camera(camera),
-    material=Material(ambient=0.1, diffuse=0.9, specular=0.1, color=(1.0, 0.8, 0.5)),
-)
-panels = []
-for title, options in {
-    "A": {"conditioned": False, "absorption": 0},
-    "B": {"absorption": 0},
-    "C": {"absorption": 0.5},
-}.items():
-    coat = vizlight.fur(
-        torus, scene, fibres=802_816, segments=3, length=0.25, curl=0.15, exponent=1, **options
-    )
-    panels.append(render.Panel(coat, "rgb", title))
-look |= {"camera": camera, "size": (1500, 680), "line_width": 1}
-plotter = render.make_plotter(panels, **look)
 plotter.show()

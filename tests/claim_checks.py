@@ -286,6 +286,18 @@ def pixel_errors_of_highlights(random):
 
 
 @case
+def roughness_of_highlights(random):
+    """A lobe of GGX beside a power of the cosine: by the roughness of the page, and by another."""
+    angle, q = np.linspace(0, np.pi / 2, 2000), float(np.exp(random.uniform(np.log(80), 7)))
+
+    def differences(squared):
+        lobe = (squared / (np.cos(angle) ** 2 * (squared - 1) + 1)) ** 2
+        return np.abs(lobe - np.cos(angle) ** q).max()
+
+    return [(0.07, differences(2.8 / q)), (0.17, differences(2 / (q + 2)))]
+
+
+@case
 def largest_gaps(random):
     """Evenly spaced lines of random waves, on a plane, on a ball and in a volume."""
     found = []

@@ -39,6 +39,7 @@ SECTIONS = {
         "plot_read_heading": "Arch of nerve fibres in grays, and in hues of the near end",
         "plot_depth": "Streamlines three times: bright all over, and fading with depth",
         "plot_fur": "Head and shoulders of a golden dog whose hair lies back",
+        "plot_furry_torus": "Fur at the edge of a shadow, flat and with single fibres standing out",
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
@@ -71,7 +72,7 @@ ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
 FIRST = (
-    "plot_codimension", "plot_depth", "plot_fur", "plot_highlights", "plot_principal_lines",
+    "plot_codimension", "plot_depth", "plot_highlights", "plot_principal_lines",
     "plot_read_direction", "plot_satin", "plot_seeping_light",
 )  # fmt: skip
 
@@ -83,6 +84,7 @@ PARTS = {
     "plot_carotid": (0.1, 0.05, 0.9, 0.9),
     "plot_complex_curve": (0.1, 0.05, 0.85, 1.0),
     "plot_depth": (0.67, 0.06, 1.0, 0.7),
+    "plot_furry_torus": (0.67, 0.1, 1.0, 0.8),
     "plot_highlights": (0.2, 0.04, 0.97, 0.36),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.0, 1.0, 1.0),

@@ -106,6 +106,14 @@ def normal(theta, phi):
     )
 
 
+@pytest.mark.parametrize(("degrees", "r", "printed"), [(120, 40, 7.8), (140, 180, 6.0)])
+def test_deviations_of_the_summary(degrees, r, printed):
+    """Over a grid of the source's angles, theta and phi in steps of a degree: below 10."""
+    theta, phi = np.meshgrid(*[np.linspace(0, np.pi, 181)] * 2)
+    errors, _ = errors_of_normals(np.deg2rad(degrees), r, 4.0, normal(theta, phi))
+    assert errors.std() == pytest.approx(printed, abs=0.05)
+
+
 @lru_cache(maxsize=1)
 def phong_of_the_grid(degrees, r):
     """Phong's light of a fine grid of normals, the cosine of H, and which are lit."""

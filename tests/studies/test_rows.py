@@ -10,6 +10,7 @@ import pyvista as pv
 import studies
 from studies import (
     _readable,
+    areas,
     bundle,
     engine,
     fur,
@@ -73,6 +74,16 @@ def test_a_near_eye_or_lamp_has_errors_below_the_bound_of_its_largest_angle():
             errors.append([row.error for row in rows])
         assert np.all(np.diff(errors, axis=0) < 0)
         assert errors[-1] == pytest.approx([63.75, 33.05], abs=0.6)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "cone"])
+def test_contours_of_large_images_are_nearer_than_facets(shape):
+    small, large = ({row.way: row for row in areas.measure(shape, side, 1)} for side in (60, 240))
+    lines, facets = f"contours, {shape}", f"Gouraud, {shape}"
+    assert large[lines].error < min(small[lines].error, large[facets].error / 2)
+    assert all(row.more["covered"] > 0.89 for row in large.values())
+    assert large[f"rays, {shape}"].parameter > 15 * small[f"rays, {shape}"].parameter
+    assert large[lines].cost < small[lines].cost
 
 
 def test_contours_of_smooth_normals_and_of_the_solid_are_circles():
