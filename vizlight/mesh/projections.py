@@ -302,7 +302,13 @@ def _text_of_pole(lat: float, lon: float) -> str:
 
 
 def around(lon: float) -> str:
-    """Return the text of the projection of a map around the earth with a middle longitude."""
+    """Return the text of the projection that suits a map around the earth.
+
+    Parameters
+    ----------
+    lon : float
+        Longitude of its middle in degrees.
+    """
     return f"+proj=eqearth +lon_0={lon:.9g} +R={RADIUS}"
 
 
