@@ -140,6 +140,6 @@ def save_picture(
 def _panel(plotter: pv.Plotter, text: str) -> None:
     plotter.background_color = pv.Color("white")
     # VTK before 9.7 draws several supersampled panels in one place.
-    plotter.enable_anti_aliasing("ssaa" if pv.vtk_version_info >= (9, 7) else "msaa")
+    plotter.enable_anti_aliasing("ssaa" if render.SUPERSAMPLES_PARTS else "msaa")
     words = plotter.add_text(text, position="upper_edge", font_size=9, color="black")
     words.GetTextProperty().SetLineOffset(8)

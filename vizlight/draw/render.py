@@ -73,6 +73,8 @@ PictureLight = Literal["auto", "points"]
 
 #: Supersampling draws at twice the size, and drivers support at most 16384 pixels per side.
 LARGEST_SIDE, LARGEST_AREA = 8192, 33_000_000
+#: Whether VTK supersamples parts of a picture: older ones put all of them where the first one is.
+SUPERSAMPLES_PARTS = pv.vtk_version_info >= (9, 7)
 #: File name extensions of pictures that VTK writes.
 IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 #: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
@@ -234,8 +236,7 @@ def make_plotter(
         )
     if anti_aliasing == "auto":
         anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
-    # Older VTK puts all supersampled panels where the first one is.
-    if anti_aliasing == "ssaa" and len(shown) > 1 and pv.vtk_version_info < (9, 7):
+    if anti_aliasing == "ssaa" and len(shown) > 1 and not SUPERSAMPLES_PARTS:
         anti_aliasing = "msaa"
     try:
         for number, panel in enumerate(shown):
@@ -547,7 +548,8 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
-    if off_screen:
+    # A key makes the data a part of the picture.
+    if off_screen and SUPERSAMPLES_PARTS:
         plotter.enable_anti_aliasing("ssaa")
     else:
         plotter.enable_anti_aliasing("msaa", multi_samples=8)
