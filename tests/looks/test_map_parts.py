@@ -215,3 +215,21 @@ def test_coasts_are_seen_on_dark_colours_and_on_light_ones():
         # Over the data: coasts alone.
         inner = change[40:120, 60:260]
         assert np.mean(inner > 150) > 0.03
+
+
+@pytest.mark.parametrize(
+    ("methods", "words"),
+    [
+        ("time: mean (interval: 6 hour)", "warmth, mean about 1900-01-03 (K)"),
+        ("area: mean time: maximum", "warmth, maximum about 1900-01-03 (K)"),
+        ("time: point", "warmth, 1900-01-03 (K)"),
+        ("", "warmth, 1900-01-03 (K)"),
+    ],
+)
+def test_the_title_says_what_a_value_sums_up_in_time(methods, words):
+    mesh = chart(60, 40)
+    said = meaning.Meaning(time="hours since 1900-01-01")
+    said.add_array("warmth", {"units": "K", "cell_methods": methods})
+    meaning.attach(mesh, said)
+    mesh.field_data["TimeValue"] = [48.0]
+    assert vizlight.look(mesh).drawing.keys[0]["title"].startswith(words)

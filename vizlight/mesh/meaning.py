@@ -40,7 +40,7 @@ ANATOMY = {
     "x to the right": "left, right", "y forward": "back, front", "z up": "down, up",
 }  # fmt: skip
 #: Attributes of an array of a file that are kept.
-KEPT = ("standard_name", "units", "long_name")
+KEPT = ("standard_name", "units", "long_name", "cell_methods")
 
 
 @dataclass

@@ -56,6 +56,8 @@ MOST_BORDERS, SEAM = 0.3, 1e-6
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
 
+#: Methods of CF over the time of a step.
+OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
 VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|vectors?|.*(veloc|wind|flow|current).*")
 #: Width over height of a map from which a key takes less room below it, in that of the picture.
@@ -504,6 +506,10 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
         date = dates.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
         if not date and len(series.of(mesh)) > 1:
             date = f"t = {time:g}"
+        # What a value sums up is longer than the moment that its step has.
+        method = OVER_TIME.search(attributes.get("cell_methods", ""))
+        if date and method is not None:
+            date = f"{method[1]} about {date}"
         title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") and not course else title
 
