@@ -218,17 +218,18 @@ def test_coasts_are_seen_on_dark_colours_and_on_light_ones():
 
 
 @pytest.mark.parametrize(
-    ("methods", "words"),
+    ("methods", "span", "words"),
     [
-        ("time: mean (interval: 6 hour)", "warmth, mean about 1900-01-03 (K)"),
-        ("area: mean time: maximum", "warmth, maximum about 1900-01-03 (K)"),
-        ("time: point", "warmth, 1900-01-03 (K)"),
-        ("", "warmth, 1900-01-03 (K)"),
+        ("time: mean (interval: 6 hour)", [], "warmth, mean at 1900-01-03 (K)"),
+        ("time: mean", [24.0, 60.0], "warmth, mean of 1900-01-02 to 1900-01-03 12:00 (K)"),
+        ("area: mean time: maximum", [], "warmth, maximum at 1900-01-03 (K)"),
+        ("time: point", [24.0, 72.0], "warmth, 1900-01-03 (K)"),
+        ("", [], "warmth, 1900-01-03 (K)"),
     ],
 )
-def test_the_title_says_what_a_value_sums_up_in_time(methods, words):
+def test_the_title_says_what_a_value_sums_up_in_time(methods, span, words):
     mesh = chart(60, 40)
-    said = meaning.Meaning(time="hours since 1900-01-01")
+    said = meaning.Meaning(time="hours since 1900-01-01", span=span)
     said.add_array("warmth", {"units": "K", "cell_methods": methods})
     meaning.attach(mesh, said)
     mesh.field_data["TimeValue"] = [48.0]

@@ -429,3 +429,21 @@ def test_a_table_that_is_larger_than_a_field_is_not_shown(tmp_path):
     mesh = vizlight.read(tmp_path / "a.nc")
     assert mesh.n_points == HEIGHTS.size
     assert "t" in mesh.array_names
+
+
+@pytest.mark.parametrize("in_file", [True, False])
+def test_a_step_has_the_bounds_of_its_time(tmp_path, in_file):
+    data = xr.Dataset(
+        {"t": (("time", "lat", "lon"), np.arange(24.0).reshape(2, 3, 4), {"units": "K"})},
+        coords={
+            "time": ("time", [12.0, 36.0], {"units": "hours since 2001-01-01", "bounds": "spans"}),
+            "lat": ("lat", [40.0, 41, 42]), "lon": ("lon", [5.0, 6, 7, 8]),
+        },
+    )  # fmt: skip
+    data["spans"] = ("time", "ends"), [[0.0, 24.0], [24.0, 48.0]]
+    if in_file:
+        data.to_netcdf(tmp_path / "means.nc")
+    mesh = vizlight.read(tmp_path / "means.nc" if in_file else data, time="first")
+    assert meaning.of(mesh).span == [0.0, 24.0]
+    del data["time"].attrs["bounds"]
+    assert meaning.of(vizlight.read(data)).span == []

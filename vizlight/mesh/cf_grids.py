@@ -596,6 +596,11 @@ class _Reader:
         step = self._dated(ticking, time)
         if clock is not None:
             single[clock] = step
+        # xarray moves the name of bounds from the attributes of a file.
+        named = {} if along is None else along.attrs | along.encoding
+        bounds = self.file.variables.get(named.get("bounds"))
+        if bounds is not None and bounds.size == 2 * len(ticking):
+            self.said.span = np.reshape(bounds.values, (-1, 2))[step].astype(float).tolist()
         return ticking, step, single
 
     def _moment(self) -> Foreign:

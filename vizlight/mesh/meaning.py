@@ -58,12 +58,15 @@ class Meaning:
     time : str
         Unit of the times of its steps, such as "hours since 1900-01-01", and their calendar if it
         is not the usual one.
+    span : list of float
+        Begin and end of the time that the step stands for, none where the file does not say them.
     """
 
     axes: list[str] = field(default_factory=list)
     arrays: dict[str, dict[str, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     time: str = ""
+    span: list[float] = field(default_factory=list)
 
     def add_array(self, name: str, attributes: Foreign) -> None:
         """Keep what the attributes of an array say."""

@@ -502,16 +502,24 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
     if series.TIME in mesh.field_data:
-        time = float(np.ravel(mesh.field_data[series.TIME])[0])
-        date = dates.date(time, meaning.of(mesh).time).removesuffix(" 00:00")
-        if not date and len(series.of(mesh)) > 1:
-            date = f"t = {time:g}"
-        # What a value sums up is longer than the moment that its step has.
-        method = OVER_TIME.search(attributes.get("cell_methods", ""))
-        if date and method is not None:
-            date = f"{method[1]} about {date}"
+        date = _dated(mesh, attributes.get("cell_methods", ""))
         title += f", {date}" * bool(date)
     return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") and not course else title
+
+
+def _dated(mesh: pv.DataSet, methods: str) -> str:
+    """Return the date of a step, with what a value sums up of the time for which it stands."""
+    said = meaning.of(mesh)
+    times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
+    date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
+    if not date and len(series.of(mesh)) > 1:
+        date = f"t = {times[0]:g}"
+    method = OVER_TIME.search(methods)
+    if not date or method is None:
+        return date
+    return (
+        f"{method[1]} of {ends[0]} to {ends[1]}" if all(ends) and ends else f"{method[1]} at {date}"
+    )
 
 
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
