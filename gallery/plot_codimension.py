@@ -9,14 +9,13 @@ contrast; the curve in 4-space has a contrast of 0.18. Lower row: the exponent p
 printed in the paper, brings all means near 1/2, and this contrast to 0.70.
 """
 
-# sphinx_gallery_thumbnail_number = 1
 from fractions import Fraction
 
 import numpy as np
 import pyvista as pv
 
 import vizlight
-from vizlight import Light, Material, Scene, View, render
+from vizlight import Light, Material, Scene, render
 from vizlight.geometry import manifolds
 from vizlight.model import brightness
 
@@ -38,30 +37,4 @@ for exponent in (1, "compensated"):
 camera = render.camera_on(below.bounds, (0.25, -1, 0.75), aspect=1.05, zoom=1.4)
 look = {"rows": 2, "size": (1800, 860), "background": "#203048", "line_diameter": 0.036}
 plotter = render.make_plotter(panels, camera=camera, **look)
-plotter.show()
-
-# %%
-# A field on a surface in 4-space, Clifford's torus. Left: lit by the surface itself (k = 2).
-# Middle: by a tangent field on it (k = 1), which the paper's conclusion proposes. Right: by the
-# field, and dark where the surface is dark.
-
-torus = manifolds.clifford_torus(resolution=192)
-torus = vizlight.manifold(torus, rotation=("xw", 0.15), distance=1.6)
-frame = np.asarray(torus["frame"]).reshape(-1, 2, 4)
-torus["field"] = frame[:, 0] + frame[:, 1]
-scene = Scene(
-    lights=Light(direction=(0.5, -0.7, 0.6, 0.2)),
-    view=View(direction=(0.3, -1, 0.8, 0)),
-    material=Material(ambient=0.1, diffuse=0.6, specular=0.4),
-)
-panels = []
-for title, options in {
-    "surface": {"tangents": "frame"},
-    "field": {"tangents": "field"},
-    "field and surface": {"tangents": "field", "conditioned": "frame"},
-}.items():
-    lit = vizlight.illuminate(torus, scene, positions="position", **options)
-    panels.append(render.Panel(lit, title=title))
-camera = render.camera_on(torus.bounds, (0.3, -1, 0.8), zoom=1.0)
-plotter = render.make_plotter(panels, camera=camera, size=(1500, 480), background="#203048")
 plotter.show()

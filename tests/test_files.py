@@ -123,7 +123,7 @@ test_bad_arrays = refusals(
         lambda g: files.surface_of(pv.Sphere(), "s"),
         "contour: expected .* of one component, but the mesh has none, got 's'",
     ),
-    (lambda g: files.surface_of(g, "V"), "contour: .*got 'V' with 3 components"),
+    (lambda g: files.surface_of(g, "V"), r"contour: .*got 'V' of an array of shape \(512, 3\)"),
     (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
     (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
     (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),

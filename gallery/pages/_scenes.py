@@ -72,8 +72,8 @@ ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
 FIRST = (
-    "plot_codimension", "plot_depth", "plot_highlights", "plot_principal_lines",
-    "plot_read_direction", "plot_satin", "plot_seeping_light",
+    "plot_depth", "plot_highlights", "plot_principal_lines", "plot_read_direction", "plot_satin",
+    "plot_seeping_light",
 )  # fmt: skip
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other

@@ -38,7 +38,8 @@ def test_strokes_are_as_long_as_asked_for_and_spread_over_the_mesh(layers: int) 
     np.testing.assert_allclose(ways[:, 1:], 0, atol=1e-6)
     assert np.all((ways[:, 0] > 0) & (ways[:, 0] < LENGTH * (1 + 1e-6)))
     widths = lines.point_data["width"]
-    assert widths.min() == 0
+    # Young ones are thin as a whole.
+    assert widths.min() < 0.1
     assert 0.9 < widths.max() <= 1
     # Every square of 2.5 by 2.5 has strokes.
     counts, _, _ = np.histogram2d(*lines.points[:, :2].T, bins=4, range=[[0, 10], [0, 10]])

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 FAST = 75
 #: Least and largest number of strokes.
 FEWEST, MOST = 20, 3000
-#: Points of a stroke, and largest step in cell lengths.
-ROWS, STEP = 16, 1.0
+#: Points of a stroke, length of its head in space as a share of it, and largest step in cell
+#: lengths.
+ROWS, HEAD, STEP = 16, 0.13, 1.0
 #: Least and largest life of a particle, in the time that its stroke shows.
 LIVES = 1.5, 4.0
 #: Time for which the field runs before the first picture, in the same.
@@ -56,7 +57,9 @@ class Drift:
         self._random = np.random.default_rng(0)
         self._carrier = Carrier(mesh)
         self._n_points, self._bounds = mesh.n_points, mesh.bounds
-        self._arrow = strokes.TUBE if mesh.GetMaxSpatialDimension() == 3 else strokes.FLAT
+        # A particle passes few points within a head: in space it is longer than where strokes lie.
+        tube = strokes.TUBE._replace(head=HEAD)
+        self._arrow = tube if mesh.GetMaxSpatialDimension() == 3 else strokes.FLAT
         self._carrier.between(vectors, vectors)
         self._store = self._places(mesh, spacing, length)
         speeds = np.linalg.norm(self._carrier.motion(self._store, 0.0), axis=1)

@@ -60,7 +60,7 @@ def read_off(path: Path) -> pv.PolyData:
         raise ValueError("no numbers of vertices and faces in an OFF file")
     points, faces = (_count(word, "number of vertices and faces") for word in rows[0][:2])
     if len(rows) - 1 < points + faces:
-        words = [word for row in rows[1:] for word in row]
+        words = [*rows[0][3:], *(word for row in rows[1:] for word in row)]
         size = width + 3 * bool(normal) + 4 * bool(coloured) + 2 * bool(textured)
         rows[1:] = _broken(words, points, faces, size)
     table = _table(rows[1 : points + 1])
@@ -97,8 +97,9 @@ def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list
     ValueError
         If they are too few.
     """
-    ends = [size * i for i in range(points + 1)]
-    while len(ends) <= points + faces and ends[-1] < len(words):
+    whole = min(points, len(words) // size)
+    ends = [size * i for i in range(whole + 1)]
+    while whole == points and len(ends) <= points + faces and ends[-1] < len(words):
         ends.append(ends[-1] + 1 + _count(words[ends[-1]], "number of corners"))
     if len(ends) <= points + faces or ends[-1] > len(words):
         there = sum(end <= len(words) for end in ends[1:])
