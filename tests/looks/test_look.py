@@ -181,7 +181,7 @@ def test_strokes_of_a_movie_move_and_the_key_says_how_much_time_it_shows(tmp_pat
     assert "travel=3.0" in script
     assert "movie.travel(" in script
     assert re.search(
-        r'title="length of V; strokes move with it, 0\.\d+ of its time in all"', script
+        r'title="speed of V; strokes move with it, 0\.\d+ of its time in all"', script
     )
     assert "travel" not in look.script(tmp_path / "a.png")
     with Image.open(look.save(tmp_path / "a.gif")) as movie:
