@@ -180,9 +180,7 @@ def test_strokes_of_a_movie_move_and_the_key_says_how_much_time_it_shows(tmp_pat
     script = look.script(tmp_path / "a.gif")
     assert "travel=3.0" in script
     assert "movie.travel(" in script
-    assert re.search(
-        r'title="speed of V; strokes move with it, 0\.\d+ of its time in all"', script
-    )
+    assert re.search(r'title="speed of V; strokes move with it, 0\.\d+ of its time in all"', script)
     assert "travel" not in look.script(tmp_path / "a.png")
     with Image.open(look.save(tmp_path / "a.gif")) as movie:
         assert movie.n_frames > 60
