@@ -8,7 +8,7 @@ import textwrap
 from docutils import nodes
 
 DEFAULT = "Light that makes scientific data legible, as point scalars on PyVista meshes."
-IMAGE = "https://raw.githubusercontent.com/vizlight/vizlight/main/gallery/direction.jpg"
+IMAGE = "https://raw.githubusercontent.com/vizlight/vizlight/main/gallery/looks.jpg"
 
 
 def describe(_app, _page, _template, context, doctree):
