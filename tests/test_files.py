@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from refusals import refusals
+from scipy.spatial import cKDTree
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
@@ -600,6 +601,44 @@ def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatc
     mesh = vizlight.read(tmp_path / "a.vtpd")
     assert mesh.n_cells == sum(part.n_cells for part in parts)
     assert list(mesh.field_data["TimeValue"]) == [7]
+
+
+@pytest.mark.filterwarnings("ignore:.*edges are sharper:UserWarning")
+@pytest.mark.parametrize("ghosts", [False, True])
+@pytest.mark.parametrize("suffix", [".vtp", ".vtu"])
+def test_pieces_of_one_mesh_share_the_points_of_their_seams(suffix, ghosts, tmp_path):
+    """So that light has no seam, and a volume has no walls inside; cells of neighbours go."""
+    whole = pv.Sphere() if suffix == ".vtp" else volume().cast_to_unstructured_grid()
+    whole.point_data.clear()
+    whole["even"] = np.arange(whole.n_points) % 2 == 0
+    (corners,) = whole.cast_to_unstructured_grid().cells_dict.values()
+    side = whole.cell_centers().points[:, 0] > whole.center[0] + 0.01
+    kind, lines = type(whole).__name__, []
+    for i, own in enumerate((side, ~side)):
+        kept = np.isin(corners, corners[own]).any(axis=1) if ghosts else own
+        piece = whole.remove_cells(~kept)
+        piece.clear_cell_data()
+        piece.cell_data["vtkGhostType"] = (~own[kept]).astype(np.uint8)
+        del piece.point_data["vtkOriginalPointIds"]
+        piece.save(tmp_path / f"{i}{suffix}")
+        lines.append(f'<Piece Source="{i}{suffix}"/>')
+    arrays = '<P{}><PDataArray type="UInt8" Name="{}"/></P{}>'
+    (tmp_path / f"x.p{suffix[1:]}").write_text(
+        f'<VTKFile type="P{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
+        f'<P{kind} GhostLevel="{int(ghosts)}">'
+        + arrays.format("PointData", "even", "PointData")
+        + arrays.format("CellData", "vtkGhostType", "CellData")
+        + '<PPoints><PDataArray type="Float32" NumberOfComponents="3"/></PPoints>'
+        + "".join(lines)
+        + f"</P{kind}></VTKFile>"
+    )
+    mesh = vizlight.read(tmp_path / f"x.p{suffix[1:]}")
+    assert (mesh.n_points, mesh.n_cells) == (whole.n_points, whole.n_cells)
+    assert files.surface_of(mesh).n_cells == files.surface_of(whole).n_cells
+    _, at = cKDTree(whole.points).query(mesh.points)
+    np.testing.assert_array_equal(mesh["even"], whole["even"][at])
+    lit = [vizlight.illuminate(each, feature_angle=None)["luminance"] for each in (mesh, whole)]
+    np.testing.assert_allclose(lit[0], lit[1][at], atol=1e-6)
 
 
 def test_xdmf_without_times_is_read(tmp_path):

@@ -38,6 +38,7 @@ from vizlight.mesh import (
     foreign_files,
     georeference,
     height_grids,
+    joining,
     meaning,
     normals,
     records,
@@ -76,6 +77,8 @@ FORMATS: dict[str, tuple[str, ...]] = {
 }
 #: Ends of names of files that have points for each face, or for each colour.
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
+#: Indices of pieces of one mesh, whose cells name their points.
+PIECES = (".pvtp", ".pvtu")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Names of the blocks of Exodus: those of elements, and of what is chosen among them.
@@ -381,6 +384,9 @@ def _whole(
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
         mesh = normals.welded(blocks.surface(mesh, "file"))
+    elif suffix in PIECES:
+        # Pieces have cells of their neighbours, and points of their own along the seams.
+        mesh = normals.welded(joining.without_ghosts(mesh))
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
             cf_grids.add(mesh, _found(path, time), path)

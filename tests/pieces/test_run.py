@@ -307,7 +307,8 @@ def test_every_piece_has_the_mask_and_the_index_is_read_by_vtk(stored, light):
     assert '<PPointData Scalars="luminance">' in index
     assert "<PCellData Scalars" not in index
     whole = vizlight.read(lit.path)
-    assert (whole.n_points, whole.n_cells) == (lit.points, lit.cells)
+    assert whole.n_points < lit.points  # those along the seams are one
+    assert whole.n_cells == lit.cells
     assert whole["luminance_valid"].all()
     assert lit.ranges["luminance"] == (whole["luminance"].min(), whole["luminance"].max())
     np.testing.assert_allclose(lit.bounds, whole.bounds)

@@ -131,7 +131,10 @@ def read(
         reader = vtkXMLPPolyDataReader()
         reader.SetFileName(str(path))
         reader.Update()
-        return pv.wrap(reader.GetOutput())
+        mesh: pv.PolyData = pv.wrap(reader.GetOutput())
+        # As its readers do, for arrays of booleans.
+        mesh._restore_metadata()
+        return mesh
     return None
 
 

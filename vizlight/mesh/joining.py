@@ -17,7 +17,7 @@ from vizlight.vtk.hull import cell_types, dimension
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import AnyArray, Foreign, RawType
+    from vizlight._types import AnyArray, Bools, Foreign, RawType
 
 #: Value of a colour of bytes where a dataset has none, mid grey.
 GREY = 128
@@ -60,6 +60,28 @@ def _listed(names: dict[str, list[str]]) -> str:
 def _some(names: Sequence[str]) -> str:
     more = len(names) - LISTED
     return ", ".join(names[:LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
+    """Return some cells of a mesh with their points, of the same kind of mesh; itself for all."""
+    if which.all():
+        return mesh
+    rest: Foreign = ~which
+    part: pv.DataSet = mesh.remove_cells(rest, pass_point_ids=False, pass_cell_ids=False)
+    return part
+
+
+def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
+    """Return a mesh without the duplicate cells that its writer marked."""
+    if GHOSTS in mesh.point_data:
+        del mesh.point_data[GHOSTS]
+    if GHOSTS not in mesh.cell_data:
+        return mesh
+    # The lowest bit of VTK's flags marks duplicate cells; the others, as of hidden cells, mark no
+    # copies.
+    kept = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
+    # A structured grid keeps all of its cells.
+    return some_cells(mesh, kept) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
 
 
 def joined(parts: Iterable[tuple[pv.DataSet, str]]) -> Joined:

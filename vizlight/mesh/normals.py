@@ -20,6 +20,7 @@ from vizlight.model import kernels
 from vizlight.scene import View
 from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (
+    cell_arrays,
     connectivity,
     faces_only,
     first_twins,
@@ -27,6 +28,7 @@ from vizlight.vtk.cells import (
     n_points,
     places,
     point_data,
+    renumber_corners,
     triangles,
     vtk_points,
 )
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
     from vizlight.shading.options import FeatureAngle, LightOptions
     from vizlight.vtk.parts import Part
 
+    MeshT = TypeVar("MeshT", bound=pv.DataSet)
     SurfaceT = TypeVar("SurfaceT")
 
     from vizlight._types import Foreign
@@ -445,18 +448,19 @@ def closest_normals(surface: pv.PolyData, points: Array) -> Array:
     return cells.interpolated(np.asarray(surface.point_data[NORMALS], dtype=np.float64), places)
 
 
-def welded(mesh: pv.PolyData) -> pv.PolyData:
-    """Return a surface whose points at the same place are one, where all their arrays are equal.
+def welded(mesh: MeshT) -> MeshT:
+    """Return a mesh whose points at the same place are one, where all their arrays are equal.
 
-    Points without a face are left out. Normals that are computed are then those of the surface, not
+    Points without a cell are left out. Normals that are computed are then those of the surface, not
     of each face; points that differ in a colour or a texture coordinate stay apart.
 
     Parameters
     ----------
-    mesh : pyvista.PolyData
-        Surface of polygons alone; anything else is returned as it is.
+    mesh : pyvista.PolyData or pyvista.UnstructuredGrid
+        Surface of polygons alone, or cells; anything else is returned as it is.
     """
-    if mesh.n_cells != mesh.GetNumberOfPolys() or not mesh.n_cells:
+    is_grid = isinstance(mesh, pv.UnstructuredGrid)
+    if not mesh.n_cells or not (is_grid or mesh.n_cells == mesh.GetNumberOfPolys()):
         return mesh
     # Adding 0 makes 0.0 of -0.0, so that equal places have equal bytes.
     parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
@@ -468,15 +472,17 @@ def welded(mesh: pv.PolyData) -> pv.PolyData:
     _, first, same = np.unique(
         table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
     )
-    ids, ends = connectivity(mesh.GetPolys())
-    corners = first[same.reshape(-1)][ids]
+    first = first[same.reshape(-1)]
     kept = np.zeros(mesh.n_points, dtype=np.bool_)
-    kept[corners] = True
+    for cells in cell_arrays(mesh):
+        kept[first[connectivity(cells)[0]]] = True
     if kept.all():
         return mesh
-    out = pv.PolyData()
+    out = mesh.copy()
+    # Arrays have a row for each point.
+    out.clear_data()
+    renumber_corners(out, (np.cumsum(kept) - 1)[first])
     out.points = np.asarray(mesh.points)[kept]
-    out.SetPolys(blocks.cell_array((np.cumsum(kept) - 1)[corners], ends))
     records.carry_rows(mesh, out, np.flatnonzero(kept))
     return out
 

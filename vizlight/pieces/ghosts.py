@@ -8,13 +8,14 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
-from vizlight.vtk.cells import GHOSTS, cell_arrays, connectivity
+from vizlight.mesh.joining import some_cells
+from vizlight.vtk.cells import cell_arrays, connectivity, renumber_corners
 from vizlight.vtk.topology import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vizlight._types import Array, Bools, Foreign, Indices
+    from vizlight._types import Array, Foreign, Indices
 
 #: Name of the cell array that is 1 on the cells of other pieces.
 GHOST = "vizlight_ghost"
@@ -25,28 +26,6 @@ def own_cells(mesh: pv.DataSet) -> pv.DataSet:
     if GHOST not in mesh.cell_data:
         return mesh
     return some_cells(mesh, np.asarray(mesh.cell_data.pop(GHOST)) == 0)
-
-
-def some_cells(mesh: pv.DataSet, which: Bools) -> pv.DataSet:
-    """Return some cells of a mesh with their points, of the same kind of mesh; itself for all."""
-    if which.all():
-        return mesh
-    rest: Foreign = ~which
-    part: pv.DataSet = mesh.remove_cells(rest, pass_point_ids=False, pass_cell_ids=False)
-    return part
-
-
-def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a mesh without the duplicate cells that its writer marked."""
-    if GHOSTS in mesh.point_data:
-        del mesh.point_data[GHOSTS]
-    if GHOSTS not in mesh.cell_data:
-        return mesh
-    # The lowest bit of VTK's flags marks duplicate cells; the others, as of hidden cells, mark no
-    # copies.
-    kept = (np.asarray(mesh.cell_data.pop(GHOSTS)) & 1) == 0
-    # A structured grid keeps all of its cells.
-    return some_cells(mesh, kept) if isinstance(mesh, pv.PolyData | pv.UnstructuredGrid) else mesh
 
 
 def with_layer(
@@ -121,14 +100,5 @@ def _joined(mesh: pv.DataSet, layers: Sequence[pv.DataSet]) -> pv.DataSet:
     index = np.arange(joined.n_points)
     same = _Places(places).find(places[mesh.n_points :])
     index[mesh.n_points :] = np.where(same < 0, index[mesh.n_points :], same)
-    every = cell_arrays(joined)
-    # A polyhedron has the points of its faces in an array of its own.
-    polyhedra = joined.GetPolyhedronFaces() if isinstance(joined, pv.UnstructuredGrid) else None
-    if polyhedra is not None:
-        every.append(polyhedra)
-    for cells in every:
-        # This is VTK's own memory, which is changed in place.
-        ids = pv.convert_array(cells.GetConnectivityArray())
-        ids[:] = index[ids]
-    joined.Modified()
+    renumber_corners(joined, index)
     return joined  # type: ignore[no-any-return]

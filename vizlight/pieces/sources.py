@@ -19,7 +19,8 @@ from vtkmodules import vtkIOXML
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check, files
-from vizlight.pieces.ghosts import GHOST, own_cells, with_layer, without_ghosts
+from vizlight.mesh.joining import without_ghosts
+from vizlight.pieces.ghosts import GHOST, own_cells, with_layer
 from vizlight.vtk.hull import cropped
 
 if TYPE_CHECKING:

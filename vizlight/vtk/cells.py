@@ -338,6 +338,17 @@ def cell_arrays(mesh: Foreign) -> list[vtkCellArray]:
     return [] if cells is None else [cells]
 
 
+def renumber_corners(mesh: Foreign, numbers: Indices) -> None:
+    """Give the corners of all cells of a mesh, in VTK's own memory, the new numbers of points."""
+    every = cell_arrays(mesh)
+    # A polyhedron has the points of its faces in an array of its own.
+    faces = mesh.GetPolyhedronFaces() if isinstance(mesh, vtkUnstructuredGrid) else None
+    for cells in [*every, faces] if faces is not None else every:
+        ids = as_numpy(cells.GetConnectivityArray())
+        ids[:] = numbers[ids]
+    mesh.Modified()
+
+
 def dimensions(grid: Foreign) -> tuple[int, int, int]:
     """Return the number of points of a grid along each of its axes."""
     low, high = np.reshape(grid.GetExtent(), (3, 2)).T
