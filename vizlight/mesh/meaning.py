@@ -189,6 +189,13 @@ _USUAL = (
     # NEMO's vozocrtx and vomecrty
     (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
     (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
+    # ulon and ulat, of models on a sphere
+    (r"([uv]_?)(lon|lat)()", "lon lat"),
+    # velocity_0, velocity_1 and velocity_2, columns of one array
+    (
+        r"((?:.*[_\W])?(?:vel\w*?|vectors?|wi?nd|curr\w*?|displ\w*?|forces?|flow)[_:.\- ]?)(\d)()",
+        "0 1 2",
+    ),
     # uEast and v_northward
     (r"()[uv]_?(east|north)(.*)", "east north"),
     (r"(.*)(east|north)(.*)", "east north"),
@@ -287,7 +294,8 @@ def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterato
                     groups.setdefault(key, {})[part.lower()] = name
         for group in groups.values():
             every = [group[word] for word in parts.split() if word in group]
-            if set(parts.split()[:2]) <= set(group):
+            # With a fourth number these are no axes, but layers or kinds.
+            if set(parts.split()[:2]) <= set(group) <= set(parts.split()):
                 yield tuple(every)
     yield from _by_letters([name for name in names if _is_of_motion(units[name])], units)
 
