@@ -58,7 +58,10 @@ _UNITS = {
     "t": r".* since .*",
 }
 #: Names of longitude and of latitude.
-_LONGITUDE = r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?|glam.*"
+_LONGITUDE = (
+    r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?"
+    r"|glam.*"
+)
 _LATITUDE = (
     r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?|gphi.*"
 )
