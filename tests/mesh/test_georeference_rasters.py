@@ -111,7 +111,7 @@ def test_a_grid_of_ascii(tmp_path):
 
 @pytest.mark.parametrize("kind", ["complex64", "complex_int16"])
 def test_complex_numbers_are_no_heights(tmp_path, kind):
-    place = rasterio.Affine(1, 0, 0, 0, -1, 0)
+    place = rasterio.Affine(2, 0, 0, 0, -2, 0)
     size = {"height": 4, "width": 5, "count": 1, "transform": place}
     with rasterio.open(tmp_path / "a.tif", "w", driver="GTiff", dtype=kind, **size) as file:
         file.write(np.ones((1, 4, 5), dtype=np.complex64))
