@@ -177,12 +177,13 @@ def test_a_flow_too_fast_for_its_times_is_told():
         last(fast, 2, [[1.0, 0, 0]], kind="streaklines")
 
 
-def test_particles_on_a_map_go_metres_of_the_place(tmp_path):
+@pytest.mark.parametrize(("unit", "size"), [("m/s", 1), ("cm/s", 0.01)])
+def test_particles_on_a_map_go_metres_of_the_place(tmp_path, unit, size):
     """A wind of 10 m/s for 12 hours at 60 degrees north, where a degree of longitude is 55.6 km."""
     xr = pytest.importorskip("xarray")
     shape = (3, 9, 21)
     wind = {
-        name: (("time", "lat", "lon"), np.full(shape, speed))
+        name: (("time", "lat", "lon"), np.full(shape, speed / size), {"units": unit})
         for name, speed in (("u", 10), ("v", 5))
     }
     axes = {
@@ -198,4 +199,16 @@ def test_particles_on_a_map_go_metres_of_the_place(tmp_path):
     np.testing.assert_allclose(end[1], 60 + north, rtol=1e-6)
     middle = np.radians(60 + north / 2)
     np.testing.assert_allclose(end[0], 10 * 43_200 / degree / np.cos(middle), rtol=1e-3)
-    np.testing.assert_allclose(last["u,v"], np.tile([10, 5, 0], (last.n_points, 1)), rtol=1e-6)
+    np.testing.assert_allclose(last["u,v"] * size, np.tile([10, 5, 0], (last.n_points, 1)), 1e-6)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("kind", ["image", "rectilinear", "structured"])
+def test_a_rotation_in_any_plane_gives_circles(axis, kind):
+    mesh = pv.ImageData(dimensions=[1 if i == axis else 21 for i in range(3)])
+    mesh = mesh if kind == "image" else getattr(mesh, f"cast_to_{kind}_grid")()
+    mesh["V"] = np.cross(np.eye(3)[axis], np.asarray(mesh.points) - mesh.center)
+    seeds = np.array([mesh.center]) + 7 * np.eye(3)[(axis + 1) % 3]
+    *_, lines = vizlight.pathlines([mesh, mesh.copy()], times=[0, np.pi], tangents="V", seeds=seeds)
+    radii = np.linalg.norm(np.asarray(lines.points) - mesh.center, axis=1)
+    np.testing.assert_allclose(radii, 7, rtol=1e-6)

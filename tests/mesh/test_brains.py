@@ -245,3 +245,12 @@ def test_a_volume_of_freesurfer_and_colours(tmp_path):
     colors = np.array([(1, 2, 3)] * 8, kind).reshape(2, 2, 2)
     mesh = nifti(tmp_path / "c.nii", colors, np.eye(4))
     assert mesh["NIFTI"].tolist() == [[1, 2, 3]] * 8
+
+
+def test_values_of_brain_models_without_places_say_what_to_become(tmp_path):
+    axes = nibabel.cifti2
+    model = axes.BrainModelAxis.from_surface([0, 1], 4, "CIFTI_STRUCTURE_CORTEX_LEFT")
+    image = axes.Cifti2Image(np.ones((1, 2)), (axes.ScalarAxis(["sulc"]), model))
+    image.to_filename(tmp_path / "a.dscalar.nii")
+    with pytest.raises(vizlight.files.FileError, match="CIFTI.*GIFTI.*overlay="):
+        vizlight.read(tmp_path / "a.dscalar.nii")

@@ -116,6 +116,14 @@ def test_depths_are_negative(words):
     assert mesh.bounds[4:] == (-5000, -1000)
 
 
+def test_a_pressure_without_a_unit_falls_upward():
+    levels = axes_of(pressure_lev=([10.0, 500, 1000],), lat=(LAT,), lon=(LON,))
+    rows = np.arange(3.0)[:, None, None] * np.ones((3, ROWS, COLUMNS))
+    mesh = grid({"q": (("pressure_lev", "lat", "lon"), rows)}, levels)
+    assert mesh.bounds[4:] == (-1000, -10)
+    assert mesh["q"][0] == 2
+
+
 def test_longitudes_across_zero_and_around_the_earth():
     lon = (np.arange(20) * 1.0 + 350) % 360
     mesh = grid({"t": (("lat", "lon"), np.arange(60.0).reshape(3, 20))}, axes_of(
@@ -294,6 +302,65 @@ def test_places_of_zero_are_none():
     data = {"t": (("j", "i"), x), "lon": (("j", "i"), lon), "lat": (("j", "i"), lat)}
     mesh = vizlight.read(xr.Dataset(data))
     assert mesh.compute_cell_sizes()["Area"].max() < 1.1
+
+
+def test_a_true_place_of_zero_is_one_beside_others_that_are_none():
+    y, x = np.mgrid[-5:6, -5:6] + 0.0
+    lon, lat = x + 0.2 * y, y + 0.1 * x
+    lon[0, 8:] = lat[0, 8:] = 0
+    data = {"t": (("j", "i"), x), "lon": (("j", "i"), lon), "lat": (("j", "i"), lat)}
+    mesh = vizlight.read(xr.Dataset(data))
+    # Only the corner is left out, not the cells around the place in the middle.
+    assert mesh.n_cells == 100 - 3
+    assert np.min(np.linalg.norm(np.asarray(mesh.points)[:, :2], axis=1)) < 1e-12
+
+
+def test_the_shown_step_is_the_last_that_has_data():
+    rows = np.full((3, 2, ROWS, COLUMNS), np.nan)
+    rows[1, 1], rows[0, 0] = 7, 5
+    hours = {"units": "hours", "standard_name": "forecast_period"}
+    clock = {"units": "days since 2001-01-01"}
+    coords = axes_of(time=([0, 1, 2], clock), step=([0, 6], hours), lat=(LAT,), lon=(LON,))
+    data = {"t": (("time", "step", "lat", "lon"), rows)}
+    mesh = grid(data, coords)
+    assert mesh["t"].max() == 7
+    assert mesh.field_data["TimeValue"][0] == 1
+    assert np.isnan(grid(data, coords, time="last")["t"]).all()
+    assert np.isnan(grid({"t": (data["t"][0], 0 * rows * np.nan)}, coords)["t"]).all()
+
+
+def test_the_places_of_a_face_go_before_names_of_its_rows_and_columns():
+    lat, lon = np.meshgrid(LAT, LON, indexing="ij")
+    lats = np.stack([lat + 0.1 * lon, -lat + 0.3 * lon])
+    lons = np.stack([lon + 0.2 * lat, lon + 90])
+    dims = ("face", "Ydim", "Xdim")
+    data = {"t": (dims, np.stack([lat, lon])), "lats": (dims, lats), "lons": (dims, lons)}
+    coords = axes_of(Ydim=(LAT, {"units": "degrees_north"}), Xdim=(LON, {"units": "degrees_east"}))
+    for face in (0, 1):
+        mesh = grid(data, coords, at={"face": face})
+        np.testing.assert_allclose(mesh.points[:, 1], lats[face].ravel(), atol=1e-6)
+        np.testing.assert_array_equal(mesh["t"], data["t"][1][face].ravel())
+
+
+@pytest.mark.parametrize(
+    ("text", "units", "unit"),
+    [
+        ('GEOGCS["WGS 84",UNIT["degree",0.0174]]', "m", "degree"),
+        ('PROJCS["UTM",GEOGCS["WGS 84",UNIT["degree",0.0174]],UNIT["metre",1]]', "", "metre"),
+        (
+            'PROJCS["S",GEOGCS["N",UNIT["degree",1]],UNIT["US survey foot",0.3048]]',
+            "",
+            "metre",
+        ),
+    ],
+)
+def test_the_text_of_a_reference_system_tells_the_unit(text, units, unit):
+    words = {"units": units} if units else {}
+    coords = axes_of(y=(LAT, words), x=(LON, words)) | {"crs": ((), 0, {"crs_wkt": text})}
+    mesh = grid({"t": (("y", "x"), HEIGHTS)}, coords)
+    assert mesh.field_data["unit"][0] == unit
+    scale = 1200 / 3937 if "foot" in text else 1
+    assert mesh.bounds[3] == pytest.approx(scale * LAT[-1])
 
 
 def test_two_files_of_one_wind(tmp_path):

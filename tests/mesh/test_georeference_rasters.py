@@ -109,9 +109,23 @@ def test_a_grid_of_ascii(tmp_path):
     assert tuple(mesh.origin[:2]) == (11, 21)
 
 
-def test_complex_numbers_are_no_heights(tmp_path):
+@pytest.mark.parametrize("kind", ["complex64", "complex_int16"])
+def test_complex_numbers_are_no_heights(tmp_path, kind):
+    place = rasterio.Affine(2, 0, 0, 0, -2, 0)
+    size = {"height": 4, "width": 5, "count": 1, "transform": place}
+    with rasterio.open(tmp_path / "a.tif", "w", driver="GTiff", dtype=kind, **size) as file:
+        file.write(np.ones((1, 4, 5), dtype=np.complex64))
     with pytest.raises(vizlight.files.FileError, match="no band of numbers"):
-        vizlight.read(written(tmp_path / "a.tif", HEIGHTS.astype(np.complex64)))
+        vizlight.read(tmp_path / "a.tif")
+
+
+@pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+def test_pixels_without_a_place_have_no_unit_of_one(tmp_path):
+    path = tmp_path / "a.tif"
+    size = {"height": 4, "width": 5, "count": 1, "dtype": "uint8", "crs": "EPSG:4326"}
+    with rasterio.open(path, "w", driver="GTiff", **size) as file:
+        file.write(np.arange(20, dtype=np.uint8).reshape(1, 4, 5))
+    assert "unit" not in vizlight.read(path).field_data
 
 
 def test_a_band_beside_colours_has_its_own_unit(tmp_path):

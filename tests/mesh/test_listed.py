@@ -98,3 +98,35 @@ def test_a_track_across_the_date_line_has_the_places_of_its_times():
     mesh = vizlight.read(data)
     np.testing.assert_allclose(mesh.points, [[179, 10, 0], [181, 11, 0]])
     assert mesh["t"].tolist() == [1, 2]
+
+
+def test_corners_of_scrip_are_told_by_their_names():
+    data = by_cell(1.0, "degrees")
+    names = {"clon": "grid_center_lon", "clat": "grid_center_lat"}
+    names |= {f"{old}_bnds": new.replace("center", "corner") for old, new in names.items()}
+    for old in ("clon", "clat"):
+        del data[old].attrs["bounds"], data[old].attrs["standard_name"]
+    mesh = vizlight.read(data.rename(names))
+    assert mesh.compute_cell_sizes()["Area"].sum() == pytest.approx(360 * 180)
+
+
+def test_a_region_across_both_meridians_is_not_parted():
+    lat, lon = np.meshgrid(np.arange(0.0, 40, 10), np.arange(130.0, 371, 10), indexing="ij")
+    places = {
+        "lon": ("values", lon.ravel() % 360, {"units": "degrees_east"}),
+        "lat": ("values", lat.ravel(), {"units": "degrees_north"}),
+    }
+    mesh = vizlight.read(xr.Dataset({"t": ("values", lon.ravel())}, places))
+    assert mesh.bounds_size[0] == 240
+    np.testing.assert_allclose((np.asarray(mesh["t"]) - mesh.points[:, 0]) % 360, 0)
+
+
+def test_levels_of_a_list_are_no_rows():
+    places = {
+        "longitude": ("values", LON, {"units": "degrees_east"}),
+        "latitude": ("values", LAT + LON % 7, {"units": "degrees_north"}),
+        "level": ("level", [1000.0, 500], {"units": "hPa"}),
+    }
+    mesh = vizlight.read(xr.Dataset({"t": (("level", "values"), np.stack([LAT, LON]))}, places))
+    assert mesh.n_points == len(LON)
+    np.testing.assert_array_equal(mesh["t"], LAT)

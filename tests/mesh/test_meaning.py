@@ -37,6 +37,7 @@ def mesh_with(*names, units="", **standard):
         ("E_wind", "N_wind"), ("utotal", "vtotal"), ("sustr", "svstr"), ("u@10m", "v@10m"),
         ("ugrd10m", "vgrd10m"), ("U_RHO", "V_RHO"), ("ssu", "ssv"), ("curu", "curv"),
         ("u-component_of_wind_isobaric", "v-component_of_wind_isobaric"), ("xcomp", "ycomp"),
+        ("ulon", "ulat"), ("velocity_0", "velocity_1", "velocity_2"), ("vector.0", "vector.1"),
     ],
 )  # fmt: skip
 def test_components_by_usual_names(group):
@@ -70,6 +71,8 @@ def test_a_letter_anywhere_tells_the_components_of_a_motion(group, unit):
         ("lon_u", "lon_v"),
         ("max", "may"),
         ("MAPFAC_UX", "MAPFAC_UY"),
+        ("wind_0", "wind_1", "wind_2", "wind_3"),
+        ("temperature_0", "temperature_1"),
     ],
 )
 def test_half_a_pair_is_no_vector(names):
@@ -198,3 +201,10 @@ def test_pressures_of_air_have_a_usual_unit(standard, unit, size, expected):
     meaning.attach(mesh, said)
     assert meaning.usual_unit(mesh, "p", size) == expected
     assert meaning.usual_unit(mesh, "q", size) == (1.0, "")
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("cm s-1", 0.01), ("km/h", 1 / 3.6), ("kt", 1852 / 3600), ("", 1), ("K", 1)]
+)
+def test_the_unit_of_a_speed_in_metres_a_second(unit, size):
+    assert meaning.speed(mesh_with("u", "v", units=unit), "u,v") == pytest.approx(size)

@@ -150,3 +150,16 @@ def test_names_of_nodes_and_rows_that_0_fills(tmp_path):
     xr.Dataset(data).to_netcdf(tmp_path / "b.nc")
     with pytest.raises(files.FileError, match="'tets' has the nodes of solids"):
         vizlight.read(tmp_path / "b.nc")
+
+
+def test_a_mesh_of_esmf():
+    data = {
+        "nodeCoords": (("nodeCount", "coordDim"), np.stack([LON, LAT], 1), {"units": "degrees"}),
+        "elementConn": (("elementCount", "maxNodePElement"), FACES + 1),
+        "elementArea": ("elementCount", np.arange(float(len(FACES)))),
+    }
+    mesh = vizlight.read(xr.Dataset(data))
+    assert mesh.field_data["unit"][0] == "degree"
+    assert mesh.bounds[:4] == pytest.approx((-180, 180, -90, 90))
+    whole = np.bincount(np.asarray(mesh["elementArea"], dtype=int), minlength=len(FACES))
+    assert whole.min() == 1

@@ -113,7 +113,7 @@ def pathlines(
     tangents : str, optional
         Name of a point array of 3 components, of the same name at each step, or of components,
         such as ``"u,v"``. Default: the active vectors of the first, or its only components. On a
-        map in degrees they are metres a second, east and north.
+        map in degrees they are in the unit of their file, else metres a second, east and north.
     seeds : int or array_like, shape (M, 3), or mesh, default: 200
         Points at which particles start; a number stands for points of the mesh, drawn without
         repetition from those that move at the first time.
@@ -230,7 +230,7 @@ def _lines(
     # particles.
     tangents = None if streaks else TANGENTS if name != TANGENTS else OWN_TANGENTS
     light = LightOptions.of(vars(options) | {"tangents": tangents})
-    carrier, times = Carrier(steps.mesh(0)), steps.times
+    carrier, times = Carrier(steps.mesh(0), name), steps.times
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))
     before, coarse = steps.vectors(0, name), 0.0
     for i in range(1, len(times)):

@@ -128,7 +128,8 @@ class _Pictures:
                 # The last step has the pace of the step before it.
                 lasts = lasts if then is None else then.time - flow.time
                 if drift is None or not drift.fits(flow.mesh):
-                    drift = Drift(flow.mesh, flow.vectors, flow.spacing, flow.length)
+                    size = flow.spacing, flow.length
+                    drift = Drift(flow.mesh, flow.vectors, *size, flow.tangents)
                 yield from flow.pictures(drift, then, lasts, self._per_step)
             look, flow = after, then
 
@@ -187,10 +188,11 @@ class _Flow:
     @property
     def vectors(self) -> Array:
         """Vectors at the points."""
-        return np.asarray(self.mesh.point_data[self._name], dtype=np.float64)
+        return np.asarray(self.mesh.point_data[self.tangents], dtype=np.float64)
 
     @property
-    def _name(self) -> str:
+    def tangents(self) -> str:
+        """Name of the vectors."""
         return str(self.layer.mesh.keywords["tangents"])
 
     @property
@@ -238,9 +240,9 @@ class _Flow:
 
         def strokes() -> Iterator[Layer]:
             for i in range(count if then is not None else 1):
-                lines = drift.strokes(self._name)
+                lines = drift.strokes(self.tangents)
                 if speed is not None:
-                    sizes = np.linalg.norm(lines.point_data[self._name], axis=1)
+                    sizes = np.linalg.norm(lines.point_data[self.tangents], axis=1)
                     lines.point_data[str(speed)] = sizes
                 yield replace(self.layer, mesh=Step("strokes", "-", lines))
                 drift.advance(i / count, 1 / count, move)

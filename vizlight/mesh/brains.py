@@ -182,6 +182,11 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     import nibabel
 
     image: Foreign = nibabel.load(path)
+    if getattr(image, "affine", None) is None:
+        raise ValueError(
+            "values of brain models (CIFTI), without their places: write those of a surface as "
+            "GIFTI, such as by wb_command -cifti-separate, and pass the file as overlay="
+        )
     affine, shape = np.asarray(image.affine, dtype=np.float64), image.shape
     steps = int(shape[3]) if len(shape) > 3 else 1
     part: Foreign = image.dataobj

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import warnings
@@ -58,10 +59,11 @@ _UNITS = {
 }
 #: Names of longitude and of latitude.
 _LONGITUDE = (
-    r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?\d*(vertex|cell|node|edge)?([_\W].*)?|glam.*"
+    r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?"
+    r"|glam.*"
 )
 _LATITUDE = (
-    r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?\d*(vertex|cell|node|edge)?([_\W].*)?|gphi.*"
+    r"(.*[_\W]|geo|[yxtuvnrpcg])?(lat|latitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?|gphi.*"
 )
 #: Names and first words of long names that say what an axis is.
 _NAMES = {
@@ -82,10 +84,10 @@ _PRESSURES = {
     "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
     "millibar": 1.0, "kpa": 10.0, "kilopascal": 10.0, "bar": 1e3, "dbar": 100.0, "decibar": 100.0,
 }  # fmt: skip
-#: Standard and other names of what counts downward though it is no pressure.
+#: Standard and other names of what counts downward, though no unit says that it is a pressure.
 _DOWN = (
     r"depth.*|dept[htuvw]|gdep.*|.*_depth|atmosphere_(hybrid_)?sigma.*|atmosphere_ln_pressure.*"
-    r"|sigma|hybrid"
+    r"|sigma|hybrid|.*pressure.*|pres|plevs?\d*|isobaric.*"
 )
 #: Names of heights, which are drawn in the unit of the axes, and of depths, which count downward.
 _HEIGHTS = (
@@ -109,6 +111,7 @@ _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile
 _LISTS = (
     r"(n?mesh\w*_)?n?_?(nod|node|vert|vertex|vertice|cell|elem|element|ele|face|edge|col|point)(e?s)?\d?"
     r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|profiles?|rgrid|traject.*"
+    r"|values"
 )
 
 #: Names that programs give to axes without one, and the longest of such axes that can be kinds.
@@ -295,7 +298,7 @@ class _Reader:
 
     def __init__(self, data: Foreign, notes: Sequence[str] = ()) -> None:
         self.said = Meaning(notes=[*notes])
-        self.file = _with_numbers(data)
+        self.file = unstructured.with_nodes(_with_numbers(data))
         if left := [str(name) for name, one in data.data_vars.items() if one.dtype.kind == "c"]:
             words = f"left out, complex numbers: {', '.join(left)}; take numpy.abs or numpy.angle"
             self.said.notes.append(words)
@@ -334,7 +337,19 @@ class _Reader:
     ) -> pv.DataSet:
         """Return the grid; see :func:`of_dataset`."""
         ticking, step, single = self._step(time)
+        notes = [*self.said.notes]
         single |= self._chosen(at)
+        mesh = self._mesh(single, nodata, source)
+        if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
+            self.said.notes = notes
+            ticking, step, single = self._step(time, clocks)
+            mesh = self._mesh(single, nodata, source)
+        of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
+        is_step = (len(ticking) > 1 or self.said.time) and not of_track
+        return series.marked(mesh, ticking, step) if is_step else mesh
+
+    def _mesh(self, single: dict[str, int], nodata: float | None, source: str) -> pv.DataSet:
+        """Return the grid of some indices along axes."""
         mesh: pv.DataSet
         if self.topology is not None:
             mesh = self._surface(self.topology, single, nodata, source)
@@ -344,13 +359,11 @@ class _Reader:
             mesh = self._on_axes(fields, single, nodata, source)
         elif self.listed is not None:
             mesh = self._points(self.listed, single, nodata, source)
-            if self.letters[self.listed.dim][0] == "t":
-                return mesh
         else:
             reasons = "; ".join(self.said.notes)
             lacking = "no variable on a grid of two or three axes"
             raise ValueError(f"{lacking} ({reasons})" if reasons else lacking)
-        return series.marked(mesh, ticking, step) if len(ticking) > 1 or self.said.time else mesh
+        return mesh
 
     def _on_axes(
         self,
@@ -371,7 +384,7 @@ class _Reader:
         named = self._named([middles.get(dim, dim) for dim in largest.dims])
         # A section has its place along x and its height along y.
         dims = [named[letter] for letter in "xyz" if letter in named]
-        places, mapped = self._places(dims, single)
+        places, mapped = self._places(dims, self.file[largest.name].dims, single)
         axes = [self._axis(dim, places) for dim in dims]
         if mapped and places is not None and (straight := _straight(*places)) is not None:
             # Such coordinates are those of rows and columns, written out.
@@ -577,8 +590,32 @@ class _Reader:
             if f"first of {dim}" not in self.said.notes:
                 self.said.notes.append(f"first of {dim}")
 
-    def _step(self, time: object) -> tuple[list[float], int, dict[str, int]]:
-        """Return the times of the steps, the index of one, and that along each axis of time."""
+    def _last_with_data(self) -> dict[str, int]:
+        """Return the index along each axis of time of the last step with data, none without one."""
+        is_clock = {dim: letter == "t" for dim, (letter, _) in self.letters.items()}
+        every = [one for one in self.file.data_vars.values() if any(map(is_clock.get, one.dims))]
+        largest: Foreign = max(every, key=lambda one: int(one.size), default=None)
+        if largest is None:
+            return {}
+        sizes = {str(dim): int(size) for dim, size in largest.sizes.items()}
+        grid = self._named([dim for dim in sizes if not is_clock[dim] and sizes[dim] > 1])
+        members = dict.fromkeys({dim for dim in sizes if not is_clock[dim]} - {*grid.values()}, 0)
+        clocks = sorted(filter(is_clock.get, sizes), key=sizes.__getitem__, reverse=True)
+        # Of a forecast the first of the hours, for the last start that has any.
+        orders = [reversed(range(sizes[clocks[0]])), *(range(sizes[dim]) for dim in clocks[1:])]
+        for indices in itertools.product(*orders):
+            step = dict(zip(clocks, indices, strict=True))
+            if np.isfinite(largest.isel(members | step).values).any():
+                return step
+        return {}
+
+    def _step(
+        self, time: object, clocks_of: Mapping[str, int] | None = None
+    ) -> tuple[list[float], int, dict[str, int]]:
+        """Return the times of the steps, the index of one, and that along each axis of time.
+
+        ``clocks_of`` has indices along axes of time, in place of those that ``time`` tells.
+        """
         clocks = [dim for dim, (letter, _) in self.letters.items() if letter == "t"]
         sizes = self.file.sizes
         # A file may have several clocks: the one with most steps tells them.
@@ -595,7 +632,8 @@ class _Reader:
             self.said.time += f" since {start}"
         step = self._dated(ticking, time)
         if clock is not None:
-            single[clock] = step
+            single |= {clock: step} | dict(clocks_of or {})
+            step = single[clock]
         # xarray moves the name of bounds from the attributes of a file.
         named = {} if along is None else along.attrs | along.encoding
         bounds = self.file.variables.get(named.get("bounds"))
@@ -722,30 +760,32 @@ class _Reader:
         return letter in ("x", "y") and _in_degrees(name, variable.attrs, strict=True) != ""
 
     def _places(
-        self, dims: Sequence[str], single: dict[str, int]
+        self, dims: Sequence[str], of_field: Sequence[object], single: dict[str, int]
     ) -> tuple[tuple[Array, Array] | None, bool]:
         """Return the longitude and the latitude of each node, and whether they are its place.
 
-        Where x and y are lengths of a projection they only tell how its axes are turned.
+        Where x and y are lengths of a projection they only tell how its axes are turned. A face
+        of several, such as those of a cubed sphere, is an index along another axis of the field.
         """
         if [self.letters[dim][0] for dim in dims[:2]].count("z") or len(dims) < 2:
             return None, False
         kinds = [self._axis(dim, None).kind for dim in dims[:2]]
-        if kinds == ["degrees", "degrees"]:
-            return None, False
         found: dict[str, Array] = {}
         for key, variable in self.file.variables.items():
-            name, inner = str(key), [str(dim) for dim in variable.dims if dim not in single]
-            if {*inner} != {*dims[:2]} or variable.dtype.kind not in "iuf":
+            name, rest = str(key), {*variable.dims} - {*dims[:2]}
+            inner = len(rest) == variable.ndim - 2 and rest <= {*of_field, *single} - {*dims}
+            if not inner or variable.dtype.kind not in "iuf":
                 continue
             if self._is_place(name, variable):
                 letter, _ = _letter_of(name, variable.attrs)
-                index = {dim: i for dim, i in single.items() if dim in variable.dims}
+                index = {dim: single.get(str(dim), 0) for dim in rest}
                 rows: Array = np.asarray(variable.isel(index).transpose(dims[1], dims[0]).values)
                 scale = _in_degrees(name, variable.attrs, strict=True) == "radians"
                 # Files may have several, of centres and of corners: the first fits the variable.
                 found.setdefault(letter, np.degrees(rows) if scale else rows.astype(np.float64))
-        if len(found) == 2:
+        # Degrees along the axes may be names of rows and columns, unless no point has its own.
+        in_degrees = kinds == ["degrees", "degrees"]
+        if len(found) == 2 and not (in_degrees and np.isnan([*found.values()]).any()):
             return (found["x"], found["y"]), kinds != ["length", "length"]
         if kinds == ["rotated", "rotated"]:
             return self._unrotated(dims), True
@@ -771,6 +811,21 @@ class _Reader:
                 return projections.of_attributes(attributes)
         return ""
 
+    def _system(self, ticks: Array, attributes: Foreign) -> str:
+        """Return the unit of x and y by the text of the reference system of a grid, if it counts.
+
+        A system of degrees goes before a unit that the coordinates kept from another one.
+        """
+        tables = [variable.attrs for variable in self.file.variables.values()]
+        texts = [str(table.get("crs_wkt") or table.get("spatial_ref", "")) for table in tables]
+        text = next(filter(None, texts), "")
+        if text.startswith(("GEOGCS", "GEOGCRS", "GEODCRS")) and np.abs(ticks).max() <= 360:
+            return "degrees"
+        # Of several units the last is that of the axes.
+        units = re.findall(r'UNIT\["([^"]+)"', text) if text.startswith("PROJ") else []
+        is_length = units and meaning.metres(units[-1]) is not None
+        return units[-1].lower() if is_length and not attributes.get("units") else ""
+
     def _axis(self, dim: str, places: object) -> _Axis:
         """Return the axis along a dimension."""
         letter, reason = self.letters[dim]
@@ -782,6 +837,8 @@ class _Reader:
             return _Axis(np.arange(count, dtype=np.float64), np.arange(count), words, "index")
         attributes, name = along.attrs, str(along.name)
         ticks: Array = np.array(along.values, dtype=np.float64)
+        if letter in ("x", "y") and (system := self._system(ticks, attributes)):
+            attributes = attributes | {"units": system}
         unit = str(attributes.get("units", "")).strip().lower()
         axis = _Axis(ticks, np.arange(len(ticks)), f"{name!r}{by}")
         if letter == "z":
@@ -868,6 +925,12 @@ class _Reader:
             self.said.notes.append(
                 f"{name!r} turned by up to {most:.0f} degrees to where the grid is drawn"
             )
+
+
+def _is_empty(mesh: pv.DataSet) -> bool:
+    """Return whether no array of a mesh has a finite number."""
+    arrays = [*mesh.point_data.values(), *mesh.cell_data.values()]
+    return not any(np.isfinite(rows).any() for rows in arrays)
 
 
 def _letter_of(name: str, attributes: Mapping[str, Foreign]) -> tuple[str, str]:
@@ -1045,9 +1108,10 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
     missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
-    # So do those of models where they compute nothing: nodes have a place of their own.
+    # So do those of models where they compute nothing, far from where their neighbours are.
     empty = (lon == 0) & (lat == 0)
-    missing |= empty & (empty.sum() > 1)
+    if 1 < empty.sum() < empty.size:
+        missing |= empty & ~_between(np.where(empty, np.nan, lon), np.where(empty, np.nan, lat))
     # Files fill the places that they have not with one number, such as -999.
     lon, lat = (height_field.filled(np.where(missing, np.nan, part)) for part in (lon, lat))
     for along in (1, 0):
@@ -1070,6 +1134,16 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     grid.dimensions = (shape[2], shape[1], shape[0])
     grid.points = points.reshape(-1, 3)
     return grid, ~missing
+
+
+def _between(lon: Array, lat: Array) -> Bools:
+    """Return the nodes at which neighbours around a hole leave room for (0, 0)."""
+    near: Bools = np.ones(lon.shape, dtype=np.bool_)
+    for part in ((lon + 180.0) % 360.0 - 180.0, lat):
+        filled = height_field.filled(part)
+        steps = [np.abs(np.diff(filled, axis=axis)) for axis in (0, 1)]
+        near &= np.abs(filled) <= 2 * max(float(np.nanmedian(step)) for step in steps)
+    return near
 
 
 def _astray(grid: pv.StructuredGrid, place: Bools) -> tuple[Bools, Bools]:

@@ -46,6 +46,8 @@ class Drift:
         Vectors before the first time.
     spacing, length : float
         Distance between neighbours and length of fast strokes, in the unit of the mesh.
+    tangents : str
+        Name of the vectors or of their components, for their unit.
 
     Attributes
     ----------
@@ -53,9 +55,11 @@ class Drift:
         Time that a stroke shows, in the unit of the times.
     """
 
-    def __init__(self, mesh: pv.DataSet, vectors: Array, spacing: float, length: float) -> None:
+    def __init__(
+        self, mesh: pv.DataSet, vectors: Array, spacing: float, length: float, tangents: str = ""
+    ) -> None:
         self._random = np.random.default_rng(0)
-        self._carrier = Carrier(mesh)
+        self._carrier = Carrier(mesh, tangents)
         self._n_points, self._bounds = mesh.n_points, mesh.bounds
         # A particle passes few points within a head: in space it is longer than where strokes lie.
         tube = strokes.TUBE._replace(head=HEAD)

@@ -368,7 +368,8 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         with rasterio.open(path) as file:
             arrays, units = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
-            crs = file.crs
+            # A picture with a model of its camera has a system, but its pixels have no place.
+            crs = None if file.transform.is_identity else file.crs
     words, said = [], meaning.Meaning(axes=["x east", "y north"])
     for name, rows in arrays.items():
         # Heights without a unit on a map are taken for metres, as lengths are.
@@ -413,8 +414,8 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
     found: dict[str, Raw] = {}
     units: dict[str, str] = {}
     for i in range(count):
-        if np.dtype(file.dtypes[i]).kind not in "iuf":
-            # Complex numbers, as of radar, are no heights.
+        if file.dtypes[i].startswith("complex"):
+            # Complex numbers, as of radar, are no heights; NumPy has no name for some of them.
             continue
         rows = _band(file, i)
         name = file.descriptions[i] or file.tags(i + 1).get("NETCDF_VARNAME") or f"band_{i + 1}"
@@ -426,7 +427,7 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
         name = f"{name}_{i + 1}" if name in found else name
         found[name], units[name] = rows, _unit(file, i)
     if not found:
-        raise ValueError("no band of numbers")
+        raise ValueError("no band of numbers that are not complex")
     kinds = [kind.name for kind in file.colorinterp[:3]]
     if kinds == [*_COLORS] and all(file.dtypes[i] == "uint8" for i in range(3)):
         colors = [*found.values()]

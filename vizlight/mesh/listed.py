@@ -75,8 +75,9 @@ def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
 
 def _bounds(file: Foreign, name: str) -> str:
     """Return the name of the corners of cells, of three or more each, an empty text for none."""
-    # xarray may have moved it from the attributes.
-    bounds = str((file[name].encoding | file[name].attrs).get("bounds", ""))
+    # xarray may have moved it from the attributes. SCRIP tells centres and corners by their names.
+    corner = name.replace("center", "corner")
+    bounds = str((file[name].encoding | file[name].attrs).get("bounds", corner))
     if bounds not in file.variables:
         return ""
     array = file[bounds]
@@ -125,9 +126,13 @@ def points(
     x, y = x[kept], y[kept]
     if degrees:
         x = x - 360.0 * np.ceil((x - 180.0) / 360.0)
-        # A region across the date line is not parted by it.
-        eastward = np.where(x < 0, x + 360.0, x)
-        x = min(x, eastward, key=lambda angles: float(np.ptp(angles)) if angles.size else 0.0)
+        # No region is parted: longitudes begin behind the widest gap between any two.
+        ticks = np.unique(x)
+        gaps = np.diff(ticks, append=ticks[:1] + 360.0)
+        widest = int(gaps.argmax()) if gaps.size else 0
+        if gaps.size and gaps[widest] > 2 * gaps[-1]:
+            x = np.where(x <= ticks[widest], x + 360.0, x)
+            x = x - 360.0 * np.ceil(((x.min() + x.max()) / 2 - 180.0) / 360.0)
     order = _rows_and_columns(x, y)
     if order is None:
         return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept

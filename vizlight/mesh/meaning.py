@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
-    "only_vectors", "say", "usual_unit", "vectors", "ways", "with_named",
+    "only_vectors", "say", "speed", "usual_unit", "vectors", "ways", "with_named",
     "without_missing",
 ]  # fmt: skip
 
@@ -189,6 +189,13 @@ _USUAL = (
     # NEMO's vozocrtx and vomecrty
     (r"(vo|so)(zo|me)(.*)[xy]", "zo me"),
     (r"(.*)(zonal|meridional)(.*)", "zonal meridional"),
+    # ulon and ulat, of models on a sphere
+    (r"([uv]_?)(lon|lat)()", "lon lat"),
+    # velocity_0, velocity_1 and velocity_2, columns of one array
+    (
+        r"((?:.*[_\W])?(?:vel\w*?|vectors?|wi?nd|curr\w*?|displ\w*?|forces?|flow)[_:.\- ]?)(\d)()",
+        "0 1 2",
+    ),
     # uEast and v_northward
     (r"()[uv]_?(east|north)(.*)", "east north"),
     (r"(.*)(east|north)(.*)", "east north"),
@@ -205,6 +212,8 @@ _USUAL = (
 _NO_COMPONENT = (
     r"ma[xy]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
 )
+#: A knot in metres a second.
+_KNOT = 1852 / 3600
 #: Letters of axes that stand anywhere in names, if their unit is one of motion or of stress.
 _LETTERS = ("u v w", "x y z", "e n u")
 
@@ -287,7 +296,8 @@ def _by_usual(names: Sequence[str], table: dict[str, dict[str, str]]) -> Iterato
                     groups.setdefault(key, {})[part.lower()] = name
         for group in groups.values():
             every = [group[word] for word in parts.split() if word in group]
-            if set(parts.split()[:2]) <= set(group):
+            # With a fourth number these are no axes, but layers or kinds.
+            if set(parts.split()[:2]) <= set(group) <= set(parts.split()):
                 yield tuple(every)
     yield from _by_letters([name for name in names if _is_of_motion(units[name])], units)
 
@@ -309,10 +319,31 @@ def _by_letters(names: Sequence[str], units: Mapping[str, str]) -> Iterator[tupl
 
 def _is_of_motion(unit: str) -> bool:
     """Return whether a unit is that of a velocity or of a stress."""
+    return _speed(unit) is not None or re.fullmatch(r"pa|n.*m.*2", unit, re.I) is not None
+
+
+def _speed(unit: str) -> float | None:
+    """Return a unit of speed in metres a second, None where it is none."""
     parts = re.fullmatch(r"(\w+?)(?: */ *|[ .*]+)([a-z]+?)(?:(?:\^|\*\*)?-1)?", unit, re.IGNORECASE)
-    if parts is not None and metres(parts[1]) is not None:
-        return dates.seconds(parts[2]) is not None
-    return re.fullmatch(r"kn|kts?|knots?|ms-1|pa|n.*m.*2", unit, re.IGNORECASE) is not None
+    if parts is not None and (length := metres(parts[1])) is not None:
+        time = dates.seconds(parts[2])
+        return None if time is None else length / time
+    if re.fullmatch(r"kn|kts?|knots?", unit, re.IGNORECASE):
+        return _KNOT
+    return 1.0 if unit.lower() == "ms-1" else None
+
+
+def speed(mesh: pv.DataSet, named: str) -> float:
+    """Return the unit of vectors in metres a second, 1 where nothing is said of it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    named : str
+        Name of vectors, or names of their components separated by commas.
+    """
+    unit = of(mesh).arrays.get(named.partition(",")[0], {}).get("units", "")
+    return _speed(unit) or 1.0
 
 
 def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
@@ -433,7 +464,8 @@ def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | N
 #: Lengths in metres of other units.
 _METRES = {
     "m": 1.0, "metre": 1.0, "meter": 1.0, "km": 1e3, "kilometre": 1e3, "kilometer": 1e3,
-    "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2, "mm": 1e-3, "millimetre": 1e-3,
+    "dam": 10.0, "decametre": 10.0, "decameter": 10.0, "dm": 0.1, "decimetre": 0.1,
+    "decimeter": 0.1, "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2, "mm": 1e-3, "millimetre": 1e-3,
     "millimeter": 1e-3, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
     "us survey foot": 1200 / 3937, "us_survey_foot": 1200 / 3937,
 }  # fmt: skip

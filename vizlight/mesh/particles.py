@@ -74,13 +74,17 @@ class Carrier:
     ----------
     mesh : pyvista.DataSet
         Mesh; its arrays are not used.
+    tangents : str
+        Name of the vectors or of their components, for their unit.
     """
 
-    def __init__(self, mesh: pv.DataSet) -> None:
-        self._mesh = mesh.copy(deep=False)
-        # Of a map vectors are metres a second, and times are in the unit of its file.
+    def __init__(self, mesh: pv.DataSet, tangents: str = "") -> None:
+        # VTK finds no place in a rectilinear grid of one layer along x or y.
+        upright = isinstance(mesh, pv.RectilinearGrid) and 1 in mesh.dimensions[:2]
+        self._mesh = mesh.cast_to_structured_grid() if upright else mesh.copy(deep=False)
+        # Of a map vectors and times are in the units of its file, metres a second without one.
         size = dates.seconds(meaning.of(mesh).time) if georeference.is_map(mesh) else None
-        self._seconds = 1.0 if size is None else size
+        self._seconds = 1.0 if size is None else size * meaning.speed(mesh, tangents)
         # The probe interpolates every array of its source, and all but the vectors in vain.
         self._mesh.clear_point_data()
         self._mesh.clear_cell_data()

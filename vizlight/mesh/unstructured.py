@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Foreign
 
-__all__ = ["Topology", "surface", "tables", "topology"]
+__all__ = ["Topology", "surface", "tables", "topology", "with_nodes"]
 
 #: Numbers of nodes of a face that a table of a file without names may have.
 _CORNERS = range(3, 17)
@@ -54,6 +54,25 @@ class Topology:
     nodes: str
     faces: str
     by: str
+
+
+def with_nodes(file: Foreign) -> Foreign:
+    """Return a dataset with a variable for each coordinate of the nodes that ESMF has in a table.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+    """
+    if not {"nodeCoords", "elementConn"} <= {*file.variables}:
+        return file
+    table = file["nodeCoords"]
+    unit = str(table.attrs.get("units", ""))
+    kind = ("lon", "lat") if unit.startswith(("deg", "rad")) else ("x", "y")
+    columns = {
+        f"node_{word}": (table.dims[:1], table.values[:, i], {"units": unit})
+        for i, word in enumerate(kind)
+    }
+    return file.assign(columns).drop_vars(["nodeCoords", "centerCoords"], errors="ignore")
 
 
 def topology(
