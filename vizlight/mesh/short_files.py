@@ -1,27 +1,41 @@
-"""Files that are shorter than their format states.
+"""Files that are shorter than their format states, or whose headers contradict their data.
 
-Readers report most faults of a file. These are the faults that they overlook, or crash on.
+Readers of VTK and meshio report most faults of a file. These are the faults that they overlook, end
+the process by, or never end on.
 """
 
 from __future__ import annotations
 
+import contextlib
+import itertools
+import math
+import mmap
+import os
 import re
 import struct
+import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import headers, references, series
+from vizlight.mesh import references, series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
+    from collections.abc import Callable, Iterator, Sequence
 
 __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
+#: Bytes in which a header stands that has no end of its own.
+_HEAD = 4096
+#: Bytes of a number by a part of the name of its type: the first that is in it.
+_BYTES = {
+    "64": 8, "32": 4, "16": 2, "int8": 1, "idtype": 4, "char": 1, "short": 2, "long_long": 8,
+    "long long": 8, "longlong": 8, "long": 4, "int": 4, "float": 4, "double": 8,
+}  # fmt: skip
 #: Bytes at the end of a file in which its last words stand.
 _END = 512
 #: Largest ratio of data to what a compressor of VTK makes of them.
@@ -32,9 +46,6 @@ _INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 
 def missing_part(path: Path, /) -> str:
     """Return the part that a file lacks of the size or the end that it states.
-
-    These are the XML files of VTK with their pieces, netCDF, HDF5, STL, and what
-    :mod:`.headers` has.
 
     Parameters
     ----------
@@ -89,9 +100,9 @@ def _xml(file: BinaryIO) -> str:
         return "its end is missing"
     # What is packed is at most so much larger.
     most, wrong = _PACKED * file.seek(0, 2), ""
-    with headers.mapped(file) as text:
+    with _mapped(file) as text:
         for start in (b" NumberOf", b" index="):
-            for match in (_COUNT.match(text, at) for at in headers.places(text, start)):
+            for match in (_COUNT.match(text, at) for at in _places(text, start)):
                 if match and not 0 <= int(match[2]) <= most:
                     wrong = f"{match[1].decode()} is {match[2].decode()}"
     return wrong
@@ -108,7 +119,7 @@ def _grid(file: BinaryIO) -> str:
     """
     if lacks := _xml(file):
         return lacks
-    with headers.mapped(file) as text:
+    with _mapped(file) as text:
         # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
@@ -133,7 +144,7 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
-        return headers.size(file, end) if end else "its header is not whole"
+        return _size(file, end) if end else "its header is not whole"
     # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
@@ -159,19 +170,7 @@ def _stl(file: BinaryIO) -> str:
     # Binary files may begin with this word, too, but a text has no bytes of 0.
     if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
         return "" if b"endsolid" in _last(file).lower() else "its end is missing"
-    return headers.size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
-
-
-_FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    **headers.FORMATS,
-    **dict.fromkeys((".vtm", ".vtp", ".vtu"), _xml),
-    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
-    **dict.fromkeys((".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"), _xml),
-    **dict.fromkeys(
-        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
-    ),
-    ".stl": _stl,
-}
+    return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
 
 
 def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
@@ -226,3 +225,327 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         # An unstructured grid has a type for each cell, too.
         expected += sum(sizes) + (mesh.n_cells if isinstance(mesh, pv.UnstructuredGrid) else 0)
     return f"{count} of {expected} numbers are there" if count < expected else ""
+
+
+@contextlib.contextmanager
+def _mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
+    """Return the content of a file, which is not read at once."""
+    if not file.seek(0, 2):
+        yield b""
+        return
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+        yield text
+
+
+def _places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
+    """Return the places of a word."""
+    at = text.find(word)
+    while at >= 0:
+        yield at
+        at = text.find(word, at + 1)
+
+
+def _size(file: BinaryIO, least: int) -> str:
+    """Compare the size of a file with the least that it states."""
+    count = file.seek(0, 2)
+    return f"{count} of {least} bytes are there" if count < least else ""
+
+
+def _png(file: BinaryIO) -> str:
+    """Check the parts of a picture, each of which has a check sum."""
+    if file.read(8) != b"\x89PNG\r\n\x1a\n":
+        return ""  # VTK's reader says so
+    kind = b""
+    while kind != b"IEND":
+        count, kind = struct.unpack(">I4s", file.read(8))
+        part = file.read(count)
+        if file.read(4) != zlib.crc32(kind + part).to_bytes(4, "big"):
+            return "a check sum is not that of its part"
+    return ""
+
+
+def _pnm(file: BinaryIO) -> str:
+    """Compare a picture with its width and height."""
+    head = file.read(_HEAD)
+    gap = rb"(?:\s|#[^\n]*\n)+"
+    match = re.match(rb"P[1-6]" + gap + rb"(\d+)" + gap + rb"(\d+)\s", head)
+    if not match:
+        return "its width and height are missing"
+    # A bit is the least for each pixel.
+    return _size(file, int(match[1]) * int(match[2]) // 8)
+
+
+def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
+    texts = [line.decode("utf-8", "surrogateescape").partition(between) for line in lines]
+    return {key.strip(): rest.strip() for key, found, rest in texts if found}
+
+
+def _nrrd(file: BinaryIO) -> str:
+    head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
+    lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
+    fields = _fields(lines, ": ")
+    if len(fields) < sum(b": " in line for line in lines):
+        return "a key stands twice"
+    sizes = [int(word) for word in fields["sizes"].split()]
+    other = fields.get("data file", fields.get("datafile", ""))
+    if not (blank or other):
+        return "its header has no end"
+    if len(sizes) != int(fields["dimension"]):
+        return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
+    if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
+        return ""
+    is_raw = fields["encoding"].lower() == "raw"
+    return _data(file, sizes, fields["type"], other, is_raw)
+
+
+def _meta(file: BinaryIO) -> str:
+    # Some have fields for each of many pictures.
+    lines = file.read(1 << 20).split(b"\n")
+    last = [at for at, line in enumerate(lines) if line.startswith(b"ElementDataFile")]
+    if not last:
+        return "" if file.read(1) else "its header has no end"
+    fields = _fields(lines[: last[0] + 1], "=")
+    sizes = [int(word) for word in fields["DimSize"].split()]
+    if len(sizes) != int(fields["NDims"]):
+        return f"{len(sizes)} sizes for {fields['NDims']} dimensions"
+    is_raw = fields.get("CompressedData", "").lower() != "true"
+    other = fields["ElementDataFile"]
+    other = "" if other.lower() == "local" else other
+    sizes.append(int(fields.get("ElementNumberOfChannels", "1")))
+    return _data(file, sizes, fields["ElementType"], other, is_raw)
+
+
+def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: bool) -> str:
+    """Compare the sizes of an image with those of its data, in this file or another beside it."""
+    if min(sizes) < 1:
+        return f"its sizes are {sizes}"
+    width = next((count for word, count in _BYTES.items() if word in kind.lower()), 1)
+    least = math.prod(sizes) * width
+    if not is_raw:
+        # A zip makes data at most 1032 times smaller.
+        least //= 1032
+    # A name may be a pattern of several, or a list of them.
+    if not other or "%" in other or other.startswith("LIST"):
+        return _size(file, 0 if other else least)
+    path = Path(file.name).parent / other
+    if not path.is_file():
+        return f"its data in '{other}' are missing"
+    with path.open("rb") as data:
+        return _size(data, least)
+
+
+def _pdb(file: BinaryIO) -> str:
+    """Check the columns of numbers of molecules, whose places are fixed."""
+    whole, place = re.compile(rb"\s*[+-]?\d"), re.compile(rb"\s*[+-]?\d+\.?\d*")
+    for line in file:
+        if line.startswith((b"ATOM", b"HETATM")):
+            places = [line[at : at + 8] for at in (30, 38, 46)]
+            good = line[:54].isascii() and all(map(place.fullmatch, places))
+            good = good and whole.match(line[22:26]) is not None
+        elif line.startswith((b"HELIX", b"SHEET")):
+            start = 21 if line.startswith(b"HELIX") else 22
+            good = all(map(whole.match, (line[start : start + 4], line[33:37])))
+        else:
+            continue
+        if not good:
+            return f"no numbers in the columns of the line {line[:60]!r}"
+    return ""
+
+
+#: Corners of a cell of Tecplot by its name.
+_CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
+
+
+def _tecplot(file: BinaryIO) -> str:
+    """Compare the counts of zones with the numbers in the file."""
+    data = file.read()
+    names = re.search(rb"(?is)VARIABLES\s*=(.*?)^\s*ZONE", data, re.MULTILINE)
+    zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
+    if names is None:
+        return "no VARIABLES and ZONE are in it"
+    # Some zones share variables, have some at cells, or repeat numbers.
+    if re.search(rb"(?i)\*|VARSHARE|VARLOCATION", data):
+        return ""
+    columns = len(re.findall(rb'"[^"]*"|[^\s,"]+', names[1]))
+    least = 0
+    for zone in zones:
+        pairs = re.findall(rb"(?i)\b(N|NODES|E|ELEMENTS|I|J|K)\s*=\s*(-?\d+)", zone)
+        counts = {key.upper(): int(word) for key, word in pairs}
+        if min(counts.values(), default=0) < 0:
+            return "a count of a zone is negative"
+        kind = re.search(rb"(?i)\bET\s*=\s*(\w+)", zone)
+        corners = _CORNERS.get(kind[1].upper(), 0) if kind else 0
+        points = counts.get(b"N", counts.get(b"NODES", math.prod(counts.get(k, 1) for k in _IJK)))
+        cells = counts.get(b"E", counts.get(b"ELEMENTS", 0))
+        least += points * columns + cells * corners
+    there = len(data.replace(b",", b" ").split())
+    return f"{there} of {least} numbers are there" if there < least else ""
+
+
+_IJK = (b"I", b"J", b"K")
+#: Lines of OBJ that are counted, their name, and their numbers in the corners of faces.
+_CORNERS_OF_OBJ = (
+    (rb"(?m)^[ \t]*vt\s", "the texture coordinate", rb"\d/(\d+)"),
+    (rb"(?m)^[ \t]*vn\s", "the normal", rb"\d/\d*/(\d+)"),
+)
+
+
+def _mdpa(file: BinaryIO) -> str:
+    """Count the ends of blocks."""
+    words = re.findall(rb"(?m)^[ \t]*(Begin|End)\b", file.read())
+    lacking = words.count(b"Begin") - words.count(b"End")
+    return f"the ends of {lacking} of its blocks are missing" if lacking else ""
+
+
+#: Words of an EnSight case that stand alone in a line.
+_SECTIONS = (
+    b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
+    b"SCRIPTS",
+)  # fmt: skip
+
+
+def _ensight(file: BinaryIO) -> str:
+    """Check the lines of a case, and the files that it names for their parts."""
+    folder, section = Path(file.name).parent, b""
+    parts: set[bytes] | None = None
+    for line in file.read().splitlines():
+        head, colon, rest = line.partition(b"#")[0].partition(b":")
+        words = [word for word in rest.split() if not word.isdigit()]
+        if head.strip().upper() in _SECTIONS and not colon:
+            section = head.strip().upper()
+        elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
+            return f"no such section as {line[:40]!r}"
+        elif words and section in (b"GEOMETRY", b"VARIABLE"):
+            # Stars stand for the digits of a step; numbers without a file, and pairs of files.
+            if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
+                continue
+            name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
+            if not (folder / name).is_file():
+                return f"it names {name!r}, which is missing"
+            found = _parts(folder / name)
+            parts = found if section == b"GEOMETRY" else parts
+            if found is not None and parts is not None and (other := found - parts):
+                return f"{name!r} has the part {min(other)!r}, which the geometry has not"
+    return ""
+
+
+def _parts(path: Path) -> set[bytes] | None:
+    """Return the numbers of the parts in a file of text of EnSight, None of another one."""
+    data = path.read_bytes()
+    if b"Binary" in data[:80]:
+        return None
+    return {word.strip() for word in re.findall(rb"(?m)^part[ \t]*\r?$\s?([^\n]*)", data)}
+
+
+def _obj(file: BinaryIO) -> str:
+    """Compare the numbers of texture coordinates and of normals in faces with their counts."""
+    with _mapped(file) as text:
+        if text.find(b"\0") >= 0:
+            return "it has bytes of 0, and text has none"
+        for key, name, pattern in _CORNERS_OF_OBJ:
+            count = sum(1 for _ in re.finditer(key, text))
+            # Where a file has none, they are left out.
+            most = max((int(match[1]) for match in re.finditer(pattern, text)), default=0)
+            if 0 < count < most:
+                return f"a face has {name} {most} of {count}"
+    return ""
+
+
+def _legacy(file: BinaryIO) -> str:
+    """Count the corners of cells and the arrays of fields, or VTK's reader ends the process."""
+    lines = file.read(_HEAD).splitlines()
+    is_text = b"ASCII" in b"".join(lines[2:3]).upper()
+    version = _VERSION.match(b"".join(lines[:1]))
+    # Since version 5 cells are arrays of ends and of corners.
+    keywords = _CELLS if version is None or int(version[1]) < 5 else ()
+    with _mapped(file) as data:
+        fields = (_field(data, at, is_text) for at in _places(data, b"\nFIELD "))
+        cells = (
+            _cells(data, at, is_text) for word in keywords for at in _places(data, b"\n" + word)
+        )
+        return next(filter(None, itertools.chain(fields, cells)), "")
+
+
+_VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
+_CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
+_COUNTS = re.compile(rb"\s\w+[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]*\r?\n")
+#: The first word after numbers.
+_LETTER = re.compile(rb"[a-zA-Z]")
+
+
+def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why cells are not whole, of which each begins with its number of corners.
+
+    VTK takes that number as it is.
+    """
+    counts = _COUNTS.match(data, at)
+    if counts is None:
+        return ""  # VTK's reader says so, or it is the name of an array
+    count, size, start = int(counts[1]), int(counts[2]), counts.end()
+    if is_text:
+        end = _LETTER.search(data, start)
+        numbers = np.fromstring(data[start : end.start() if end else None], np.int64, sep=" ")
+    else:
+        there = max(min(size, (len(data) - start) // 4), 0)
+        numbers = np.frombuffer(data, ">i4", there, start)
+    if len(numbers) < size:
+        return f"{len(numbers)} of {size} numbers of cells are there"
+    step = int(numbers[0]) + 1 if count > 0 < size else 1
+    # Most meshes have cells of one kind.
+    if size == count * step and np.all(numbers[:size:step] == step - 1):
+        return ""
+    corners, place = numbers.tolist(), 0
+    for _ in range(count):
+        place += corners[place] + 1 if place < size and corners[place] >= 0 else size
+    return "" if place == size else f"the corners of {count} cells are not {size} numbers"
+
+
+def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why a field that begins at a place is not whole."""
+    head = re.compile(rb"\sFIELD[ \t]+\S+[ \t]*(\d*)").match(data, at)
+    at = at if head is None else head.end()
+    for _ in range(0 if head is None else int(head[1] or 1)):
+        array = _ARRAY.match(data, at)
+        if array is None:
+            return "an array of a field is missing"
+        count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
+        if "string" in kind or kind in ("bit", "long", "unsigned_long"):
+            return ""
+        if is_text:
+            word = _WORD.search(data, at)
+            end = len(data) if word is None else word.start()
+            there = len(data[at:end].split())
+            if _ODD.search(data, at, end):
+                return "words stand among the numbers of a field"
+        else:
+            width = next((count for part, count in _BYTES.items() if part in kind), 1)
+            there, end = (len(data) - at) // width, at + count * width
+        if there < count:
+            return f"{there} of {count} numbers of an array of a field are there"
+        at = end
+    return ""
+
+
+#: Header of an array of a field in a legacy file, with what VTK knows of the array before it.
+_ARRAY = re.compile(
+    rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
+)
+#: What is no part of a number in text, and a line that does not begin with one.
+_ODD = re.compile(rb"(?i)[\x80-\xff]|[ \t](?!nan|inf)[a-z_]")
+_WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
+
+
+#: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
+_FORMATS: dict[str, Callable[[BinaryIO], str]] = {
+    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
+    ".stl": _stl,
+    **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
+    **dict.fromkeys((".mha", ".mhd"), _meta),
+    **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),
+    **dict.fromkeys((".dat", ".tec"), _tecplot),
+    **dict.fromkeys((*_INDICES, ".vtp", ".vtu"), _xml),
+    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
+    **dict.fromkeys(
+        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
+    ),
+}  # fmt: skip
