@@ -1,5 +1,7 @@
 """Files that lack a part or contradict their headers are refused before a reader opens them."""
 
+import base64
+import json
 import re
 import struct
 import zlib
@@ -49,6 +51,32 @@ GEO = (
 CASE = b"FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: s a.scl\n"
 
 
+GLTF = {
+    "asset": {"version": "2.0"},
+    "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+         "max": [1, 1, 0]}
+    ],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,"
+                 + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()}],
+}  # fmt: skip
+
+
+def gltf(key="asset", **changes):
+    """Return glTF whose first part of a list has some other values."""
+    part = GLTF[key]
+    part = [part[0] | changes] if isinstance(part, list) else part
+    return json.dumps(GLTF | {key: part}).encode()
+
+
+AVS = b"3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
+
+
 def png(kind=b"IDAT"):
     """Return a grey picture of four pixels."""
     parts = (
@@ -75,6 +103,8 @@ WHOLE = {
     "a.pnm": b"P5\n# a comment\n2 2\n255\nabcd",
     "a.dat": TECPLOT,
     "a.vtk": FIELD,
+    "a.gltf": gltf(),
+    "a.avs": AVS,
     "a.obj": OBJ,
     "untextured.obj": OBJ.replace(b"vt 0 0\n", b""),
     "three.vtk": cells(3, 0, 1, 2, 3, 1, 2, 3),
@@ -107,6 +137,25 @@ WRONG = {
     "text": ("a.obj", OBJ.replace(b"1 0 0", b"1 0 \0"), "bytes of 0"),
     "texture": ("a.obj", OBJ.replace(b"3/1/1", b"3/9/1"), "the texture coordinate 9 of 1"),
     "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
+    "axes": ("a.gii", b'<DataArray Dimensionality="10000000" />', "an array of 10000000 axes"),
+    "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
+    "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),
+    "fraction": ("a.gltf", gltf("buffers", byteLength=0.5), "its byteLength is 0.5"),
+    "bytes": ("a.gltf", gltf("buffers", byteLength=100), "of 100 bytes of a buffer"),
+    "file": ("a.gltf", gltf("buffers", uri="b.bin"), "'b.bin', which is missing"),
+    "view": ("a.gltf", gltf("bufferViews", byteLength=37), "ends at 37 of 36 bytes of its buffer"),
+    "array": ("a.gltf", gltf("accessors", count=4), "ends at 48 of 36 bytes of its view"),
+    "reference": ("a.gltf", gltf("accessors", bufferView=10**9), "number 1000000000 of 1 buffer"),
+    "cycle": ("a.gltf", gltf("nodes", children=[0]), "nodes are in a cycle"),
+    "a list": ("a.gltf", b"[1, 2]", "its header cannot be read"),
+    "line": (
+        "a.nrrd",
+        NRRD.replace(b"encoding", b"s\0\nencoding"),
+        "a line of its header is no field",
+    ),
+    "bracket": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
+    "columns": ("a.pdb", ATOM.replace(b"   1  ", b"1" + b"0" * 30), "no numbers in the columns"),
+    "twice said": ("a.case", b"FORMAT\ntype: x\n" + CASE, "the section FORMAT stands twice"),
     "section": ("a.case", CASE[:52], "no such section as b'VARI'"),
     "missing": ("a.case", CASE.replace(b"a.geo", b"b.geo"), "'b.geo', which is missing"),
     "part": ("a.case", CASE, "the part b'7', which the geometry has not"),

@@ -26,6 +26,7 @@ from vizlight.mesh import (
     ply,
     polylines,
     scene_files,
+    short_files,
     su2,
 )
 
@@ -175,7 +176,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
-            data = reader.read(path)
+            with warnings.catch_warnings():
+                # NumPy warns of an empty file, which is an error afterwards.
+                warnings.filterwarnings("ignore", "genfromtxt: ")
+                data = reader.read(path)
         except (meshio.ReadError, LookupError, ValueError):
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
@@ -184,6 +188,9 @@ def _of_meshio(path: Path) -> pv.DataSet:
             break
     if not data.cells:
         raise ValueError("it has no cells")
+    content = path.read_bytes()
+    if b"\0" not in content:
+        short_files.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
     mesh = pv.from_meshio(data)

@@ -7,7 +7,9 @@ the process by, or never end on.
 from __future__ import annotations
 
 import contextlib
+import graphlib
 import itertools
+import json
 import math
 import mmap
 import os
@@ -16,6 +18,7 @@ import struct
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
+from urllib.parse import unquote
 
 import numpy as np
 import pyvista as pv
@@ -26,6 +29,8 @@ from vizlight.vtk.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+
+    from vizlight._types import Keywords
 
 __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
@@ -63,7 +68,7 @@ def missing_part(path: Path, /) -> str:
     with path.open("rb") as file:
         try:
             lacking = lacks(file)
-        except (LookupError, ValueError, struct.error) as error:
+        except (AttributeError, LookupError, TypeError, ValueError, struct.error) as error:
             return f"its header cannot be read: {error}"
     if lacking or path.suffix.lower() not in _INDICES:
         return lacking
@@ -103,7 +108,9 @@ def _xml(file: BinaryIO) -> str:
     with _mapped(file) as text:
         for start in (b" NumberOf", b" index="):
             for match in (_COUNT.match(text, at) for at in _places(text, start)):
-                if match and not 0 <= int(match[2]) <= most:
+                # Each block takes some bytes, but for those that are empty.
+                limit = len(text) if start == b" index=" else most
+                if match and not 0 <= int(match[2]) <= limit:
                     wrong = f"{match[1].decode()} is {match[2].decode()}"
     return wrong
 
@@ -284,6 +291,8 @@ def _nrrd(file: BinaryIO) -> str:
     head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
     lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
     fields = _fields(lines, ": ")
+    if not all(b": " in line for line in lines[1:] if line):
+        return "a line of its header is no field"
     if len(fields) < sum(b": " in line for line in lines):
         return "a key stands twice"
     sizes = [int(word) for word in fields["sizes"].split()]
@@ -341,7 +350,8 @@ def _pdb(file: BinaryIO) -> str:
         if line.startswith((b"ATOM", b"HETATM")):
             places = [line[at : at + 8] for at in (30, 38, 46)]
             good = line[:54].isascii() and all(map(place.fullmatch, places))
-            good = good and whole.match(line[22:26]) is not None
+            # Lines have 80 columns by the format.
+            good = good and whole.match(line[22:26]) is not None and len(line.rstrip()) <= 80
         elif line.startswith((b"HELIX", b"SHEET")):
             start = 21 if line.startswith(b"HELIX") else 22
             good = all(map(whole.match, (line[start : start + 4], line[33:37])))
@@ -378,7 +388,8 @@ def _tecplot(file: BinaryIO) -> str:
         points = counts.get(b"N", counts.get(b"NODES", math.prod(counts.get(k, 1) for k in _IJK)))
         cells = counts.get(b"E", counts.get(b"ELEMENTS", 0))
         least += points * columns + cells * corners
-    there = len(data.replace(b",", b" ").split())
+    rows = re.findall(rb"(?m)^[ \t]*[-+.\d].*", data.replace(b",", b" "))
+    there = sum(len(row.split()) for row in rows)
     return f"{there} of {least} numbers are there" if there < least else ""
 
 
@@ -406,13 +417,16 @@ _SECTIONS = (
 
 def _ensight(file: BinaryIO) -> str:
     """Check the lines of a case, and the files that it names for their parts."""
-    folder, section = Path(file.name).parent, b""
+    folder, section, sections = Path(file.name).parent, b"", set[bytes]()
     parts: set[bytes] | None = None
     for line in file.read().splitlines():
         head, colon, rest = line.partition(b"#")[0].partition(b":")
         words = [word for word in rest.split() if not word.isdigit()]
         if head.strip().upper() in _SECTIONS and not colon:
             section = head.strip().upper()
+            if section in sections:
+                return f"the section {section.decode()} stands twice"
+            sections.add(section)
         elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
             return f"no such section as {line[:40]!r}"
         elif words and section in (b"GEOMETRY", b"VARIABLE"):
@@ -435,6 +449,113 @@ def _parts(path: Path) -> set[bytes] | None:
     if b"Binary" in data[:80]:
         return None
     return {word.strip() for word in re.findall(rb"(?m)^part[ \t]*\r?$\s?([^\n]*)", data)}
+
+
+def _gifti(file: BinaryIO) -> str:
+    """Check the numbers of axes, to which nibabel counts."""
+    numbers = re.findall(rb'Dimensionality="([^"]*)"', file.read())
+    wrong = [number.decode("latin-1") for number in numbers if number not in _AXES]
+    return f"an array of {wrong[0]} axes" if wrong else ""
+
+
+_AXES = [b"%d" % number for number in range(1, 7)]
+
+
+def _avs(file: BinaryIO) -> str:
+    """Count the lines of points and cells of AVS, whose header states both."""
+    lines = [line for line in file.read().splitlines() if not line.lstrip().startswith(b"#")]
+    words = lines[0].split() if lines else []
+    if len(words) != 5 or not all(map(bytes.isdigit, words)):
+        return ""  # a file of Abaqus, or meshio says so
+    least = 1 + int(words[0]) + int(words[1])
+    if len(lines) < least:
+        return f"{len(lines)} of {least} lines of points and cells are there"
+    return "" if len(lines[least - 1].split()) > 3 else "a cell is not whole"
+
+
+def _foam(file: BinaryIO) -> str:
+    boundary = Path(file.name).parent / "constant" / "polyMesh" / "boundary"
+    text = boundary.read_bytes() if boundary.is_file() else b""
+    return "the text of its boundary has bytes of 0" if b"\0" in text else ""
+
+
+#: Numbers in an element of glTF, and bytes of a number.
+_ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+
+
+def _gltf(file: BinaryIO) -> str:
+    """Compare the parts of glTF with those that they name."""
+    head, text = file.read(20), b""
+    if head.startswith(b"glTF"):
+        whole, length = struct.unpack("<8xII4x", head)
+        if lacks := _size(file, whole):
+            return lacks
+        file.seek(20)
+        text = file.read(length)
+    else:
+        text = head + file.read()
+    scene = json.loads(text)
+    lists = {key: part for key, part in scene.items() if isinstance(part, list)}
+    nodes = lists.get("nodes", [])
+    for key, name in (("mesh", "meshes"), ("children", "nodes"), ("skin", "skins")):
+        for node in nodes:
+            _parts_of(lists, name, node.get(key, []))
+    graphlib.TopologicalSorter({i: n.get("children", ()) for i, n in enumerate(nodes)}).prepare()
+    for part in lists.get("scenes", []):
+        _parts_of(lists, "nodes", part.get("nodes", []))
+    _parts_of(lists, "scenes", scene.get("scene", []))
+    for mesh in lists.get("meshes", []):
+        for shape in mesh["primitives"]:
+            _parts_of(lists, "accessors", [*shape["attributes"].values()])
+            _parts_of(lists, "accessors", shape.get("indices", []))
+    return _buffers(Path(file.name).parent, lists)
+
+
+def _buffers(folder: Path, lists: dict[str, list[Keywords]]) -> str:
+    """Compare the sizes of the arrays of glTF with those of the buffers in which they are."""
+    for buffer in lists.get("buffers", []):
+        uri = buffer.get("uri", "")
+        path = folder / unquote(uri)
+        if uri.startswith("data:"):
+            there = len(uri.partition(",")[2]) * 3 // 4
+        elif uri and not path.is_file():
+            return f"it names {uri!r}, which is missing"
+        else:
+            there = path.stat().st_size if uri else _whole(buffer, "byteLength")
+        if there < _whole(buffer, "byteLength"):
+            return f"{there} of {buffer['byteLength']} bytes of a buffer are there"
+    for view in lists.get("bufferViews", []):
+        (buffer,) = _parts_of(lists, "buffers", view["buffer"])
+        end = _whole(view, "byteOffset", 0) + _whole(view, "byteLength")
+        if end > buffer["byteLength"]:
+            return f"a view ends at {end} of {buffer['byteLength']} bytes of its buffer"
+    for array in lists.get("accessors", []):
+        step = _ELEMENTS[array["type"]] * _COMPONENTS[array["componentType"]]
+        for view in _parts_of(lists, "bufferViews", array.get("bufferView", [])):
+            end = _whole(array, "byteOffset", 0) + step
+            end += (_whole(array, "count") - 1) * (_whole(view, "byteStride", 0) or step)
+            if end > view["byteLength"]:
+                return f"an array ends at {end} of {view['byteLength']} bytes of its view"
+    return ""
+
+
+def _whole(part: Keywords, key: str, default: int | None = None) -> int:
+    """Return a number of glTF that is 0 or more."""
+    number = part.get(key, default)
+    if type(number) is not int or number < 0:
+        raise ValueError(f"its {key} is {number!r}")
+    return number
+
+
+def _parts_of(lists: dict[str, list[Keywords]], name: str, numbers: object) -> list[Keywords]:
+    """Return the parts of a list of glTF by their number, or their numbers."""
+    every = lists.get(name, [])
+    chosen = numbers if isinstance(numbers, list) else [numbers]
+    for number in chosen:
+        if type(number) is not int or not 0 <= number < len(every):
+            raise ValueError(f"number {number!r} of {len(every)} {name}")
+    return [every[number] for number in chosen]
 
 
 def _obj(file: BinaryIO) -> str:
@@ -530,15 +651,17 @@ def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
 _ARRAY = re.compile(
     rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
 )
-#: What is no part of a number in text, and a line that does not begin with one.
-_ODD = re.compile(rb"(?i)[\x80-\xff]|[ \t](?!nan|inf)[a-z_]")
+#: What is no part of a number in text, such as -inf, and a line that does not begin with one.
+_ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
 _WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
 
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
-    ".stl": _stl,
+    ".stl": _stl, ".gii": _gifti, ".foam": _foam,
+    **dict.fromkeys((".glb", ".gltf"), _gltf),
+    **dict.fromkeys((".avs", ".inp"), _avs),
     **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
     **dict.fromkeys((".mha", ".mhd"), _meta),
     **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),
