@@ -30,7 +30,7 @@ from vizlight.vtk.cells import cell_arrays, connectivity
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Keywords
+    from vizlight._types import Foreign, Keywords
 
 __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
@@ -551,7 +551,7 @@ def _whole(part: Keywords, key: str, default: int | None = None) -> int:
 def _parts_of(lists: dict[str, list[Keywords]], name: str, numbers: object) -> list[Keywords]:
     """Return the parts of a list of glTF by their number, or their numbers."""
     every = lists.get(name, [])
-    chosen = numbers if isinstance(numbers, list) else [numbers]
+    chosen: list[Foreign] = numbers if isinstance(numbers, list) else [numbers]
     for number in chosen:
         if type(number) is not int or not 0 <= number < len(every):
             raise ValueError(f"number {number!r} of {len(every)} {name}")
