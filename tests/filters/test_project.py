@@ -363,7 +363,7 @@ def test_blocks_grids_and_points(torus):
     np.testing.assert_allclose(out["inner"]["cloud"].points[:, 0], -cloud["position"][:, 3])
     assert out["inner"][2] is None
     assert isinstance(grid, pv.ImageData)
-    with pytest.raises(ValueError, match="block /inner/grid: frame: expected the name of a point"):
+    with pytest.raises(ValueError, match="block /inner/cloud: frame: expected the name of a point"):
         project(blocks)
 
 
@@ -477,3 +477,13 @@ test_meshes_that_do_not_fit = refusals(
     (of_dimension_3, AFTER, "light: expected a curve or a surface, got a 3-manifold"),
     (taken, {}, "mesh: expected a mesh without an array"),
 )
+
+
+@pytest.mark.parametrize("light", ["before", "after"])
+def test_without_a_frame_it_is_that_of_the_cells(torus, light):
+    scene = SCENE4 if light == "before" else SCENE3
+    expected = project(torus, scene=scene, light=light)
+    del torus.point_data["frame"]
+    result = project(torus, scene=scene, light=light)
+    assert "frame" not in torus.point_data
+    np.testing.assert_allclose(result["luminance"], expected["luminance"], atol=1e-6)

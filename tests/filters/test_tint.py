@@ -344,3 +344,15 @@ def test_labels_of_cells_have_nothing_in_between(kind):
     assert colored["rgb"][:, 1].max() == 0
     assert colored.n_points == mesh.n_points + 6 * (kind is pv.UnstructuredGrid)
     assert np.array_equal(colored.points[: mesh.n_points], mesh.points)
+
+
+@pytest.mark.parametrize("kind", ["image", "structured_grid", "rectilinear_grid"])
+def test_colours_of_cells_of_grids_stay_apart(kind):
+    grid = pv.ImageData(dimensions=(4, 3, 1))
+    grid = grid if kind == "image" else getattr(grid, f"cast_to_{kind}")()
+    colors = np.zeros((6, 3), np.uint8)
+    colors[::2, 0] = colors[1::2, 2] = 255
+    grid.cell_data["ground"] = colors
+    tinted = tint(vizlight.illuminate(grid, WHITE), "ground")
+    assert {*map(tuple, np.asarray(tinted["rgb"]))} == {(255, 0, 0), (0, 0, 255)}
+    assert type(tint(vizlight.illuminate(grid, WHITE), "ground", inplace=True)) is type(grid)

@@ -46,8 +46,8 @@ def test_normals(tmp_path):
 @pytest.mark.parametrize("head", ["4OFF\n3 1 0\n", "nOFF 4\n3 1 0\n", "nOFF\n4\n3 1 0\n"])
 def test_places_in_4_space(head, tmp_path):
     mesh = read(tmp_path, f"{head}0 0 0 1\n1 0 0 2\n0 1 0 3\n3 0 1 2\n")
-    np.testing.assert_array_equal(mesh["positions"][:, 3], [1, 2, 3])
-    np.testing.assert_array_equal(mesh["positions"][:, :3], mesh.points)
+    np.testing.assert_array_equal(mesh["position"][:, 3], [1, 2, 3])
+    np.testing.assert_array_equal(mesh["position"][:, :3], mesh.points)
 
 
 def test_a_mesh_of_4_space_is_closed_where_it_says_so(tmp_path):
@@ -55,7 +55,7 @@ def test_a_mesh_of_4_space_is_closed_where_it_says_so(tmp_path):
     rows = [f"{np.cos(a)} {np.sin(a)} {np.cos(b)} {np.sin(b)}" for b in angles[:3] for a in angles]
     mesh = read(tmp_path, "4uMESH\n4 3\n" + "\n".join(rows), "torus.mesh")
     assert mesh.n_cells == 8
-    assert mesh["positions"].shape == (12, 4)
+    assert mesh["position"].shape == (12, 4)
     heights = read(tmp_path, "ZMESH 3 2\n0 1 2\n3 4 5\n", "heights.mesh")
     np.testing.assert_array_equal(heights.points[4], [1, 1, 4])
 

@@ -91,7 +91,7 @@ def test_nothing_to_cut_and_nothing_met():
     assert cut.n_points == cut.n_cells == 0
     assert cut["Normals"].shape == (0, 3)
     for mesh in (pv.PolyData(np.zeros((3, 3))), pv.PointSet(np.zeros((3, 3)))):
-        with pytest.raises(ValueError, match="mesh: expected lines, faces or volumes to cut"):
+        with pytest.raises(ValueError, match="mesh: expected lines, faces or volumes"):
             nspace.cut(mesh, np.array([-1.0, 0, 1]))
 
 

@@ -1,5 +1,7 @@
 """Shapes of scenes stand where the transforms of their file put them."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -92,6 +94,13 @@ translation 6 0 0 children [ {TETRAHEDRON} ] }} description "# {{" }} ] bboxSize
         (0, 1),
     ),
     "size": ("Shape { geometry Box { } }", (-1, 1)),
+    "prototypes": (
+        f"""PROTO A [ field SFVec3f at 5 0 0 eventIn SFBool b ] {{ Transform {{
+translation IS at set_b IS b children [ {TETRAHEDRON} ] }} Script {{ }} }}
+PROTO B [ field MFNode kids [ ] ] {{ Group {{ children IS kids }} }}
+A {{ at 1 0 0 }} B {{ kids [ A {{ }} A {{ at 2 0 0 }} ] }}""",
+        (1, 6),
+    ),
 }
 
 
@@ -101,6 +110,30 @@ def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
     for _ in range(3):
         shapes = scene_files.read(written(tmp_path, text))
         assert shapes.bounds[:2] == pytest.approx(ends, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    {
+        "PROTO A [ ] { Group { children [ A { } ] } } A { }": "Unknown node type A",
+        "PROTO A [ ] { Shape {": "its brackets do not close",
+        "PROTO A [ ] { Group { } } "
+        + "".join(
+            f"PROTO {b} [ ] {{ Group {{ children [ {f'{a} {{ }} ' * 400} ] }} }} "
+            for a, b in itertools.pairwise("ABCD")
+        )
+        + "D { }": "its nodes are used too often",
+    }.items(),
+)
+def test_prototypes_without_an_end(text, words, tmp_path):
+    with pytest.raises(vizlight.files.FileError, match=words):
+        vizlight.read(written(tmp_path, text))
+
+
+def test_nodes_of_other_files_are_left_out_with_a_word(tmp_path):
+    path = written(tmp_path, f'Inline {{ url "b.wrl" }} {TETRAHEDRON}')
+    with pytest.warns(UserWarning, match="nodes of other files are left out: Inline"):
+        assert vizlight.read(path).n_cells == 4
 
 
 def test_the_first_version_is_refused(tmp_path):

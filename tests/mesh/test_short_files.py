@@ -1,12 +1,202 @@
-"""Files that say themselves that a part of them is missing, refused before a reader opens them."""
+"""Files that lack a part or contradict their headers are refused before a reader opens them."""
 
+import base64
+import json
 import re
+import struct
+import zlib
 
+import numpy as np
 import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import files
+from vizlight.files import FileError
+
+NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n" + bytes(120)
+META = (
+    b"ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 5 4 3\nElementSpacing = 1 1 1\n"
+    b"ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + bytes(120)
+)
+ATOM = b"ATOM      1  CA  ALA A   1       0.000   0.000   0.500  1.00  0.00           C\n"
+HELIX = b"HELIX    1  HA GLY A   86  GLY A   94  1                                   9\n"
+TECPLOT = (
+    b'VARIABLES = "X" "Y" "Z"\nZONE N=3, E=1, F=FEPOINT, ET=TRIANGLE\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n'
+)
+FIELD = (
+    b"# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 1\n"
+    b"POINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\nPOINT_DATA 4\nFIELD F 1\na 1 4 float\n1 2 3 4\n"
+)
+CELLS = (
+    b"# vtk DataFile Version 4.2\nt\n%s\nDATASET POLYDATA\nPOINTS 4 float\n%s\nPOLYGONS 2 %d\n%s\n"
+)
+PLACES = (0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0)
+
+
+def cells(*numbers, text=True):
+    """Return a legacy file of two faces, each with its number of corners before them."""
+    if text:
+        words = [" ".join(map(str, row)).encode() for row in (PLACES, numbers)]
+        return CELLS % (b"ASCII", words[0], len(numbers), words[1])
+    rows = np.array(PLACES, ">f4").tobytes(), np.array(numbers, ">i4").tobytes()
+    return CELLS % (b"BINARY", rows[0], len(numbers), rows[1])
+
+
+OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
+GEO = (
+    "geo\nmade\nnode id assign\nelement id assign\npart\n         1\nall\ncoordinates\n         3\n"
+    + "".join(f"{x:12.5e}\n" for x in (0, 1, 0, 0, 0, 1, 0, 0, 0))
+    + "tria3\n         1\n         1         2         3\n"
+)
+CASE = b"FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: s a.scl\n"
+
+
+GLTF = {
+    "asset": {"version": "2.0"},
+    "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+         "max": [1, 1, 0]}
+    ],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,"
+                 + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()}],
+}  # fmt: skip
+
+
+def gltf(key="asset", **changes):
+    """Return glTF whose first part of a list has some other values."""
+    part = GLTF[key]
+    part = [part[0] | changes] if isinstance(part, list) else part
+    return json.dumps(GLTF | {key: part}).encode()
+
+
+AVS = b"3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
+
+
+def png(kind=b"IDAT"):
+    """Return a grey picture of four pixels."""
+    parts = (
+        (b"IHDR", struct.pack(">IIBBBBB", 2, 2, 8, 0, 0, 0, 0)),
+        (kind, zlib.compress(b"\0\1\2\0\3\4")),
+        (b"IEND", b""),
+    )
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        for name, data in parts
+    )
+
+
+def xml(count, folder):
+    """Return a surface of VTK's XML with another number of points."""
+    pv.Triangle().save(folder / "whole.vtp", binary=False)
+    return (folder / "whole.vtp").read_bytes().replace(b'Points="3"', b'Points="%d"' % count)
+
+
+WHOLE = {
+    "a.nrrd": NRRD,
+    "a.mha": META,
+    "a.png": png(),
+    "a.pnm": b"P5\n# a comment\n2 2\n255\nabcd",
+    "a.dat": TECPLOT,
+    "a.vtk": FIELD,
+    "a.gltf": gltf(),
+    "a.avs": AVS,
+    "a.obj": OBJ,
+    "untextured.obj": OBJ.replace(b"vt 0 0\n", b""),
+    "three.vtk": cells(3, 0, 1, 2, 3, 1, 2, 3),
+    "mixed.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2),
+    "binary.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2, text=False),
+}
+WRONG = {
+    "no end": ("a.nrrd", NRRD[:40], "header"),
+    "dimension": ("a.nrrd", NRRD.replace(b"dimension: 3", b"dimension: 100000"), "3 sizes for"),
+    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 5", b"sizes: 500"), "of 12000 bytes"),
+    "twice": ("a.nrrd", NRRD.replace(b"\n\n", b"\ntype: int\n\n"), "a key stands twice"),
+    "no data": ("a.nhdr", NRRD[:-121] + b"data file: b.raw\n", "'b.raw' are missing"),
+    "huge": ("a.mha", META.replace(b"DimSize = 5", b"DimSize = 1000000000"), "bytes are there"),
+    "no place": ("a.mha", META[:60], "its header has no end"),
+    "sum": ("a.png", png().replace(b"IHDR\0\0\0\2", b"IHDRdddd"), "check sum"),
+    "cut": ("a.png", png()[:-9], "check sum|requires a buffer"),
+    "no size": ("a.pnm", b"P5\n# a comment", "width and height"),
+    "column": ("a.pdb", ATOM.replace(b"   0.000   0.500", b"   0.00    0.500"), "no numbers in"),
+    "helix": ("a.pdb", ATOM + HELIX.replace(b"86", b"xx"), "no numbers in"),
+    "nodes": ("a.dat", TECPLOT.replace(b"N=3", b"N=300"), "of 903 numbers"),
+    "negative": ("a.tec", TECPLOT.replace(b"E=1", b"E=-5"), "negative"),
+    "no zone": ("a.dat", TECPLOT[:9], "no VARIABLES and ZONE"),
+    "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "the ends of 1 of its blocks"),
+    "short": ("a.vtk", FIELD.replace(b"a 1 4", b"a 3 4"), "4 of 12 numbers"),
+    "word": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 \xb5 3 4\n"), "words stand among"),
+    "huge cell": ("a.vtk", cells(3, 0, 1, 2, 99999999, 1, 2, 3), "corners of 2 cells are not 8"),
+    "binary cell": ("a.vtk", cells(3, 0, 1, 2, -7, 1, 2, 3, text=False), "corners of 2 cells"),
+    "version": ("a.vtk", cells(3, 0, 1, 2).replace(b" 4.2", b""), "corners of 2 cells are not 4"),
+    "no cells": ("a.vtk", cells(3, 0, 1, 2).replace(b"2 4", b"2 400"), "4 of 400 numbers of cells"),
+    "text": ("a.obj", OBJ.replace(b"1 0 0", b"1 0 \0"), "bytes of 0"),
+    "texture": ("a.obj", OBJ.replace(b"3/1/1", b"3/9/1"), "the texture coordinate 9 of 1"),
+    "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
+    "axes": ("a.gii", b'<DataArray Dimensionality="10000000" />', "an array of 10000000 axes"),
+    "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
+    "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),
+    "fraction": ("a.gltf", gltf("buffers", byteLength=0.5), "its byteLength is 0.5"),
+    "bytes": ("a.gltf", gltf("buffers", byteLength=100), "of 100 bytes of a buffer"),
+    "file": ("a.gltf", gltf("buffers", uri="b.bin"), "'b.bin', which is missing"),
+    "view": ("a.gltf", gltf("bufferViews", byteLength=37), "ends at 37 of 36 bytes of its buffer"),
+    "array": ("a.gltf", gltf("accessors", count=4), "ends at 48 of 36 bytes of its view"),
+    "reference": ("a.gltf", gltf("accessors", bufferView=10**9), "number 1000000000 of 1 buffer"),
+    "cycle": ("a.gltf", gltf("nodes", children=[0]), "nodes are in a cycle"),
+    "a list": ("a.gltf", b"[1, 2]", "its header cannot be read"),
+    "line": (
+        "a.nrrd",
+        NRRD.replace(b"encoding", b"s\0\nencoding"),
+        "a line of its header is no field",
+    ),
+    "bracket": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
+    "columns": ("a.pdb", ATOM.replace(b"   1  ", b"1" + b"0" * 30), "no numbers in the columns"),
+    "twice said": ("a.case", b"FORMAT\ntype: x\n" + CASE, "the section FORMAT stands twice"),
+    "section": ("a.case", CASE[:52], "no such section as b'VARI'"),
+    "missing": ("a.case", CASE.replace(b"a.geo", b"b.geo"), "'b.geo', which is missing"),
+    "part": ("a.case", CASE, "the part b'7', which the geometry has not"),
+}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_whole_files_are_read(name, tmp_path):
+    (tmp_path / name).write_bytes(WHOLE[name])
+    assert vizlight.read(tmp_path / name).n_points > 2
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_headers_that_contradict_the_data_are_refused(kind, tmp_path):
+    name, content, words = WRONG[kind]
+    (tmp_path / "a.geo").write_text(GEO)
+    (tmp_path / "a.scl").write_text("s\npart\n         7\ncoordinates\n")
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(FileError, match=words):
+        vizlight.read(tmp_path / name)
+
+
+def test_a_case_whose_parts_fit_is_read(tmp_path):
+    rows = "".join(f"{x:12.5e}\n" for x in (5, 6, 7))
+    (tmp_path / "a.geo").write_text(GEO)
+    (tmp_path / "a.scl").write_text(f"s\npart\n         1\ncoordinates\n{rows}")
+    (tmp_path / "a.case").write_bytes(CASE)
+    np.testing.assert_allclose(vizlight.read(tmp_path / "a.case").point_data["s"], [5, 6, 7])
+
+
+@pytest.mark.parametrize("count", [-1, 10**12])
+def test_counts_beyond_the_size_of_a_file_are_refused_also_in_pieces(count, tmp_path):
+    (tmp_path / "a.vtp").write_bytes(xml(count, tmp_path))
+    with pytest.raises(FileError, match=f"NumberOfPoints is {count}"):
+        vizlight.read(tmp_path / "a.vtp")
+    pv.MultiBlock([pv.Triangle()]).save(tmp_path / "b.vtm", binary=False)
+    index = (tmp_path / "b.vtm").read_text()
+    (tmp_path / "b.vtm").write_text(index.replace("b/b_0.vtp", "a.vtp"))
+    with pytest.raises(FileError, match=f"'a.vtp': NumberOfPoints is {count}"):
+        vizlight.read(tmp_path / "b.vtm")
+
 
 BOX = pv.ImageData(dimensions=(4, 3, 5))
 GRIDS = {"vti": BOX, "vts": BOX.cast_to_structured_grid(), "vtr": BOX.cast_to_rectilinear_grid()}
@@ -26,13 +216,13 @@ def test_pieces_cover_the_whole(tmp_path, suffix, binary):
         (b"", "its extents are no six numbers"),
     ):
         path.write_bytes(re.sub(rb'WholeExtent="0', b'WholeExtent="' + number, whole, count=1))
-        with pytest.raises(files.FileError, match=reason):
+        with pytest.raises(FileError, match=reason):
             vizlight.read(path)
 
 
 def test_places_beyond_the_largest(tmp_path):
     pv.RectilinearGrid([0.0, 1e200], [0.0, 1], [0.0, 1]).save(tmp_path / "a.vtr")
-    with pytest.raises(files.FileError, match=r"points beyond 1e\+100, the largest coordinate"):
+    with pytest.raises(FileError, match=r"points beyond 1e\+100, the largest coordinate"):
         vizlight.read(tmp_path / "a.vtr")
 
 
@@ -40,5 +230,5 @@ def test_a_legacy_file_that_ends_before_its_cells(tmp_path):
     path = tmp_path / "a.vtk"
     BOX.cast_to_unstructured_grid().save(path, binary=False)
     path.write_text(path.read_text().partition("CELLS")[0] + "METADATA\n")
-    with pytest.raises(files.FileError, match="its last block is not whole"):
+    with pytest.raises(FileError, match="its last block is not whole"):
         vizlight.read(path)

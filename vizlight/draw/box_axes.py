@@ -134,9 +134,13 @@ def captions(
     if not isinstance(meshes, pv.MultiBlock):
         raise TypeError(_check.message("meshes", "a MultiBlock", _check.describe(meshes)))
     height, size = _check.positive("height", height), _check.positive("size", size)
-    if ends and [len(pair) for pair in ends] != [2] * len(meshes):
-        expected = f"two words for each of the {len(meshes)} blocks"
+    unit = _check.text("unit", unit)
+    expected = f"two words for each of the {len(meshes)} blocks"
+    _check.iterable("ends", ends, expected)
+    sizes = [len(pair) if isinstance(pair, list | tuple) else 0 for pair in ends]
+    if sizes and sizes != [2] * len(meshes):
         raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+    ends = [[_check.text("ends", word) for word in pair] for pair in ends]
     eye = _Eye(camera, height)
     parts = list[tuple["Array", "Indices"]]()
     for i, name in enumerate(meshes.keys()):
@@ -176,6 +180,8 @@ def _box_of(mesh: object) -> Array:
     """Return the ends of the box of a mesh along x, y and z."""
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    if not mesh.n_points:
+        raise ValueError(_check.message("mesh", "a mesh with points", "none"))
     box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
     return box
 

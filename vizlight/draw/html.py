@@ -32,6 +32,7 @@ from vizlight.filters import relight
 from vizlight.filters.key import preset_of
 from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.polylines import backdrop
+from vizlight.model import kernels
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
@@ -448,7 +449,7 @@ def _numbers_of(live: Live) -> dict[str, Raw]:
         if array.ndim == 1:
             numbers[name] = array
         elif array.shape[1] == 3 and array.dtype.kind == "f":
-            numbers[f"|{name}|"] = np.linalg.norm(array.astype(np.float64), axis=1)
+            numbers[f"|{name}|"] = kernels.length_rows(array)
     return numbers
 
 

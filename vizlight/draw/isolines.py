@@ -287,6 +287,8 @@ def _lines_apart(
 ) -> Callable[[int, Array], Bools]:
     """Return the function that tells at which places a line other than a numbered one is near."""
     courses = list(pieces)
+    if not isinstance(clear_of, pv.PolyData | None):
+        raise TypeError(_check.message("clear_of", "a PolyData", _check.describe(clear_of)))
     if clear_of is not None and clear_of.n_lines:
         ids, ends = connectivity(clear_of.GetLines())
         flat = np.asarray(clear_of.points, dtype=np.float64)[ids, :2]

@@ -129,7 +129,9 @@ def project(
     positions : str, default: "position"
         Name of the point array of n components with the places of the points in n-space.
     frame : str or None, default: "frame"
-        Name of the point array of k n components, the tangents, row after row. None: no frame.
+        Name of the point array of k n components, the tangents, row after row. Without the
+        array ``frame`` it is that of the space which the cells around a point span. None: no
+        frame.
     turned : str or sequence of str, optional
         Names of further point arrays of m n components, vectors in n-space that turn with the
         mesh.

@@ -359,7 +359,7 @@ def _speed(lines: pv.PolyData, options: StreamlineOptions) -> Array | None:
     if not isinstance(options.tangents, str):
         return None
     rows = np.asarray(lines.point_data[options.tangents], dtype=np.float64)
-    return np.linalg.norm(rows, axis=1) if rows.ndim == 2 and rows.shape[1] == 3 else None
+    return kernels.length_rows(rows) if rows.ndim == 2 and rows.shape[1] == 3 else None
 
 
 def own_name(mesh: pv.DataSet, name: str) -> str:
@@ -569,7 +569,7 @@ def _in_space(
 
 def _flowing(vectors: Array) -> Indices:
     """Return the points where the flow is: all, or those that move where most are at rest."""
-    speed = np.linalg.norm(vectors, axis=1)
+    speed = kernels.length_rows(vectors)
     # The fast points give the scale of the flow: a median would be small where most points hardly
     # move.
     fast = speed > RESTING * np.percentile(speed[speed > 0], 95) if speed.any() else speed > 0

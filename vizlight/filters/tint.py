@@ -13,6 +13,7 @@ from vizlight import _check
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
 from vizlight.mesh import blocks, normals, records
+from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
@@ -73,7 +74,8 @@ def tint(
         Array of the coloured values, by its name, or as an array with a row per point. Default:
         the active scalars of the points, if they are not the light. Cells of a PolyData surface
         have one colour each, as in PyVista, and those of an UnstructuredGrid where they have whole
-        numbers or colours; other cell arrays are averaged to the points. The length of vectors is
+        numbers or colours; other grids with colours of cells become such, unless ``inplace``. Other
+        cell arrays are averaged to the points. The length of vectors is
         taken, unless ``component``; three or four unsigned bytes are colours. A block without the
         array has the colour of NaN.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
@@ -145,7 +147,7 @@ def tint(
     if not _holds_light(lit_blocks, name):
         records.refuse_overwriting(every, name, [name])
     component = None if component is None else _check.integer("component", component, low=0)
-    split = [_split(mesh, scalars) for mesh in lit_blocks]
+    split = [_split(mesh, scalars, inplace) for mesh in lit_blocks]
     meshes = [mesh for mesh, _ in split]
     values = values_of_blocks(meshes, scalars, component)
     # One table for all blocks, so that equal values have equal colours.
@@ -175,13 +177,18 @@ def tint(
     return out
 
 
-def _split(mesh: pv.DataSet, scalars: object) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
+def _split(
+    mesh: pv.DataSet, scalars: object, inplace: bool
+) -> tuple[pv.DataSet, NDArray[np.intp] | Slice]:
     """Return a mesh that colours cells by their own values, and the original point of each."""
     if isinstance(scalars, str) and is_of_cells(mesh, scalars):
         if isinstance(mesh, pv.PolyData) and has_faces(mesh):
             return normals.split_values(mesh, scalars)
         # Labels and colours have nothing in between; of a grid no point is split for other values.
-        whole = np.asarray(mesh.cell_data[scalars]).dtype.kind in "iub"
+        rows = np.asarray(mesh.cell_data[scalars])
+        whole = rows.dtype.kind in "iub"
+        if are_colors(rows) and not inplace and not isinstance(mesh, pv.PolyData):
+            mesh = mesh.cast_to_unstructured_grid()
         if whole and isinstance(mesh, pv.UnstructuredGrid) and not has_polyhedra(mesh):
             return normals.split_grid(mesh, scalars)
     return mesh.copy(deep=False), slice(None)
@@ -231,7 +238,7 @@ def values_of(
             return array
         if component is None:
             # In float64, since squares of integers may overflow.
-            return np.asarray(np.linalg.norm(array.astype(np.float64), axis=1))
+            return kernels.length_rows(array)
         column = _check.integer("component", component, low=0)
         if column >= array.shape[1]:
             expected = f"one of {array.shape[1]} components"

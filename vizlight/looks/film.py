@@ -18,6 +18,7 @@ from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
 from vizlight.mesh import series
 from vizlight.mesh.drift import Drift
+from vizlight.model import kernels
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -334,7 +335,7 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
             continue
         rows: Array = np.asarray(mesh[array])
         vectors = rows.ndim == 2
-        rows = np.linalg.norm(rows, axis=1) if vectors else rows.astype(np.float64)
+        rows = kernels.length_rows(rows) if vectors else rows.astype(np.float64)
         rows = rows[np.isfinite(rows)]
         values.append(rows[:: 1 + len(rows) // MOST_VALUES])
         # The sample may miss them.

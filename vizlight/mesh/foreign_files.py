@@ -26,6 +26,7 @@ from vizlight.mesh import (
     ply,
     polylines,
     scene_files,
+    short_files,
     su2,
 )
 
@@ -143,6 +144,25 @@ def _head(path: Path, count: int) -> bytes:
         return file.read(count)
 
 
+#: Number of a texture coordinate in a corner of a face, before that of its normal.
+_TEXTURE = re.compile(rb"(?<=\d)/-?\d+(/?)")
+
+
+def _untextured(path: Path) -> pv.DataSet | None:
+    """Return the mesh of an OBJ file whose faces have texture coordinates that are not in it.
+
+    VTK's reader ends the process. None where it has them, or names none.
+    """
+    data = path.read_bytes()
+    if re.search(rb"(?m)^[ \t]*vt\s", data) or _TEXTURE.search(data) is None:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        draft = Path(folder) / "untextured.obj"
+        lines = re.compile(rb"(?m)^[ \t]*[fl]\s.*")
+        draft.write_bytes(lines.sub(lambda line: _TEXTURE.sub(rb"\1\1", line[0]), data))
+        return pv.read(draft, validate=False)
+
+
 def _of_meshio(path: Path) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
@@ -159,7 +179,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
-            data = reader.read(path)
+            with warnings.catch_warnings():
+                # NumPy warns of an empty file, which is an error afterwards.
+                warnings.filterwarnings("ignore", "genfromtxt: ")
+                data = reader.read(path)
         except (meshio.ReadError, LookupError, ValueError):
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
@@ -168,6 +191,9 @@ def _of_meshio(path: Path) -> pv.DataSet:
             break
     if not data.cells:
         raise ValueError("it has no cells")
+    content = path.read_bytes()
+    if b"\0" not in content:
+        short_files.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
     mesh = pv.from_meshio(data)
@@ -418,9 +444,9 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 
 
 #: Readers that need the path alone, by suffix.
-_BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock]] = {
+_BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = {
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
-    ".las": _lidar, ".laz": _lidar, ".off": geomview.read_off, ".ply": ply.read,
-    ".su2": su2.read, ".swc": _neuron,
+    ".las": _lidar, ".laz": _lidar, ".obj": _untextured, ".off": geomview.read_off,
+    ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
 }  # fmt: skip

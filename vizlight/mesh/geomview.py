@@ -13,6 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.mesh import blocks
+from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices
 
-#: Name of the point array of places in 4-space.
-POSITIONS = "positions"
 #: Words at the start of a file, and the meaning of each letter before OFF and MESH for a vertex.
 _OFF = re.compile(rb"\s*(?:#.*\n\s*)*(ST)?(C)?(N)?(4)?(n)?OFF\b")
 _MESH = re.compile(rb"\s*(?:#.*\n\s*)*(U)?(C)?(N)?(Z)?(4)?(u)?(v)?MESH\b")
@@ -36,7 +35,7 @@ def is_mesh(path: Path) -> bool:
 
 
 def read_off(path: Path) -> pv.PolyData:
-    """Return the surface of an OFF file, with places in 4-space as the array ``positions``.
+    """Return the surface of an OFF file, with places in 4-space as the array ``position``.
 
     Parameters
     ----------
@@ -108,7 +107,7 @@ def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list
 
 
 def read_mesh(path: Path) -> pv.PolyData:
-    """Return the surface of a MESH file, with places in 4-space as the array ``positions``.
+    """Return the surface of a MESH file, with places in 4-space as the array ``position``.
 
     Parameters
     ----------
@@ -183,7 +182,7 @@ def _with_vertices(
     places[:, : min(width, 3)] = table[:, : min(width, 3)]
     mesh.points = places
     if width > 3:
-        mesh.point_data[POSITIONS] = table[:, :width].copy()
+        mesh.point_data[POSITION] = table[:, :width].copy()
     if normal:
         mesh.point_data["Normals"] = table[:, width : width + 3].copy()
         mesh.point_data.active_normals_name = "Normals"

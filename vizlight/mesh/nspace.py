@@ -114,6 +114,9 @@ class Turning:
             remedy = "name an array of positions in n-space"
             raise ValueError(_check.message("positions", "2 components or more", got, remedy))
         arrays = {self.positions: position}
+        has_cells = mesh.GetMaxSpatialDimension() > 0
+        if has_cells and self.frame == FRAME and FRAME not in mesh.point_data:
+            records.attach_rows(mesh, FRAME, spanned(mesh, position))
         arguments = [("turned", name) for name in self.turned]
         if self.frame is not None:
             arguments.append(("frame", self.frame))
@@ -250,6 +253,47 @@ class Turning:
             return images
 
         return _blocks(work, vectors, rows, 3, position)
+
+
+def spanned(mesh: pv.DataSet, position: Array) -> Array:
+    """Return at each point a frame of the space that the cells around it span in n-space.
+
+    It is the space nearest to those of the cells, each by its size.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh of lines, faces or volumes; the cells of highest dimension count.
+    position : ndarray, shape (n_points, n)
+        Places of the points.
+
+    Returns
+    -------
+    ndarray, shape (n_points, k n)
+        k orthonormal rows for cells of dimension k, zero at points of no cell with a size.
+
+    Raises
+    ------
+    ValueError
+        If the mesh has points alone.
+    """
+    corners, middles = _simplices(mesh)
+    count, n = position.shape
+    k = corners.shape[1] - 1
+    finite = np.where(np.isfinite(position), position, 0).astype(np.float64)
+    places = finite / (np.abs(finite).max(initial=0) or 1.0)
+    places = np.concatenate([places, places[middles].mean(axis=1)])[corners]
+    axes, factors = np.linalg.qr((places[:, 1:] - places[:, :1]).transpose(0, 2, 1))
+    sizes = np.abs(np.prod(np.diagonal(factors, axis1=1, axis2=2), axis=1))
+    spaces = sizes[:, np.newaxis, np.newaxis] * (axes @ axes.transpose(0, 2, 1))
+    total = count + len(middles)
+    sums = [
+        np.bincount(corners.ravel(), np.repeat(column, k + 1), total)[:count]
+        for column in spaces.reshape(-1, n * n).T
+    ]
+    values, vectors = np.linalg.eigh(np.stack(sums, axis=1).reshape(count, n, n))
+    frame = vectors[:, :, n - k :].transpose(0, 2, 1).reshape(count, k * n)
+    return np.where(values[:, -1:] > 0, frame, 0).astype(position.dtype)
 
 
 def continued(mesh: pv.DataSet, name: str) -> Array | None:
@@ -484,7 +528,7 @@ def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
         for kind in _SIMPLICES:
             if kind in kinds:
                 return kinds[kind], none
-    expected, got = "lines, faces or volumes to cut", "a mesh of points alone"
+    expected, got = "lines, faces or volumes", "a mesh of points alone"
     remedy = "connect the points, for example by delaunay_3d()"
     raise ValueError(_check.message("mesh", expected, got, remedy))
 

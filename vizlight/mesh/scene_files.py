@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import tempfile
 import threading
@@ -14,7 +15,7 @@ import pyvista as pv
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Container, Iterator, Mapping, Sequence
 
     from vizlight._types import Array, Foreign, Raw
 
@@ -22,9 +23,13 @@ SUFFIXES = (".wrl", ".vrml", ".3ds")
 #: VTK's parser of VRML keeps its state in variables of the process.
 _LOCK = threading.Lock()
 #: Words, runs of numbers, texts, brackets and comments of VRML 2.
-_TOKENS = re.compile(r'#[^\n]*|"(?:\\.|[^"\\])*"|[\[\]{}]|[-+.\d][-+.\deE\s,]*|[^\s,\[\]{}"#]+')
-#: Most tokens of a scene whose nodes that are used again are written out.
-_MOST_TOKENS = 1 << 24
+_TOKENS = re.compile(
+    r'#[^\n]*|"(?:\\.|[^"\\])*"|[\[\]{}]'
+    r'|[-+.\d][-+.\d\s,]*(?:(?<=[.\d])[eE][-+\d][-+.\d\s,]*)*|[^\s,\[\]{}"#]+'
+)
+#: Most tokens of a scene whose nodes that are used again are written out, and of a use of a
+#: prototype.
+_MOST_TOKENS, _MOST_OF_USE = 1 << 24, 1 << 20
 #: Sizes of nodes that do not state them; those of VTK are half of it.
 _SIZES = {
     "Box": "size 2 2 2", "Sphere": "radius 1", "Cylinder": "height 2 radius 1",
@@ -92,6 +97,9 @@ def _of_vrml(path: Path, draft: Path) -> list[tuple[pv.PolyData | None, Array]]:
     if text.startswith("#VRML V1"):
         raise ValueError("it is VRML 1, which VTK does not read: save it as VRML 2, .glb or .obj")
     tokens = _written_out(text)
+    if external := sorted({"EXTERNPROTO", "Inline"}.intersection(tokens)):
+        names = ", ".join(external)
+        _check.warn(f"file: '{path}': nodes of other files are left out: {names}")
     nodes = list(_nodes(tokens))
     scales = [node.fields["scale"][1] for node in nodes if "scale" in node.fields]
     skewed = any(len({*scale}) > 1 or scale[0] < 0 for scale in scales)
@@ -153,6 +161,88 @@ def _colors(shape: Foreign, table: Foreign) -> Raw | None:
     return np.asarray(colors[numbers, :3])
 
 
+class _Prototype(NamedTuple):
+    """A node that a scene defines: the values of its fields, if a use states none, and its body."""
+
+    fields: dict[str, list[str]]
+    body: list[str]
+
+
+def _instances(words: list[str], prototypes: dict[str, _Prototype]) -> Iterator[str]:
+    """Yield the tokens of a scene with the bodies of its prototypes where these are used.
+
+    VTK draws the body where it stands, too, and ends the process where it is used twice. Source:
+    ISO/IEC 14772-1, 4.8.
+    """
+    i = 0
+    while i < len(words):
+        name, begin = words[i], i
+        i += 1
+        if name == "PROTO":
+            interface, end = _closing(words, begin), _closing(words, _closing(words, begin))
+            declared = _parted(words[begin + 3 : interface - 1], _ACCESS)
+            prototypes = prototypes | {
+                words[begin + 1]: _Prototype(
+                    # An access has a type and a name after it, and then the value.
+                    {field[1]: field[2:] for _, field in declared if len(field) > 1},
+                    words[interface + 1 : end - 1],
+                )
+            }
+            i = end
+        elif name in prototypes and words[i : i + 1] == ["{"]:
+            i = _closing(words, begin)
+            fields, body = prototypes[name]
+            values = fields | dict(_parted(words[begin + 2 : i - 1], fields))
+            inner = {key: value for key, value in prototypes.items() if key != name}
+            inside = _instances([*_filled(body, values)], inner)
+            scene = [*itertools.islice(inside, _MOST_OF_USE)]
+            if len(scene) == _MOST_OF_USE:
+                raise ValueError("its nodes are used too often")
+            # The nodes after the first one are scripts.
+            yield from scene[: _closing(scene, 0)]
+        else:
+            yield name
+
+
+#: Words before the type and the name of each field of a prototype.
+_ACCESS = ("eventIn", "eventOut", "exposedField", "field")
+
+
+def _closing(words: Sequence[str], begin: int) -> int:
+    """Return the number of the token after the next group in brackets."""
+    depth = 0
+    for i in range(begin, len(words)):
+        depth += (words[i] in ("[", "{")) - (words[i] in ("]", "}"))
+        if words[i] in ("]", "}") and depth <= 0:
+            return i + 1
+    raise ValueError("its brackets do not close")
+
+
+def _parted(words: list[str], names: Container[str]) -> Iterator[tuple[str, list[str]]]:
+    """Yield each name that is in no brackets, with the tokens up to the next one."""
+    depth, starts = 0, []
+    for i, word in enumerate(words):
+        if not depth and word in names:
+            starts.append(i)
+        depth += (word in ("[", "{")) - (word in ("]", "}"))
+    for start, end in itertools.pairwise([*starts, len(words)]):
+        yield words[start], words[start + 1 : end]
+
+
+def _filled(body: list[str], values: Mapping[str, list[str]]) -> Iterator[str]:
+    """Yield the tokens of a body with values for its fields that are those of the prototype."""
+    i = 0
+    while i < len(body):
+        if body[i + 1 : i + 2] == ["IS"]:
+            # What comes in and goes out has no value.
+            value = values.get("".join(body[i + 2 : i + 3]))
+            yield from [body[i], *value] if value else ()
+            i += 3
+        else:
+            yield body[i]
+            i += 1
+
+
 def _written_out(text: str) -> list[str]:
     """Return the tokens of a scene with its nodes in all places where they are used.
 
@@ -162,7 +252,8 @@ def _written_out(text: str) -> list[str]:
     names: dict[str, list[str]] = {}
     # Brackets that are open: the name of what they hold, and where it begins.
     stack: list[tuple[str, int]] = []
-    named, words = ("", 0), (match[0] for match in _TOKENS.finditer(text))
+    every = [word for word in _TOKENS.findall(text) if word[0] != "#"]
+    named, words = ("", 0), _instances(every, {})
     for word in words:
         if word == "DEF":
             named = next(words, ""), len(tokens)
@@ -171,7 +262,7 @@ def _written_out(text: str) -> list[str]:
         elif word == "ROUTE":
             for _ in range(3):
                 next(words, "")
-        elif word[0] != "#":
+        else:
             tokens.append(word)
             if word in "[{":
                 stack.append(named)

@@ -1,27 +1,46 @@
-"""Files that are shorter than their format states.
+"""Files that are shorter than their format states, or whose headers contradict their data.
 
-Readers report most faults of a file. These are the faults that they overlook, or crash on.
+Readers of VTK and meshio report most faults of a file. These are the faults that they overlook, end
+the process by, or never end on.
 """
 
 from __future__ import annotations
 
+import contextlib
+import graphlib
+import itertools
+import json
+import math
+import mmap
+import os
 import re
 import struct
+import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
+from urllib.parse import unquote
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import headers, references, series
+from vizlight.mesh import references, series
 from vizlight.vtk.cells import cell_arrays, connectivity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
+    from collections.abc import Callable, Iterator, Sequence
+
+    from vizlight._types import Foreign, Keywords
 
 __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
+#: Bytes in which a header stands that has no end of its own.
+_HEAD = 4096
+#: Bytes of a number by a part of the name of its type: the first that is in it.
+_BYTES = {
+    "64": 8, "32": 4, "16": 2, "int8": 1, "idtype": 4, "char": 1, "short": 2, "long_long": 8,
+    "long long": 8, "longlong": 8, "long": 4, "int": 4, "float": 4, "double": 8,
+}  # fmt: skip
 #: Bytes at the end of a file in which its last words stand.
 _END = 512
 #: Largest ratio of data to what a compressor of VTK makes of them.
@@ -32,9 +51,6 @@ _INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 
 def missing_part(path: Path, /) -> str:
     """Return the part that a file lacks of the size or the end that it states.
-
-    These are the XML files of VTK with their pieces, netCDF, HDF5, STL, and what
-    :mod:`.headers` has.
 
     Parameters
     ----------
@@ -52,7 +68,7 @@ def missing_part(path: Path, /) -> str:
     with path.open("rb") as file:
         try:
             lacking = lacks(file)
-        except (LookupError, ValueError, struct.error) as error:
+        except (AttributeError, LookupError, TypeError, ValueError, struct.error) as error:
             return f"its header cannot be read: {error}"
     if lacking or path.suffix.lower() not in _INDICES:
         return lacking
@@ -89,10 +105,12 @@ def _xml(file: BinaryIO) -> str:
         return "its end is missing"
     # What is packed is at most so much larger.
     most, wrong = _PACKED * file.seek(0, 2), ""
-    with headers.mapped(file) as text:
+    with _mapped(file) as text:
         for start in (b" NumberOf", b" index="):
-            for match in (_COUNT.match(text, at) for at in headers.places(text, start)):
-                if match and not 0 <= int(match[2]) <= most:
+            for match in (_COUNT.match(text, at) for at in _places(text, start)):
+                # Each block takes some bytes, but for those that are empty.
+                limit = len(text) if start == b" index=" else most
+                if match and not 0 <= int(match[2]) <= limit:
                     wrong = f"{match[1].decode()} is {match[2].decode()}"
     return wrong
 
@@ -108,7 +126,7 @@ def _grid(file: BinaryIO) -> str:
     """
     if lacks := _xml(file):
         return lacks
-    with headers.mapped(file) as text:
+    with _mapped(file) as text:
         # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
@@ -133,7 +151,7 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
-        return headers.size(file, end) if end else "its header is not whole"
+        return _size(file, end) if end else "its header is not whole"
     # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
@@ -159,19 +177,7 @@ def _stl(file: BinaryIO) -> str:
     # Binary files may begin with this word, too, but a text has no bytes of 0.
     if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
         return "" if b"endsolid" in _last(file).lower() else "its end is missing"
-    return headers.size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
-
-
-_FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    **headers.FORMATS,
-    **dict.fromkeys((".vtm", ".vtp", ".vtu"), _xml),
-    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
-    **dict.fromkeys((".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu"), _xml),
-    **dict.fromkeys(
-        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
-    ),
-    ".stl": _stl,
-}
+    return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
 
 
 def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
@@ -226,3 +232,443 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         # An unstructured grid has a type for each cell, too.
         expected += sum(sizes) + (mesh.n_cells if isinstance(mesh, pv.UnstructuredGrid) else 0)
     return f"{count} of {expected} numbers are there" if count < expected else ""
+
+
+@contextlib.contextmanager
+def _mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
+    """Return the content of a file, which is not read at once."""
+    if not file.seek(0, 2):
+        yield b""
+        return
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+        yield text
+
+
+def _places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
+    """Return the places of a word."""
+    at = text.find(word)
+    while at >= 0:
+        yield at
+        at = text.find(word, at + 1)
+
+
+def _size(file: BinaryIO, least: int) -> str:
+    """Compare the size of a file with the least that it states."""
+    count = file.seek(0, 2)
+    return f"{count} of {least} bytes are there" if count < least else ""
+
+
+def _png(file: BinaryIO) -> str:
+    """Check the parts of a picture, each of which has a check sum."""
+    if file.read(8) != b"\x89PNG\r\n\x1a\n":
+        return ""  # VTK's reader says so
+    kind = b""
+    while kind != b"IEND":
+        count, kind = struct.unpack(">I4s", file.read(8))
+        part = file.read(count)
+        if file.read(4) != zlib.crc32(kind + part).to_bytes(4, "big"):
+            return "a check sum is not that of its part"
+    return ""
+
+
+def _pnm(file: BinaryIO) -> str:
+    """Compare a picture with its width and height."""
+    head = file.read(_HEAD)
+    gap = rb"(?:\s|#[^\n]*\n)+"
+    match = re.match(rb"P[1-6]" + gap + rb"(\d+)" + gap + rb"(\d+)\s", head)
+    if not match:
+        return "its width and height are missing"
+    # A bit is the least for each pixel.
+    return _size(file, int(match[1]) * int(match[2]) // 8)
+
+
+def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
+    texts = [line.decode("utf-8", "surrogateescape").partition(between) for line in lines]
+    return {key.strip(): rest.strip() for key, found, rest in texts if found}
+
+
+def _nrrd(file: BinaryIO) -> str:
+    head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
+    lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
+    fields = _fields(lines, ": ")
+    if not all(b": " in line for line in lines[1:] if line):
+        return "a line of its header is no field"
+    if len(fields) < sum(b": " in line for line in lines):
+        return "a key stands twice"
+    sizes = [int(word) for word in fields["sizes"].split()]
+    other = fields.get("data file", fields.get("datafile", ""))
+    if not (blank or other):
+        return "its header has no end"
+    if len(sizes) != int(fields["dimension"]):
+        return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
+    if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
+        return ""
+    is_raw = fields["encoding"].lower() == "raw"
+    return _data(file, sizes, fields["type"], other, is_raw)
+
+
+def _meta(file: BinaryIO) -> str:
+    # Some have fields for each of many pictures.
+    lines = file.read(1 << 20).split(b"\n")
+    last = [at for at, line in enumerate(lines) if line.startswith(b"ElementDataFile")]
+    if not last:
+        return "" if file.read(1) else "its header has no end"
+    fields = _fields(lines[: last[0] + 1], "=")
+    sizes = [int(word) for word in fields["DimSize"].split()]
+    if len(sizes) != int(fields["NDims"]):
+        return f"{len(sizes)} sizes for {fields['NDims']} dimensions"
+    is_raw = fields.get("CompressedData", "").lower() != "true"
+    other = fields["ElementDataFile"]
+    other = "" if other.lower() == "local" else other
+    sizes.append(int(fields.get("ElementNumberOfChannels", "1")))
+    return _data(file, sizes, fields["ElementType"], other, is_raw)
+
+
+def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: bool) -> str:
+    """Compare the sizes of an image with those of its data, in this file or another beside it."""
+    if min(sizes) < 1:
+        return f"its sizes are {sizes}"
+    width = next((count for word, count in _BYTES.items() if word in kind.lower()), 1)
+    least = math.prod(sizes) * width
+    if not is_raw:
+        # A zip makes data at most 1032 times smaller.
+        least //= 1032
+    # A name may be a pattern of several, or a list of them.
+    if not other or "%" in other or other.startswith("LIST"):
+        return _size(file, 0 if other else least)
+    path = Path(file.name).parent / other
+    if not path.is_file():
+        return f"its data in '{other}' are missing"
+    with path.open("rb") as data:
+        return _size(data, least)
+
+
+def _pdb(file: BinaryIO) -> str:
+    """Check the columns of numbers of molecules, whose places are fixed."""
+    whole, place = re.compile(rb"\s*[+-]?\d"), re.compile(rb"\s*[+-]?\d+\.?\d*")
+    for line in file:
+        if line.startswith((b"ATOM", b"HETATM")):
+            places = [line[at : at + 8] for at in (30, 38, 46)]
+            good = line[:54].isascii() and all(map(place.fullmatch, places))
+            # Lines have 80 columns by the format.
+            good = good and whole.match(line[22:26]) is not None and len(line.rstrip()) <= 80
+        elif line.startswith((b"HELIX", b"SHEET")):
+            start = 21 if line.startswith(b"HELIX") else 22
+            good = all(map(whole.match, (line[start : start + 4], line[33:37])))
+        else:
+            continue
+        if not good:
+            return f"no numbers in the columns of the line {line[:60]!r}"
+    return ""
+
+
+#: Corners of a cell of Tecplot by its name.
+_CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
+
+
+def _tecplot(file: BinaryIO) -> str:
+    """Compare the counts of zones with the numbers in the file."""
+    data = file.read()
+    names = re.search(rb"(?is)VARIABLES\s*=(.*?)^\s*ZONE", data, re.MULTILINE)
+    zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
+    if names is None:
+        return "no VARIABLES and ZONE are in it"
+    # Some zones share variables, have some at cells, or repeat numbers.
+    if re.search(rb"(?i)\*|VARSHARE|VARLOCATION", data):
+        return ""
+    columns = len(re.findall(rb'"[^"]*"|[^\s,"]+', names[1]))
+    least = 0
+    for zone in zones:
+        pairs = re.findall(rb"(?i)\b(N|NODES|E|ELEMENTS|I|J|K)\s*=\s*(-?\d+)", zone)
+        counts = {key.upper(): int(word) for key, word in pairs}
+        if min(counts.values(), default=0) < 0:
+            return "a count of a zone is negative"
+        kind = re.search(rb"(?i)\bET\s*=\s*(\w+)", zone)
+        corners = _CORNERS.get(kind[1].upper(), 0) if kind else 0
+        points = counts.get(b"N", counts.get(b"NODES", math.prod(counts.get(k, 1) for k in _IJK)))
+        cells = counts.get(b"E", counts.get(b"ELEMENTS", 0))
+        least += points * columns + cells * corners
+    rows = re.findall(rb"(?m)^[ \t]*[-+.\d].*", data.replace(b",", b" "))
+    there = sum(len(row.split()) for row in rows)
+    return f"{there} of {least} numbers are there" if there < least else ""
+
+
+_IJK = (b"I", b"J", b"K")
+#: Lines of OBJ that are counted, their name, and their numbers in the corners of faces.
+_CORNERS_OF_OBJ = (
+    (rb"(?m)^[ \t]*vt\s", "the texture coordinate", rb"\d/(\d+)"),
+    (rb"(?m)^[ \t]*vn\s", "the normal", rb"\d/\d*/(\d+)"),
+)
+
+
+def _mdpa(file: BinaryIO) -> str:
+    """Count the ends of blocks."""
+    words = re.findall(rb"(?m)^[ \t]*(Begin|End)\b", file.read())
+    lacking = words.count(b"Begin") - words.count(b"End")
+    return f"the ends of {lacking} of its blocks are missing" if lacking else ""
+
+
+#: Words of an EnSight case that stand alone in a line.
+_SECTIONS = (
+    b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
+    b"SCRIPTS",
+)  # fmt: skip
+
+
+def _ensight(file: BinaryIO) -> str:
+    """Check the lines of a case, and the files that it names for their parts."""
+    folder, section, sections = Path(file.name).parent, b"", set[bytes]()
+    parts: set[bytes] | None = None
+    for line in file.read().splitlines():
+        head, colon, rest = line.partition(b"#")[0].partition(b":")
+        words = [word for word in rest.split() if not word.isdigit()]
+        if head.strip().upper() in _SECTIONS and not colon:
+            section = head.strip().upper()
+            if section in sections:
+                return f"the section {section.decode()} stands twice"
+            sections.add(section)
+        elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
+            return f"no such section as {line[:40]!r}"
+        elif words and section in (b"GEOMETRY", b"VARIABLE"):
+            # Stars stand for the digits of a step; numbers without a file, and pairs of files.
+            if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
+                continue
+            name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
+            if not (folder / name).is_file():
+                return f"it names {name!r}, which is missing"
+            found = _parts(folder / name)
+            parts = found if section == b"GEOMETRY" else parts
+            if found is not None and parts is not None and (other := found - parts):
+                return f"{name!r} has the part {min(other)!r}, which the geometry has not"
+    return ""
+
+
+def _parts(path: Path) -> set[bytes] | None:
+    """Return the numbers of the parts in a file of text of EnSight, None of another one."""
+    data = path.read_bytes()
+    if b"Binary" in data[:80]:
+        return None
+    return {word.strip() for word in re.findall(rb"(?m)^part[ \t]*\r?$\s?([^\n]*)", data)}
+
+
+def _gifti(file: BinaryIO) -> str:
+    """Check the numbers of axes, to which nibabel counts."""
+    numbers = re.findall(rb'Dimensionality="([^"]*)"', file.read())
+    wrong = [number.decode("latin-1") for number in numbers if number not in _AXES]
+    return f"an array of {wrong[0]} axes" if wrong else ""
+
+
+_AXES = [b"%d" % number for number in range(1, 7)]
+
+
+def _avs(file: BinaryIO) -> str:
+    """Count the lines of points and cells of AVS, whose header states both."""
+    lines = [line for line in file.read().splitlines() if not line.lstrip().startswith(b"#")]
+    words = lines[0].split() if lines else []
+    if len(words) != 5 or not all(map(bytes.isdigit, words)):
+        return ""  # a file of Abaqus, or meshio says so
+    least = 1 + int(words[0]) + int(words[1])
+    if len(lines) < least:
+        return f"{len(lines)} of {least} lines of points and cells are there"
+    return "" if len(lines[least - 1].split()) > 3 else "a cell is not whole"
+
+
+def _foam(file: BinaryIO) -> str:
+    boundary = Path(file.name).parent / "constant" / "polyMesh" / "boundary"
+    text = boundary.read_bytes() if boundary.is_file() else b""
+    return "the text of its boundary has bytes of 0" if b"\0" in text else ""
+
+
+#: Numbers in an element of glTF, and bytes of a number.
+_ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+
+
+def _gltf(file: BinaryIO) -> str:
+    """Compare the parts of glTF with those that they name."""
+    head, text = file.read(20), b""
+    if head.startswith(b"glTF"):
+        whole, length = struct.unpack("<8xII4x", head)
+        if lacks := _size(file, whole):
+            return lacks
+        file.seek(20)
+        text = file.read(length)
+    else:
+        text = head + file.read()
+    scene = json.loads(text)
+    lists = {key: part for key, part in scene.items() if isinstance(part, list)}
+    nodes = lists.get("nodes", [])
+    for key, name in (("mesh", "meshes"), ("children", "nodes"), ("skin", "skins")):
+        for node in nodes:
+            _parts_of(lists, name, node.get(key, []))
+    graphlib.TopologicalSorter({i: n.get("children", ()) for i, n in enumerate(nodes)}).prepare()
+    for part in lists.get("scenes", []):
+        _parts_of(lists, "nodes", part.get("nodes", []))
+    _parts_of(lists, "scenes", scene.get("scene", []))
+    for mesh in lists.get("meshes", []):
+        for shape in mesh["primitives"]:
+            _parts_of(lists, "accessors", [*shape["attributes"].values()])
+            _parts_of(lists, "accessors", shape.get("indices", []))
+    return _buffers(Path(file.name).parent, lists)
+
+
+def _buffers(folder: Path, lists: dict[str, list[Keywords]]) -> str:
+    """Compare the sizes of the arrays of glTF with those of the buffers in which they are."""
+    for buffer in lists.get("buffers", []):
+        uri = buffer.get("uri", "")
+        path = folder / unquote(uri)
+        if uri.startswith("data:"):
+            there = len(uri.partition(",")[2]) * 3 // 4
+        elif uri and not path.is_file():
+            return f"it names {uri!r}, which is missing"
+        else:
+            there = path.stat().st_size if uri else _whole(buffer, "byteLength")
+        if there < _whole(buffer, "byteLength"):
+            return f"{there} of {buffer['byteLength']} bytes of a buffer are there"
+    for view in lists.get("bufferViews", []):
+        (buffer,) = _parts_of(lists, "buffers", view["buffer"])
+        end = _whole(view, "byteOffset", 0) + _whole(view, "byteLength")
+        if end > buffer["byteLength"]:
+            return f"a view ends at {end} of {buffer['byteLength']} bytes of its buffer"
+    for array in lists.get("accessors", []):
+        step = _ELEMENTS[array["type"]] * _COMPONENTS[array["componentType"]]
+        for view in _parts_of(lists, "bufferViews", array.get("bufferView", [])):
+            end = _whole(array, "byteOffset", 0) + step
+            end += (_whole(array, "count") - 1) * (_whole(view, "byteStride", 0) or step)
+            if end > view["byteLength"]:
+                return f"an array ends at {end} of {view['byteLength']} bytes of its view"
+    return ""
+
+
+def _whole(part: Keywords, key: str, default: int | None = None) -> int:
+    """Return a number of glTF that is 0 or more."""
+    number = part.get(key, default)
+    if type(number) is not int or number < 0:
+        raise ValueError(f"its {key} is {number!r}")
+    return number
+
+
+def _parts_of(lists: dict[str, list[Keywords]], name: str, numbers: object) -> list[Keywords]:
+    """Return the parts of a list of glTF by their number, or their numbers."""
+    every = lists.get(name, [])
+    chosen: list[Foreign] = numbers if isinstance(numbers, list) else [numbers]
+    for number in chosen:
+        if type(number) is not int or not 0 <= number < len(every):
+            raise ValueError(f"number {number!r} of {len(every)} {name}")
+    return [every[number] for number in chosen]
+
+
+def _obj(file: BinaryIO) -> str:
+    """Compare the numbers of texture coordinates and of normals in faces with their counts."""
+    with _mapped(file) as text:
+        if text.find(b"\0") >= 0:
+            return "it has bytes of 0, and text has none"
+        for key, name, pattern in _CORNERS_OF_OBJ:
+            count = sum(1 for _ in re.finditer(key, text))
+            # Where a file has none, they are left out.
+            most = max((int(match[1]) for match in re.finditer(pattern, text)), default=0)
+            if 0 < count < most:
+                return f"a face has {name} {most} of {count}"
+    return ""
+
+
+def _legacy(file: BinaryIO) -> str:
+    """Count the corners of cells and the arrays of fields, or VTK's reader ends the process."""
+    lines = file.read(_HEAD).splitlines()
+    is_text = b"ASCII" in b"".join(lines[2:3]).upper()
+    version = _VERSION.match(b"".join(lines[:1]))
+    # Since version 5 cells are arrays of ends and of corners.
+    keywords = _CELLS if version is None or int(version[1]) < 5 else ()
+    with _mapped(file) as data:
+        fields = (_field(data, at, is_text) for at in _places(data, b"\nFIELD "))
+        cells = (
+            _cells(data, at, is_text) for word in keywords for at in _places(data, b"\n" + word)
+        )
+        return next(filter(None, itertools.chain(fields, cells)), "")
+
+
+_VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
+_CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
+_COUNTS = re.compile(rb"\s\w+[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]*\r?\n")
+#: The first word after numbers.
+_LETTER = re.compile(rb"[a-zA-Z]")
+
+
+def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why cells are not whole, of which each begins with its number of corners.
+
+    VTK takes that number as it is.
+    """
+    counts = _COUNTS.match(data, at)
+    if counts is None:
+        return ""  # VTK's reader says so, or it is the name of an array
+    count, size, start = int(counts[1]), int(counts[2]), counts.end()
+    if is_text:
+        end = _LETTER.search(data, start)
+        numbers = np.fromstring(data[start : end.start() if end else None], np.int64, sep=" ")
+    else:
+        there = max(min(size, (len(data) - start) // 4), 0)
+        numbers = np.frombuffer(data, ">i4", there, start)
+    if len(numbers) < size:
+        return f"{len(numbers)} of {size} numbers of cells are there"
+    step = int(numbers[0]) + 1 if count > 0 < size else 1
+    # Most meshes have cells of one kind.
+    if size == count * step and np.all(numbers[:size:step] == step - 1):
+        return ""
+    corners, place = numbers.tolist(), 0
+    for _ in range(count):
+        place += corners[place] + 1 if place < size and corners[place] >= 0 else size
+    return "" if place == size else f"the corners of {count} cells are not {size} numbers"
+
+
+def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why a field that begins at a place is not whole."""
+    head = re.compile(rb"\sFIELD[ \t]+\S+[ \t]*(\d*)").match(data, at)
+    at = at if head is None else head.end()
+    for _ in range(0 if head is None else int(head[1] or 1)):
+        array = _ARRAY.match(data, at)
+        if array is None:
+            return "an array of a field is missing"
+        count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
+        if "string" in kind or kind in ("bit", "long", "unsigned_long"):
+            return ""
+        if is_text:
+            word = _WORD.search(data, at)
+            end = len(data) if word is None else word.start()
+            there = len(data[at:end].split())
+            if _ODD.search(data, at, end):
+                return "words stand among the numbers of a field"
+        else:
+            width = next((count for part, count in _BYTES.items() if part in kind), 1)
+            there, end = (len(data) - at) // width, at + count * width
+        if there < count:
+            return f"{there} of {count} numbers of an array of a field are there"
+        at = end
+    return ""
+
+
+#: Header of an array of a field in a legacy file, with what VTK knows of the array before it.
+_ARRAY = re.compile(
+    rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
+)
+#: What is no part of a number in text, such as -inf, and a line that does not begin with one.
+_ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
+_WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
+
+
+#: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
+_FORMATS: dict[str, Callable[[BinaryIO], str]] = {
+    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
+    ".stl": _stl, ".gii": _gifti, ".foam": _foam,
+    **dict.fromkeys((".glb", ".gltf"), _gltf),
+    **dict.fromkeys((".avs", ".inp"), _avs),
+    **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
+    **dict.fromkeys((".mha", ".mhd"), _meta),
+    **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),
+    **dict.fromkeys((".dat", ".tec"), _tecplot),
+    **dict.fromkeys((*_INDICES, ".vtp", ".vtu"), _xml),
+    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
+    **dict.fromkeys(
+        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
+    ),
+}  # fmt: skip

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pyvista as pv
 
+from vizlight.model import kernels
 from vizlight.vtk import polylines
 
 if TYPE_CHECKING:
@@ -302,7 +303,7 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
         Number of these distances that the 90th percentile of the speeds moves in a period.
     """
     segments = segments_of(mesh)
-    speed = np.linalg.norm(np.asarray(velocities, dtype=np.float64), axis=1)
+    speed = kernels.length_rows(velocities)
     least = SLOWEST * float(np.median(speed[speed > 0])) if speed.any() else 1.0
     speed = np.maximum(speed, least)
     # The mean of the times by both ends of a step, which is exact where the speed is even.

@@ -68,6 +68,11 @@ def unit_rows(vectors: ArrayLike) -> Array:
     return unit(columns)[0].T
 
 
+def length_rows(vectors: ArrayLike) -> Array:
+    """Return the lengths of rows in float64; NaN where a component is not finite."""
+    return length(np.ascontiguousarray(np.asarray(vectors, dtype=np.float64).T))
+
+
 def _length(v: Array) -> tuple[Array, Bools | None]:
     """Return lengths, and a mask of the vectors with squares out of the range of the type."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):

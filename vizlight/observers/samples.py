@@ -14,7 +14,7 @@ from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
-from vizlight.model.kernels import unit_rows
+from vizlight.model.kernels import length_rows, unit_rows
 from vizlight.observers.pixels import Cells, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
@@ -148,8 +148,7 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
         rows = part.values[pixels.cell if part.flat else ids].astype(np.float64)
         values = rows if part.flat else np.asarray(interpolated(rows, places))
     if part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
-        rows = rows_of(part.inputs.tangents, ids).astype(np.float64)
-        magnitude = interpolated(np.linalg.norm(rows, axis=1), places)
+        magnitude = interpolated(length_rows(rows_of(part.inputs.tangents, ids)), places)
     return Sample(
         kind=part.kind, points=points, eye=toward, right=right, up=np.cross(toward, right),
         tangents=tangents, normals=normals, values=values, valid=valid, scene=part.scene,

@@ -169,9 +169,16 @@ class View:
         ------
         TypeError
             If the argument is not a camera.
+        ValueError
+            If its eye is at its focal point, as far from the origin as float64 tells none apart.
         """
         if not is_camera(camera):
             raise TypeError(_no_camera("camera", "a pyvista.Camera or vtkCamera", camera))
+        if not any(camera.GetDirectionOfProjection()):
+            got, remedy = f"both at {camera.GetPosition()}", "move the mesh to the origin"
+            raise ValueError(
+                _check.message("camera", "an eye away from its focal point", got, remedy)
+            )
         # VTK's direction goes from the eye into the scene, one of a view toward the eye.
         direction = tuple(-x for x in camera.GetDirectionOfProjection())
         up = tuple(camera.GetViewUp())

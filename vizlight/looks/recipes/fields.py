@@ -30,6 +30,7 @@ from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import records
 from vizlight.mesh.strokes import FLAT, TUBE
+from vizlight.model import kernels
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -179,7 +180,7 @@ def _bar(mesh: Step, name: str, colors: Keywords, sense: str) -> Keywords:
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
     """Return the finite lengths of vectors."""
-    sizes: Array = np.linalg.norm(np.asarray(mesh[name], dtype=np.float64), axis=1)
+    sizes = kernels.length_rows(mesh[name])
     return sizes[np.isfinite(sizes)]
 
 

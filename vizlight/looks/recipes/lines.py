@@ -12,6 +12,7 @@ from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning
+from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def points(case: Case) -> Drawing:
     array = case.array
     if array is not None and array.role == "vectors":
         mesh = case.wishes.joined(mesh, array)
-        lengths = np.linalg.norm(np.asarray(mesh.run().point_data[array.name], np.float64), axis=1)
+        lengths = kernels.length_rows(mesh.run().point_data[array.name])
         ends = float(np.nanmin(lengths)), float(np.nanmax(lengths))
         colors: Keywords = {"cmap": LIGHTNESS, "clim": ends} | case.wishes.colors
         drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
