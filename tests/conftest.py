@@ -61,6 +61,12 @@ def random():
 
 
 @pytest.fixture
+def seed():
+    """Return a number by which inputs differ for ``python tests/claims.py --seed``, 0 without."""
+    return int(os.environ.get("VIZLIGHT_SEED", "0"))
+
+
+@pytest.fixture
 def claim(record_property):
     """Return a function that holds what is found to what is stated, for the register of claims."""
 

@@ -38,11 +38,12 @@ def exact(normals, power=20):
 
 @pytest.mark.parametrize("levels", [8, 0.02, [0.2, 0.4, 0.6, 0.8]])
 def test_a_shiny_sphere_is_right_everywhere(levels, random, claim):
-    found = isoluminance(Sphere((1, 2, 3), 2), SHINY, levels=levels)
+    center, radius = random.uniform(-3, 3, 3), random.uniform(0.5, 4)
+    found = isoluminance(Sphere(tuple(center), radius), SHINY, levels=levels)
     bands = found["bands"]
     assert bands.is_manifold
     place, polygon = banded.places(polygons(bands), random, 4)
-    normal = unit(place - [1, 2, 3])
+    normal = unit(place - center)
     error = np.abs(exact(normal) - bands["luminance"][polygon])
     claimed = bands.field_data["luminance_error"][0]
     claim(np.quantile(error, 0.999), 1.1 * claimed)
