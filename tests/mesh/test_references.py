@@ -23,6 +23,9 @@ VTM = (
         ("a.xmf", "<DataItem>{}:/data0</DataItem>"),
         ("a.inp", "*NODE\n1, 0, 0, 0\n*Include, Input={}\n"),
         ("a.case", "GEOMETRY\nmodel: 1 {}\n"),
+        ("a.vtp.series", '{{"files": [{{"name": "{}"}}]}}'),
+        ("a.mhd", "DimSize = 1 1\nElementDataFile = {}\n"),
+        ("a.nhdr", "NRRD0004\ndata file: {}\n"),
     ],
 )
 def test_names_that_leave_the_folder(name, text, tmp_path):

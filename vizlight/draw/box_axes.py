@@ -136,9 +136,10 @@ def captions(
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
     expected = f"two words for each of the {len(meshes)} blocks"
-    _check.iterable("ends", ends, expected)
-    sizes = [len(pair) if isinstance(pair, list | tuple) else 0 for pair in ends]
-    if sizes and sizes != [2] * len(meshes):
+    pairs: object = ends
+    if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(meshes)):
+        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+    if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
         raise ValueError(_check.message("ends", expected, _check.describe(ends)))
     ends = [[_check.text("ends", word) for word in pair] for pair in ends]
     eye = _Eye(camera, height)

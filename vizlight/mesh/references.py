@@ -17,6 +17,9 @@ _NAMED = {
     **dict.fromkeys((".xmf", ".xdmf"), rb">\s*([^<>:\s]+)\s*:/"),
     ".inp": rb"(?im)^\*(?:INCLUDE|NODE|ELEMENT)\b[^\n]*?\bINPUT\s*=\s*\"?([^\s,\"]+)",
     ".case": rb"(?im)^\s*(?:model|measured|match|boundary)\s*:\s*(?:\d+\s+)*(\S+)",
+    ".series": rb"\"name\"\s*:\s*\"([^\"]+)\"",
+    ".mhd": rb"(?im)^ElementDataFile\s*=\s*(?!LOCAL|LIST)(\S+)",
+    ".nhdr": rb"(?im)^data ?file:\s*(?!LIST)(\S+)",
 }
 
 

@@ -255,10 +255,9 @@ def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
             return np.asarray(values[np.where(share < 0.5, before, after)])
         part = share.reshape(-1, *(1,) * (values.ndim - 1))
         # A point keeps its value beside one that is not finite.
-        mixed = np.where(
-            part > 0, (1 - part) * values[before] + part * values[after], values[before]
-        )
-        return np.asarray(mixed, dtype=values.dtype)
+        with np.errstate(invalid="ignore"):
+            mixed = (1 - part) * values[before] + part * values[after]
+        return np.asarray(np.where(part > 0, mixed, values[before]), dtype=values.dtype)
 
     ends = np.searchsorted(rows, offsets[1:] - 1, side="right")
     return _polylines(lines, between, np.diff(ends, prepend=0))
