@@ -49,7 +49,7 @@ CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 3.5
 #: Step of lines in distances between strokes, and in cells where these are no smaller.
-STEP, FINEST = 0.25, 0.3
+STEP, FINEST = 0.125, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
