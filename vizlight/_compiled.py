@@ -243,7 +243,10 @@ class Kernel(Generic[P, R]):
             _Account.missed += saved
         if not self._proven and wanted() != "1":
             self.missed += saved
-            start = self.start_up()
+            # No start-up is shorter than a reading: only from there on its folder is looked at.
+            start = READ
+            if self.missed >= start and _Account.missed >= preparation() + start:
+                start = self.start_up()
             if self.missed < start or _Account.missed < preparation() + start:
                 return False
         try:

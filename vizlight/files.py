@@ -47,7 +47,7 @@ from vizlight.mesh import (
     short_files,
 )
 from vizlight.mesh.subdivision import by_corner, simplices
-from vizlight.vtk.cells import cell_arrays, check_whole, connectivity
+from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -342,9 +342,9 @@ def no_file(path: Path) -> str:
 
 def _check_block(mesh: pv.DataSet, path: Path) -> None:
     """Raise ValueError for a block that VTK's reader makes of an incomplete file."""
-    size = getattr(mesh, "dimensions", (1,))
-    if min(size) < 0 or mesh.n_points > MOST_POINTS:
-        raise FileError(f"no points: the dimensions are {tuple(size)}")
+    size = dimensions(mesh)
+    if min(size, default=1) < 0 or mesh.n_points > MOST_POINTS:
+        raise FileError(f"no points: the dimensions are {size}")
     low, high = np.reshape(mesh.bounds, (3, 2)).T
     # Points that are not finite have no bounds: the lower one is then above the upper one.
     if np.any((low <= high) & (np.maximum(-low, high) > _check.FARTHEST)):

@@ -6,6 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Scene, View
+from vizlight.geometry.lines import simplices
 from vizlight.mesh.normals import welded
 from vizlight.vtk import cells, corners, normals, orientation, topology
 
@@ -75,7 +76,8 @@ def test_points_are_split_as_by_vtk(name, monkeypatch):
 def test_normals_do_not_depend_on_the_size_of_parts(name, monkeypatch):
     mesh = SURFACES[name]()
     own = [normals.computed_normals(mesh, as_wound=wound) for wound in (False, True)]
-    monkeypatch.setattr(topology, "EDGES", 64)
+    for module in (topology, simplices):
+        monkeypatch.setattr(module, "EDGES", 64)
     monkeypatch.setattr(orientation, "BLOCK", 16)
     for before, wound in zip(own, (False, True), strict=True):
         after = normals.computed_normals(mesh, as_wound=wound)

@@ -548,6 +548,9 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
+    # PyVista would look for the component among the entry points of all packages.
+    from vizlight.draw import component  # noqa: F401
+
     # A key makes the data a part of the picture.
     if off_screen and SUPERSAMPLES_PARTS:
         plotter.enable_anti_aliasing("ssaa")

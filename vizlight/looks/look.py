@@ -25,6 +25,7 @@ from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
 from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -528,7 +529,7 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if not mesh.n_cells and not isinstance(mesh, pv.PolyData):
         # VTK draws points that are cells.
         step = Step("points", ".cast_to_poly_points", step)
-    elif sum(size > 1 for size in getattr(mesh, "dimensions", ())) == 1:
+    elif sum(size > 1 for size in dimensions(mesh)) == 1:
         step = Step("lines", ".cast_to_unstructured_grid", step)
     if georeference.is_earth(mesh):
         step = Step("chart", "vizlight.cartography.in_degrees", step)
@@ -636,8 +637,7 @@ _FILTERS = tuple(name for name in _OF_FILTERS if name != "shadow")
 
 def _is_height_field(contents: Contents, array: Named | None) -> bool:
     """Return whether data are a grid of one layer with heights."""
-    sizes: tuple[int, ...] = getattr(contents.mesh, "dimensions", ())
-    is_layer = sum(size > 1 for size in sizes) == 2
+    is_layer = sum(size > 1 for size in dimensions(contents.mesh)) == 2
     return is_layer and bool(array or height_grids.heights_name(contents.mesh))
 
 

@@ -16,6 +16,7 @@ from vizlight.draw.map_frames import has_bar
 from vizlight.draw.margins import LETTERS
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, meaning
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -145,7 +146,7 @@ def isolines(
 def smoothed(mesh: Step, array: Named) -> Step | None:
     """Return the step that draws a grid of few points as smooth, None for others."""
     grid = mesh.run()
-    sizes = [size for size in getattr(grid, "dimensions", ()) if size > 1]
+    sizes = [size for size in dimensions(grid) if size > 1]
     if len(sizes) != 2 or array.name not in grid.point_data:
         return None
     factor = min(FINE // max(sizes), MOST_FINER)

@@ -22,6 +22,7 @@ from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -169,7 +170,7 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     if not is_sheet or is_asked or not georeference.has_degrees(mesh):
         return step, contents
     array = contents.named(wishes.array or "") or next(iter(contents.arrays), None)
-    is_relief = array is not None and array.role == "heights" and hasattr(mesh, "dimensions")
+    is_relief = array is not None and array.role == "heights" and bool(dimensions(mesh))
     straight = is_relief or wishes.question in RELIEFS or mesh.n_points > MOST_BENT
     text = charts.suited(mesh, straight=straight)
     if not text:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 from vizlight.mesh import globes
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,7 +70,7 @@ def _is_flat(contents: Contents) -> bool:
 
 def _is_terrain(contents: Contents) -> bool:
     # Shadows are followed over grids.
-    return contents.flat_axis == 2 and hasattr(contents.mesh, "dimensions")
+    return contents.flat_axis == 2 and bool(dimensions(contents.mesh))
 
 
 def _is_globe(contents: Contents) -> bool:

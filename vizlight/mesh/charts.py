@@ -324,8 +324,10 @@ def _outline(mesh: pv.DataSet) -> Array:
     """Return the corners of the outline of a map, counter-clockwise; of no curved grid its box."""
     west, east, south, north = mesh.bounds[:4]
     corners = np.array([[west, south], [east, south], [east, north], [west, north]])
-    columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
-    if not isinstance(mesh, pv.StructuredGrid) or columns * rows != mesh.n_points:
+    if not isinstance(mesh, pv.StructuredGrid):
+        return corners
+    columns, rows = mesh.dimensions[:2]
+    if columns * rows != mesh.n_points:
         return corners
     grid = np.asarray(mesh.points, dtype=np.float64)[:, :2].reshape(rows, columns, 2)
     size = np.ptp(corners, axis=0).max()

@@ -11,7 +11,7 @@ import scipy
 
 from vizlight import _check
 from vizlight.mesh import georeference, meaning, polylines
-from vizlight.vtk.cells import connectivity
+from vizlight.vtk.cells import connectivity, dimensions
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Indices
@@ -146,7 +146,7 @@ def closed(mesh: pv.DataSet) -> pv.DataSet:
     mesh : pyvista.DataSet
         Map in degrees; one that is no grid of one layer is copied as it is.
     """
-    columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
+    columns, rows = (*dimensions(mesh), 0, 0)[:2]
     if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
         return mesh.copy(deep=False)
     is_curved = isinstance(mesh, pv.StructuredGrid)
@@ -190,7 +190,7 @@ def _first(lon: Array, west: float = -georeference.AROUND / 2) -> Array:
 
 def _meridians(mesh: pv.DataSet) -> Array | None:
     """Return the longitudes of the columns of a grid that is closed, None for all else."""
-    columns, rows = getattr(mesh, "dimensions", (0, 0))[:2]
+    columns, rows = (*dimensions(mesh), 0, 0)[:2]
     if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
         return None
     points = np.asarray(mesh.points).reshape(rows, columns, -1)

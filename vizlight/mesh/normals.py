@@ -107,7 +107,10 @@ def normals_of(
     given = given_normals(mesh, value, n)
     if given is not None:
         return given
-    found = computed_normals(mesh, view=view, sides=warn)
+    # Those without a view are kept, and closed pieces have the same ones.
+    found = computed_normals(mesh)
+    if view is not None and found.any_open:
+        found = computed_normals(mesh, view=view, sides=warn)
     if warn:
         warn_of_edges(float(found.sharp), isinstance(mesh, pv.PolyData))
     return found.vectors

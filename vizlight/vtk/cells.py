@@ -19,8 +19,11 @@ from vtkmodules.vtkCommonDataModel import (
     vtkCellArray,
     vtkDataObject,
     vtkDataSet,
+    vtkExplicitStructuredGrid,
+    vtkImageData,
     vtkPointSet,
     vtkPolyData,
+    vtkRectilinearGrid,
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
@@ -48,6 +51,8 @@ grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
 vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
 #: Has no types.
 _SUPPORT: Foreign = numpy_support
+#: Meshes with points along axes.
+GRIDS = (vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkExplicitStructuredGrid)
 #: Number of an array of VTK by the type of its values, which VTK looks for in a list.
 _vtk_type: Callable[[RawType], int] = functools.cache(_SUPPORT.get_vtk_array_type)
 
@@ -349,11 +354,13 @@ def renumber_corners(mesh: Foreign, numbers: Indices) -> None:
     mesh.Modified()
 
 
-def dimensions(grid: Foreign) -> tuple[int, int, int]:
-    """Return the number of points of a grid along each of its axes."""
-    low, high = np.reshape(grid.GetExtent(), (3, 2)).T
-    i, j, k = (high - low + 1).tolist()
-    return i, j, k
+def dimensions(mesh: Foreign) -> tuple[int, ...]:
+    """Return the number of points of a grid along each of its axes; none of other meshes."""
+    # PyVista looks for attributes that a mesh lacks among the entry points of all packages.
+    if not isinstance(mesh, GRIDS):
+        return ()
+    low, high = np.reshape(mesh.GetExtent(), (3, 2)).T
+    return tuple((high - low + 1).tolist())
 
 
 def check_whole(mesh: object, name: str, where: str = "") -> None:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
+from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.model import kernels
 from vizlight.vtk import loops
 from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
-from vizlight.vtk.topology import BLOCK, EDGES, components, double_cover
+from vizlight.vtk.topology import BLOCK, double_cover
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

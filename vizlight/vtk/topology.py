@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight import _pool
+from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.vtk import loops
 from vizlight.vtk.cells import firsts, mixed, places, triangles
 
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from vizlight._types import Bools, Indices, Raw, Slice
 
 
-#: Least number of edges that are sorted at once, and largest number of parts of these.
-EDGES, PARTS = 1 << 19, 16
+#: Largest number of parts of edges that are sorted.
+PARTS = 16
 
 
 class SurfaceTopology(NamedTuple):
@@ -226,42 +227,6 @@ def _record(
     alone = into[:, new[1:][new[:-1]]]
     single.append(alone[0, inner[alone].all(axis=0)] if inner is not None else alone[0].copy())
     return len(first)
-
-
-def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> Indices:
-    """Return for each of some points the first of those that edges connect it with.
-
-    Points are hooked to neighbours of lower numbers until all edges lie in one tree each.
-
-    Parameters
-    ----------
-    a, b : ndarray of int, shape (n,)
-        Ends of the edges, the lower one first.
-    count : int
-        Number of points.
-    kind : type
-        Type of the result.
-    """
-    root: Indices = np.arange(count, dtype=kind)
-    # Roots have the lower numbers, so that no cycle can form; of several edges at one upper end the
-    # last is taken, and the loop below meets the others again.
-    root[b] = a
-    while True:
-        # Each step halves the depth of the trees, until every point names its root.
-        while not np.array_equal(further := root[root], root):
-            root = further
-        left_a, left_b = [], []
-        for block in _pool.blocks(len(a), EDGES):
-            start, other = root[a[block]], root[b[block]]
-            apart = start != other
-            left_a.append(np.minimum(start[apart], other[apart]))
-            left_b.append(np.maximum(start[apart], other[apart]))
-        a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
-        if not len(a):
-            return root
-        # Roots are hooked, not points, so that whole trees join, each to the lowest of its
-        # neighbours.
-        np.minimum.at(root, b, a)
 
 
 def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:

@@ -7,9 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 
-from vizlight import _compiled
+from vizlight import _compiled, _pool
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -18,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Largest number of cells that one step crosses.
 MOST_CROSSINGS = 300
+#: Least number of edges that are looked at, or sorted, at once.
+EDGES = 1 << 19
 #: Seconds that compiled code saves per walk, and per place of it.
 SAVED = 4e-4, 4e-6
 
@@ -69,6 +70,42 @@ def numbered(points: Array) -> Indices:
     number = np.empty(len(order), dtype=np.intp)
     number[order] = np.cumsum(fresh) - 1
     return number
+
+
+def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> Indices:
+    """Return for each of some points the first of those that edges connect it with.
+
+    Points are hooked to neighbours of lower numbers until all edges lie in one tree each.
+
+    Parameters
+    ----------
+    a, b : ndarray of int, shape (n,)
+        Ends of the edges, the lower one first.
+    count : int
+        Number of points.
+    kind : type
+        Type of the result.
+    """
+    root: Indices = np.arange(count, dtype=kind)
+    # Roots have the lower numbers, so that no cycle can form; of several edges at one upper end the
+    # last is taken, and the loop below meets the others again.
+    root[b] = a
+    while True:
+        # Each step halves the depth of the trees, until every point names its root.
+        while not np.array_equal(further := root[root], root):
+            root = further
+        left_a, left_b = [], []
+        for block in _pool.blocks(len(a), EDGES):
+            start, other = root[a[block]], root[b[block]]
+            apart = start != other
+            left_a.append(np.minimum(start[apart], other[apart]))
+            left_b.append(np.maximum(start[apart], other[apart]))
+        a, b = (np.concatenate([root[:0], *left]) for left in (left_a, left_b))
+        if not len(a):
+            return root
+        # Roots are hooked, not points, so that whole trees join, each to the lowest of its
+        # neighbours.
+        np.minimum.at(root, b, a)
 
 
 def _across(edges: Array) -> tuple[Array, Array]:
@@ -206,13 +243,10 @@ class Simplices:
         """Return the middle of the largest cell of each connected part."""
         cells = np.flatnonzero(self.good)
         beyond = self.neighbours[cells]
-        owner = np.repeat(cells, self.k + 1)[beyond.ravel() >= 0]
-        pairs = owner, beyond.ravel()[beyond.ravel() >= 0]
-        count = len(self.cells)
-        graph = scipy.sparse.coo_array(
-            (np.ones(len(owner), dtype=np.int8), pairs), shape=(count, count)
-        )
-        part = scipy.sparse.csgraph.connected_components(graph, directed=False)[1][cells]
+        owner = np.broadcast_to(cells[:, np.newaxis], beyond.shape)
+        # Neighbours name each other: each pair counts once, the lower one first.
+        once = owner < beyond
+        part = components(owner[once], beyond[once], len(self.cells))[cells]
         # The largest cell of a part comes first.
         order = np.lexsort((-self.measures[cells], part))
         first = np.unique(part[order], return_index=True)[1]

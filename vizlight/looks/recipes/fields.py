@@ -50,7 +50,7 @@ CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 3.5
 #: Step of lines in distances between strokes, and in cells where these are no smaller.
-STEP, FINEST = 0.1, 0.3
+STEP, FINEST = 0.125, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
@@ -400,12 +400,14 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
     spacing = float(f"{spacing:.3g}")
     keywords: Keywords = {"tangents": array.name, "spacing": spacing, "confined": True}
     keywords["min_length"] = float(f"{SHORTEST_ON_SURFACE * spacing:.3g}")
-    # Lines of eight strokes, many of which grow at once, and cost less than few long ones.
-    keywords["max_length"] = float(f"{4 * LONG * spacing:.3g}")
+    # Lines of four strokes, many of which grow at once, and cost less than few long ones.
+    keywords["max_length"] = float(f"{2 * LONG * spacing:.3g}")
     keywords |= {"stroke_length": LONG * spacing, "feature_angle": "auto"}
     if (step := _fine_step(surface, spacing)) > FINEST:
         keywords["step"] = step
-    triangles = Step("triangles", ".triangulate", mesh)
+    # Of one mesh normals are computed once.
+    whole = isinstance(surface, pv.PolyData) and surface.is_all_triangles
+    triangles = mesh if whole else Step("triangles", ".triangulate", mesh)
     strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)
     try:
         strokes.run()
