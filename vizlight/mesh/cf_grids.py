@@ -101,6 +101,10 @@ _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECAS
 _TURNING = "GRIB_alternativeRowScanning"
 #: Degrees beyond 360 from which a grid shows a part of the earth twice.
 _MORE_THAN_ALL = 10.0
+#: Axes of the faces of a sphere in pieces.
+_TILES = r"nf|n?faces?|n?tiles?"
+#: Distance between nodes up to which they are neighbours, in that of most.
+FEW_STEPS = 3.0
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
 
@@ -108,7 +112,8 @@ _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile
 #: Axes along which values stand in a list, as those of the nodes of a mesh in a file of its own.
 _LISTS = (
     r"(n?mesh\w*_)?n?_?(nod|node|vert|vertex|vertice|cell|elem|element|ele|face|edge|col|point)(e?s)?\d?"
-    r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|profiles?|rgrid|traject.*"
+    r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|reports?|profiles?|rgrid"
+    r"|traject.*"
 )
 
 #: Names that programs give to axes without one, and the longest of such axes that can be kinds.
@@ -735,12 +740,16 @@ class _Reader:
             return None, False
         found: dict[str, Array] = {}
         for key, variable in self.file.variables.items():
-            name, inner = str(key), [str(dim) for dim in variable.dims if dim not in single]
+            # Of a sphere in faces the first is shown.
+            index = single | {
+                str(dim): 0 for dim in variable.dims if re.fullmatch(_TILES, str(dim))
+            }
+            name, inner = str(key), [str(dim) for dim in variable.dims if dim not in index]
             if {*inner} != {*dims[:2]} or variable.dtype.kind not in "iuf":
                 continue
             if self._is_place(name, variable):
                 letter, _ = _letter_of(name, variable.attrs)
-                index = {dim: i for dim, i in single.items() if dim in variable.dims}
+                index = {dim: i for dim, i in index.items() if dim in variable.dims}
                 rows: Array = np.asarray(variable.isel(index).transpose(dims[1], dims[0]).values)
                 scale = _in_degrees(name, variable.attrs, strict=True) == "radians"
                 # Files may have several, of centres and of corners: the first fits the variable.
@@ -1010,10 +1019,18 @@ def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
 
 
 def _with_numbers(data: Foreign) -> Foreign:
-    """Return a dataset whose times are numbers, as they are in files, of types that VTK has."""
+    """Return a dataset whose times are numbers, as they are in files, of types that VTK has.
+
+    Places that say that they are fake, for programs that know no others, are left out.
+    """
     import xarray
 
-    numbers = {}
+    fake = [
+        name
+        for name, one in data.coords.items()
+        if one.dims == (name,) and str(one.attrs.get("long_name", "")).lower().startswith("fake")
+    ]
+    data, numbers = data.drop_vars(fake), {}
     for name, variable in data.variables.items():
         one = _with_dates(variable)
         if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,)):
@@ -1045,9 +1062,7 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
     missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
-    # So do those of models where they compute nothing: nodes have a place of their own.
-    empty = (lon == 0) & (lat == 0)
-    missing |= empty & (empty.sum() > 1)
+    missing |= _without_place(lon, lat)
     # Files fill the places that they have not with one number, such as -999.
     lon, lat = (height_field.filled(np.where(missing, np.nan, part)) for part in (lon, lat))
     for along in (1, 0):
@@ -1070,6 +1085,23 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     grid.dimensions = (shape[2], shape[1], shape[0])
     grid.points = points.reshape(-1, 3)
     return grid, ~missing
+
+
+def _without_place(lon: Array, lat: Array) -> Bools:
+    """Return which nodes are at (0, 0) since a model computes nothing there.
+
+    A true node at (0, 0) has the only such place, or a neighbour as near as neighbours are.
+    """
+    empty = (lon == 0) & (lat == 0)
+    if empty.sum() < 2:
+        return np.zeros_like(empty)
+    turned = (lon + 180.0) % 360.0 - 180.0
+    far = np.hypot(turned, lat)
+    steps = [np.hypot(np.diff(turned, axis=i), np.diff(lat, axis=i)) for i in (0, 1)]
+    usual = max((float(np.median(step[step > 0])) for step in steps if (step > 0).any()), default=0)
+    near = np.pad((far < FEW_STEPS * usual) & ~empty, 1)
+    beside = near[:-2, 1:-1] | near[2:, 1:-1] | near[1:-1, :-2] | near[1:-1, 2:]
+    return np.asarray(empty & ~beside)
 
 
 def _astray(grid: pv.StructuredGrid, place: Bools) -> tuple[Bools, Bools]:

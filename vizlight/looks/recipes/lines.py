@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from scipy.spatial import cKDTree
 
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
+from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from vizlight._types import Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.recipes.drawing import Case
 
 #: Name that stands for the direction of lines among the arrays that colour a picture.
@@ -26,6 +28,11 @@ DIRECTION = "direction"
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
+#: Size of the points of a map in distances of neighbours, and most points whose neighbours are
+#: looked for.
+TOUCHING, MOST_ASKED = 1.2, 2000
+#: Size in pixels of balls up to which they are squares on a map.
+SMALL_BALL = 6.0
 
 
 def lines(case: Case) -> Drawing:
@@ -40,7 +47,7 @@ def lines(case: Case) -> Drawing:
     light, width = dict(case.wishes.light), _width(case)
     drawn: Keywords = {"scene": scene, "line_width": width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
-    words = "lines by their heading"
+    words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
@@ -52,7 +59,7 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
         array = case.needed_array
-        colors = {"cmap": case.map_on_ground} | case.wishes.colors
+        colors, note = case.ranged_of(mesh, array, case.map_on_ground)
         if array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
         scene = case.wishes.scene("none", camera)
@@ -60,7 +67,8 @@ def lines(case: Case) -> Drawing:
         keys = [case.bar(array, colors) | {"scene": scene}]
         words = f"lines in the colours of {array.name}"
     lit = case.lit(mesh, scene, **light)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+    notes = [note] if note else []
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
 
 
 def _width(case: Case) -> float:
@@ -86,10 +94,15 @@ def points(case: Case) -> Drawing:
     # As large as they can be without hiding each other, were they spread over the picture.
     columns, rows = case.wishes.size
     size = np.sqrt(FILLED * columns * rows / max(mesh.run().n_points, 1))
+    if case.contents.flat_axis is not None:
+        # Those of a map fill it where they are even.
+        size = max(size, TOUCHING * _apart(mesh.run()) / pixel_of(case, camera))
     size = round(float(np.clip(size, *POINT_SIZES)), 1)
-    drawn: Keywords = {"render_points_as_spheres": True, "point_size": size}
+    drawn: Keywords = {"point_size": size}
+    # Small balls of a map leave gaps between them, which squares do not.
+    drawn["render_points_as_spheres"] = case.contents.flat_axis is None or size > SMALL_BALL
     keys: list[Keywords] = []
-    words = "points"
+    words, note = "points", ""
     array = case.array
     if array is not None and array.role == "vectors":
         mesh = case.wishes.joined(mesh, array)
@@ -106,7 +119,7 @@ def points(case: Case) -> Drawing:
         if array.role == "colors":
             drawn["rgb"] = True
         else:
-            colors = {"cmap": LIGHTNESS} | case.wishes.colors
+            colors, note = case.ranged_of(mesh, array, LIGHTNESS)
             if array.role == "kinds":
                 colors = colors_of_kinds(mesh, array, case.wishes.colors)
             drawn |= colors
@@ -116,7 +129,20 @@ def points(case: Case) -> Drawing:
         # Light on balls would change the colours by which they are read.
         drawn["lighting"] = False
     lit = case.lit(mesh, scene)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+    notes = [note] if note else []
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
+
+
+def _apart(mesh: pv.DataSet) -> float:
+    """Return the distance of points that are even, of others twice that of nearest neighbours."""
+    points: Array = np.asarray(mesh.points, dtype=np.float64)
+    points = np.unique(points[np.isfinite(points).all(axis=1)], axis=0)
+    if len(points) < 2:
+        return 0.0
+    some = points[:: max(len(points) // MOST_ASKED, 1)]
+    nearest = float(np.median(cKDTree(points).query(some, k=2)[0][:, 1]))
+    sides = np.sort(np.ptp(points, axis=0))[1:]
+    return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
 
 
 def _by_direction(lit: Step) -> Step:

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.ticks import even_levels, numerals_of
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import GROUND, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference
@@ -37,9 +37,9 @@ INK, INK_ON_RELIEF = "#1a1a1a", "#3d2610"
 #: Least distance between isolines of heights, in heights of their letters.
 SPARSE_ON_RELIEF = 0.5
 #: Most classes of lengths of vectors.
-MOST_CLASSES = 15
+MOST_CLASSES = 24
 #: Most isolines between which colours change too.
-FEW_LINES = 9
+FEW_LINES = 13
 
 
 def furnished(case: Case, drawing: Drawing) -> Drawing:
@@ -76,6 +76,9 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     array, cmap = case.array, case.wishes.colors.get("cmap")
     flat = map_parts.flat(case.data) if case.on_globe else case.data
     if array is None or array.of_cells or case.contents.dimension != 2:
+        return drawing
+    table = drawing.layers[0].keywords.get("cmap")
+    if isinstance(table, Step) and GROUND in table.keywords.values():
         return drawing
     if flat is None or not (case.frame or case.on_globe):
         return drawing
