@@ -169,7 +169,9 @@ class Margin:
         room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
         scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
         lines = textwrap.wrap(title, max(int(room / scale), 1))
-        places = (0.4 * letters, upper + 0.7 * letters)
+        # Lines of a title in two are low enough for its band.
+        scale = min(scale, (BAND / TITLE_SIZE - 0.1) / (1.2 * max(len(lines), 1)))
+        places = ((0.4 if len(lines) < 2 else 0.1) * letters, upper + 0.7 * letters)
         for text, y, shown in zip(self._titles, places, (not lowered, lowered), strict=True):
             text.SetVisibility(shown)
             text.GetTextProperty().SetFontSize(max(round(letters * scale), LEAST))
@@ -496,9 +498,7 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     return marks
 
 
-def _of_logarithm(
-    low: float, high: float, levels: Sequence[float] | None
-) -> list[tuple[float, str]]:
+def _of_logarithm(low: float, high: float, levels: Array | None) -> list[tuple[float, str]]:
     """Return the words along a logarithmic bar: levels, or one, two or three in each decade."""
     first, last = math.floor(math.log10(low)), math.floor(math.log10(high))
     digits = (1, 2, 5) if high < 30 * low else (1, 3) if high < 1000 * low else (1,)

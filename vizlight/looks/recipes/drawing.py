@@ -24,7 +24,7 @@ from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
-from vizlight.mesh import brains, dates, globes, meaning, series
+from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -38,12 +38,14 @@ if TYPE_CHECKING:
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
 LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
-#: Colour map of amounts on a ground, and the colour of this.
-ON_GROUND, GROUND = "vizlight.amounts", "#fbfbf8"
+#: Colour maps of bands, and of amounts on a ground, and the colour of this.
+ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
 
+#: Colour of a value that is the only one.
+ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
 #: Keywords that take the edges of a surface that are its borders.
@@ -334,6 +336,13 @@ class Case:
         right, up = np.abs(self._up)[::-1], np.abs(self._up)
         return bool(right @ (x, y) > WIDE * wide / tall * (up @ (x, y)))
 
+    @property
+    def is_of_earth(self) -> bool:
+        """Whether the mesh is a map of places on the earth that are known, or such a ball."""
+        mesh = self.data.run()
+        is_placed = not {"crs", georeference.PROJECTION}.isdisjoint(mesh.field_data.keys())
+        return self.on_globe or is_placed or georeference.has_degrees(mesh)
+
     @cached_property
     def on_globe(self) -> bool:
         """Whether the mesh lies on the earth as a ball, and is alone in the picture."""
@@ -592,6 +601,8 @@ def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
 def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     """Return the keywords that give each kind a colour of its own."""
     kinds = kinds_of(mesh.run(), array.name)
+    if "cmap" not in keywords and len(kinds) == 1:
+        return keywords | {"cmap": _of_one(kinds[0])}
     # Numbers of parts that are no whole numbers have no colours of their own.
     if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
         return keywords
@@ -602,6 +613,14 @@ def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     own: Keywords = {"colors": of_file} if of_file else {}
     table = Step("", "vizlight.maps.kinds", named if names else list(kinds), **own)
     return keywords | {"cmap": table}
+
+
+def _of_one(value: float) -> Step:
+    """Return the step that makes the colours of a single value, whole or not."""
+    return Step(
+        "", "pyvista.LookupTable", [ONLY, ONLY], scalar_range=(value - 0.5, value + 0.5),
+        annotations={value: f"{value:.6g}"}, nan_color=MISSING,
+    )  # fmt: skip
 
 
 def unlit(lit: Step, scene: Step, name: str, **drawing: object) -> Layer:

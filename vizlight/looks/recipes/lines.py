@@ -30,7 +30,10 @@ THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
 #: looked for.
-TOUCHING, MOST_ASKED = 1.2, 2000
+TOUCHING, MOST_ASKED = 1.6, 2000
+#: Length of arrows as a share of the size of the data, and their form.
+LONG_ARROW = 0.03
+ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Size in pixels of balls up to which they are squares on a map.
 SMALL_BALL = 6.0
 
@@ -62,13 +65,15 @@ def lines(case: Case) -> Drawing:
         colors, note = case.ranged_of(mesh, array, case.map_on_ground)
         if array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
+            if not array.of_cells:
+                mesh = Step("halves", "files.surface_of", mesh, labels=array.name)
         scene = case.wishes.scene("none", camera)
         drawn |= {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
         keys = [case.bar(array, colors) | {"scene": scene}]
         words = f"lines in the colours of {array.name}"
-    lit = case.lit(mesh, scene, **light)
+    lit = case.lit(case.data, scene, **light)
     notes = [note] if note else []
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=case.data)
 
 
 def _width(case: Case) -> float:
@@ -112,6 +117,13 @@ def points(case: Case) -> Drawing:
         drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
         bar: Keywords = {"question": "value", **colors}
         keys = [bar | {"title": titled_length(mesh.run(), array.name)}]
+        words = f"arrows of {array.name} in the colours of its length"
+        arrows = _arrows(mesh, array.name, lengths[np.isfinite(lengths)])
+        if arrows is not None:
+            shown = {"scene": even_light(camera), "scalars": "GlyphScale", **colors}
+            layer = Layer(arrows, {**shown, "show_scalar_bar": False})
+            lit = case.lit(mesh, scene)
+            return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
         words = f"points in the colours of the length of {array.name}"
     elif array is not None:
         drawn |= {"scalars": array.name, "show_scalar_bar": False}
@@ -131,6 +143,24 @@ def points(case: Case) -> Drawing:
     lit = case.lit(mesh, scene)
     notes = [note] if note else []
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
+
+
+def _arrows(mesh: Step, name: str, lengths: Array) -> Step | None:
+    """Return the step that makes arrows along the vectors of points, None where all are 0.
+
+    Of points that are nearer than arrows are long, one has an arrow.
+    """
+    size = float(mesh.run().length)
+    longest = float(np.percentile(lengths, 95)) if lengths.size else 0.0
+    if not longest > 0 or not size > 0:
+        return None
+    factor = float(f"{LONG_ARROW * size / longest:.3g}")
+    points = Step("", ".cast_to_poly_points", mesh)
+    geometry = Step("", "pyvista.Arrow", **ARROW)
+    return Step(
+        "arrows", ".glyph", points, orient=name, scale=name, factor=factor,
+        tolerance=LONG_ARROW / 1.5, geom=geometry,
+    )  # fmt: skip
 
 
 def _apart(mesh: pv.DataSet) -> float:

@@ -36,8 +36,8 @@ GRATICULE = "#555555"
 INK, INK_ON_RELIEF = "#1a1a1a", "#3d2610"
 #: Least distance between isolines of heights, in heights of their letters.
 SPARSE_ON_RELIEF = 0.5
-#: Most classes of lengths of vectors.
-MOST_CLASSES = 24
+#: Most round numbers between classes of lengths of vectors, before they are halved.
+MOST_CLASSES = 16
 #: Most isolines between which colours change too.
 FEW_LINES = 13
 
@@ -78,7 +78,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     if array is None or array.of_cells or case.contents.dimension != 2:
         return drawing
     table = drawing.layers[0].keywords.get("cmap")
-    if isinstance(table, Step) and GROUND in table.keywords.values():
+    has_ground = isinstance(table, Step) and GROUND in table.keywords.values()
+    if has_ground or getattr(table, "log_scale", False):
         return drawing
     if flat is None or not (case.frame or case.on_globe):
         return drawing
@@ -134,10 +135,10 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
     low, high = clim
-    edges = sorted({low, *even_levels(low, high, MOST_CLASSES), high})
+    edges = _classes(even_levels(low, high, MOST_CLASSES), (low, high))
     table = Step("", "vizlight.maps.bands", edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
-    of_bar: Keywords = {"cmap": table, "levels": edges}
+    of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 
