@@ -125,3 +125,17 @@ def test_kinds_have_the_colours_that_are_named():
     assert table.values[0].tolist() == maps.kinds([1, 2]).values[0].tolist()
     with pytest.raises(ValueError, match="colors: expected a mapping of kinds to colours"):
         maps.kinds([1], colors={1: "no colour"})
+
+
+def test_logarithmic_bands_have_classes_of_equal_ratios():
+    table = maps.bands([10, 100], (1, 1000), logarithmic=True, below="#ffffff")
+    colors = np.asarray(table.values)[:, :3]
+    sizes = np.diff([0, *(1 + np.flatnonzero(np.diff(colors, axis=0).any(axis=1))), len(colors)])
+    np.testing.assert_allclose(sizes, len(colors) / 3, atol=1)
+    assert table.log_scale
+    assert table.scalar_range == (1, 1000)
+    assert table.below_range_color.hex_rgb == "#ffffff"
+    with pytest.raises(ValueError, match="limits: expected positive numbers"):
+        maps.bands([1], (0, 2), logarithmic=True)
+    with pytest.raises(ValueError, match="below: expected a colour"):
+        maps.bands([1], (0, 2), below="no colour")

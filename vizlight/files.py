@@ -46,8 +46,10 @@ from vizlight.mesh import (
     series,
     short_files,
 )
+from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner, simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
+from vizlight.vtk.polylines import has_lines_only
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -650,7 +652,8 @@ def surface_of(
         Name of an array of labels, which are then those of the cells. In an image that fills space,
         such as an atlas of a brain, they are whole numbers of which 0 is the ground: the surface of
         all others is smoothed within the size of a voxel. Elsewhere each point of the surface
-        labels the cells nearest to it, so that no cell has a label between two.
+        labels the cells nearest to it, so that no cell has a label between two; of lines each end
+        of a segment labels its half.
 
     Returns
     -------
@@ -691,7 +694,9 @@ def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
     if not isinstance(mesh, pv.ImageData) or min(mesh.dimensions) == 1:
         surface = surface_of(mesh)
         _scalars(surface, "labels", name)
-        return by_corner(surface, name) if name in surface.point_data else surface
+        if name not in surface.point_data:
+            return surface
+        return (by_end if has_lines_only(surface) else by_corner)(surface, name)
     if name not in mesh.point_data and name in mesh.cell_data:
         # Each cell becomes a point at its middle.
         mesh = mesh.cells_to_points(name)

@@ -150,6 +150,24 @@ _BANDS = LinearSegmentedColormap.from_list(
     ],
 )
 colormaps.register(_BANDS, force=True)
+#: Pale to deep blue over green and yellow to red and violet, as on maps of rain: amounts that stand
+#: out from a white ground, named ``"vizlight.amounts"``.
+_AMOUNTS = LinearSegmentedColormap.from_list(
+    "vizlight.amounts",
+    [
+        "#b5dcf3",
+        "#6fb1e8",
+        "#3f78d0",
+        "#2f9f8f",
+        "#7cc25a",
+        "#efe05a",
+        "#f79a3c",
+        "#dc4438",
+        "#a3256f",
+        "#5b2a86",
+    ],
+)
+colormaps.register(_AMOUNTS, force=True)
 #: Colours of a table of bands.
 _FINE = 1024
 #: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
@@ -158,7 +176,13 @@ _TWO_SIDED = 0.6
 
 
 def bands(
-    levels: Sequence[float], limits: Sequence[float], cmap: str = "vizlight.bands", /
+    levels: Sequence[float],
+    limits: Sequence[float],
+    cmap: str = "vizlight.bands",
+    /,
+    *,
+    logarithmic: bool = False,
+    below: str | None = None,
 ) -> pv.LookupTable:
     """Return a lookup table with one colour between each level and the next, as between isolines.
 
@@ -171,6 +195,10 @@ def bands(
         and the smaller is at least 0.6 of the larger, the middle of the map is at 0.
     cmap : str, default: "vizlight.bands"
         Colour map; violet over pale yellow to crimson by default, on which black lines are seen.
+    logarithmic : bool, default: False
+        Whether equal ratios have equal parts of the colours, as classes of rain have.
+    below : str, optional
+        Colour of values below the limits, such as that of dry ground. Default: the first one.
 
     Returns
     -------
@@ -180,7 +208,8 @@ def bands(
     Raises
     ------
     TypeError, ValueError
-        If a level is no finite number, the limits do not ascend, or no map has the name.
+        If a level is no finite number, the limits do not ascend, or are not positive where colours
+        are logarithmic, or no map or colour has the name.
 
     Examples
     --------
@@ -193,11 +222,16 @@ def bands(
     low, high = _check.limits("limits", limits)
     if not low < high:
         raise ValueError(_check.message("limits", f"a number above {low:g} at the end", high))
+    if logarithmic and low <= 0:
+        raise ValueError(_check.message("limits", "positive numbers for a logarithm", f"{low:g}"))
+    ends = low, high
     edges = np.unique(
         [low, *np.clip(_check.coordinates("levels", levels).ravel(), low, high), high]
     )
+    if logarithmic:
+        edges, (low, high) = np.log(edges), np.log(ends)
     start, end = low, high
-    if min(-low, high) >= _TWO_SIDED * max(-low, high):
+    if not logarithmic and min(-low, high) >= _TWO_SIDED * max(-low, high):
         start, end = -max(-low, high), max(-low, high)
     # The middles of the steps of the table.
     values = low + (high - low) * (np.arange(_FINE) + 0.5) / _FINE
@@ -212,7 +246,11 @@ def bands(
         raise ValueError(_check.message("cmap", expected, got)) from error
     table.values = np.round(255 * np.asarray(colors)).astype(np.uint8)
     table.nan_color = MISSING
-    table.scalar_range = (low, high)
+    table.scalar_range, table.log_scale = ends, logarithmic
+    if below is not None:
+        if not is_color_like(below):
+            raise ValueError(_check.message("below", "a colour", _check.describe(below)))
+        table.below_range_color = below
     return table
 
 

@@ -87,3 +87,18 @@ def test_a_surface_that_its_box_cuts_is_seen_near_a_diagonal():
     toward = framing.eye_around(grid.contour([0.0], scalars="f"), cut=True).toward
     assert toward[2] == pytest.approx(0.5)
     assert min(abs(toward[0]), abs(toward[1])) > 0.5
+
+
+@pytest.mark.parametrize("turn", [0, 90])
+def test_a_thing_that_stands_along_y_has_y_up(turn):
+    foot = pv.Cone(direction=(0, 1, 0), radius=0.6, resolution=24).triangulate()
+    thing = foot.subdivide(3).rotate_x(turn)
+    found = eye(thing)
+    assert found.up == ((0, 1, 0) if turn == 0 else (0, 0, 1))
+    # It is seen from above its foot.
+    assert np.dot(found.toward, found.up) > 0.3
+
+
+@pytest.mark.parametrize("thing", [pv.Sphere(), pv.Cube(), pv.Cylinder(direction=(0, 1, 0))])
+def test_what_stands_along_several_axes_has_z_up(thing):
+    assert eye(thing.triangulate()).up == (0, 0, 1)

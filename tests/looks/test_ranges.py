@@ -28,7 +28,7 @@ def test_few_values_far_outside_lie_beyond_the_ends():
     assert shown.clipped == (True, False)
     assert not shown.apart
     assert 8.5 < shown.low < 10
-    assert shown.high == values.max()
+    assert values.max() <= shown.high < values.max() + 0.1
     assert f"from {shown.low:g} to" in shown.words("t")
 
 
@@ -51,3 +51,24 @@ def test_lengths_that_are_skewed_have_decades():
     assert not range_shown(values).logarithmic
     assert "logarithmic" in shown.words("speed")
     assert Range(0, 1).words("x") == ""
+
+
+def test_amounts_that_are_mostly_none_have_a_ground():
+    wet = RANDOM.lognormal(0, 1.3, 1000)
+    rain = np.concatenate([np.zeros(3000), wet])
+    shown = range_shown(rain, amounts=True)
+    assert shown.logarithmic
+    assert shown.ground
+    assert np.mean(rain < shown.low) > 0.7
+    ratios = np.divide(shown.classes[1:], shown.classes[:-1])
+    assert (ratios > 1.3).all()
+    assert (ratios < 1.7).all()
+    assert shown.classes[0] == shown.low
+    assert "white" in shown.words("rain")
+    ice = np.concatenate([np.zeros(3000), RANDOM.uniform(0.8, 1.0, 1000)])
+    shown = range_shown(ice, amounts=True)
+    assert shown[:3] == (0.05, 1.0, False)
+    assert shown.ground
+    # Rounding below 0 changes nothing, and what is nowhere 0 has no ground.
+    assert range_shown(np.append(rain, -1e-9), amounts=True).ground
+    assert not range_shown(ice + 0.1, amounts=True).ground

@@ -65,3 +65,13 @@ def test_a_volume_stands_in_a_box_with_numbers_but_in_movies():
         paths = [step.arguments[1].path for step in turned if step.path == ".add_mesh"]
         assert ".outline" in paths
         assert "render.box_axes" not in paths
+
+
+def test_an_isosurface_of_crumbs_gives_way_to_slices():
+    grid = pv.ImageData(dimensions=(40,) * 3)
+    random = np.random.default_rng(0)
+    bumps = np.zeros((40,) * 3)
+    bumps[2:-2:4, 2:-2:4, 2:-2:4] = random.uniform(0.9, 1.1, bumps[2:-2:4, 2:-2:4, 2:-2:4].shape)
+    grid["f"], grid["g"] = bumps.ravel(), bumps.ravel()
+    assert volumes._is_crumbs(grid.contour([0.5], scalars="f"))
+    assert not volumes._is_crumbs(volume().contour([0.0], scalars="T"))

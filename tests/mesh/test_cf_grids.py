@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
-from vizlight.mesh import dates, meaning, projections
+from vizlight.mesh import cf_grids, dates, meaning, projections
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -514,3 +514,29 @@ def test_a_step_has_the_bounds_of_its_time(tmp_path, in_file):
     assert meaning.of(mesh).span == [0.0, 24.0]
     del data["time"].attrs["bounds"]
     assert meaning.of(vizlight.read(data)).span == []
+
+
+def test_fake_places_are_left_out_for_true_ones():
+    lon, lat = np.meshgrid(np.linspace(-50.0, 30.0, 9), np.linspace(-40.0, 40.0, 7))
+    fake = {"units": "degrees_east", "long_name": "Fake Longitude for GrADS Compatibility"}
+    data = xr.Dataset(
+        {"t": (("nf", "Ydim", "Xdim"), np.stack([lon, lon]))},
+        coords={
+            "Xdim": ("Xdim", np.arange(9.0), fake),
+            "Ydim": ("Ydim", np.arange(7.0), fake | {"units": "degrees_north"}),
+            "lons": (("nf", "Ydim", "Xdim"), np.stack([lon + lat / 9] * 2), X[2][1]),
+            "lats": (("nf", "Ydim", "Xdim"), np.stack([lat] * 2), Y[2][1]),
+        },
+    )
+    assert vizlight.read(data).bounds_size[:2] == pytest.approx((80 + 80 / 9, 80.0))
+
+
+def test_places_at_zero_beside_near_ones_are_true():
+    lon, lat = np.meshgrid(np.arange(-5.0, 6.0), np.arange(-5.0, 6.0))
+    lon, lat = lon + 0.1 * lat, lat + 0.05 * lon
+    lon[5, 6] = lat[5, 6] = 0.0
+    assert not cf_grids._without_place(lon, lat).any()
+    lon[:4, :4] = lat[:4, :4] = 0.0
+    missing = cf_grids._without_place(lon, lat)
+    assert missing[:3, :3].all()
+    assert not missing[4:].any()

@@ -169,7 +169,9 @@ class Margin:
         room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
         scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
         lines = textwrap.wrap(title, max(int(room / scale), 1))
-        places = (0.4 * letters, upper + 0.7 * letters)
+        # Lines of a title in two are low enough for its band.
+        scale = min(scale, (BAND / TITLE_SIZE - 0.1) / (1.2 * max(len(lines), 1)))
+        places = ((0.4 if len(lines) < 2 else 0.1) * letters, upper + 0.7 * letters)
         for text, y, shown in zip(self._titles, places, (not lowered, lowered), strict=True):
             text.SetVisibility(shown)
             text.GetTextProperty().SetFontSize(max(round(letters * scale), LEAST))
@@ -485,7 +487,7 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     spread = (high - low) or 1.0
     marks = [((tick - low) / spread, word) for tick, word in ticks]
     if SCALE in mesh.field_data and mesh.field_data[SCALE][0]:
-        marks = _of_logarithm(low, high)
+        marks = _of_logarithm(low, high, mesh.field_data.get(LEVELS))
     if BEYOND in mesh.field_data:
         below, above = mesh.field_data[BEYOND]
         # The end of a bar, or the middle of the swatch before it.
@@ -496,11 +498,12 @@ def _marks(mesh: pv.PolyData, words: list[str]) -> list[tuple[float, str]]:
     return marks
 
 
-def _of_logarithm(low: float, high: float) -> list[tuple[float, str]]:
-    """Return the words along a logarithmic bar: one, two or three in each decade."""
+def _of_logarithm(low: float, high: float, levels: Array | None) -> list[tuple[float, str]]:
+    """Return the words along a logarithmic bar: levels, or one, two or three in each decade."""
     first, last = math.floor(math.log10(low)), math.floor(math.log10(high))
     digits = (1, 2, 5) if high < 30 * low else (1, 3) if high < 1000 * low else (1,)
     ticks = [d * 10.0**power for power in range(first, last + 1) for d in digits]
+    ticks = ticks if levels is None else [float(level) for level in levels]
     spread = math.log(high / low)
     shares = [(math.log(tick / low) / spread, f"{tick:.6g}") for tick in ticks]
     return [(share, word) for share, word in shares if -1e-9 <= share <= 1 + 1e-9]
@@ -518,7 +521,7 @@ def _with_beyond(
 
 
 def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
-    """Return which of some even places along a bar have words, so that these fit.
+    """Return which of some places along a bar have words, so that these fit.
 
     Parameters
     ----------
@@ -533,6 +536,8 @@ def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
         return [True] * len(places)
     every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)
     step = places[1] - places[0]
+    if not np.allclose(np.diff(places), step, rtol=0.01):
+        return [place % every == 0 for place in range(len(places))]
     return [round((place - zero) / step) % every == 0 for place in places]
 
 

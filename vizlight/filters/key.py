@@ -124,7 +124,9 @@ def key(
         if not low < high or np.any(np.diff(values) <= 0):
             expected = "numbers that ascend, of a range that is given by clim"
             raise ValueError(_check.message("levels", expected, list(values)))
-        steps = [(float(value) - low) / (high - low) for value in values]
+        scale = np.log if isinstance(cmap, pv.LookupTable) and cmap.log_scale else np.asarray
+        low, high, *places = scale([low, high, *values]).tolist()
+        steps = [(place - low) / (high - low) for place in places]
     elif names := _names_of(cmap):
         steps = [i / len(names) for i in range(1, len(names))]
     facts = _question(topic)

@@ -272,7 +272,7 @@ def _words_of(mesh: pv.DataSet, name: str) -> str:
 def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:
     """Return the role of an array, None where it is no datum; ``named`` says whether by its name.
 
-    Constants are none, nor are arrays of text.
+    Constants are none, but for those with holes, nor are arrays of text.
     """
     words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
@@ -299,7 +299,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return Named(name, "vectors", of_cells) if is_vector else None
     low, high = float(finite.min()), float(finite.max())
     if low == high and named:
-        return None
+        # Where it is missing it shows where there is something.
+        return Named(name, "kinds", of_cells, 1, low, high) if len(finite) < len(sample) else None
     distinct = len(np.unique(finite))
     whole = high - low < MOST_SPAN and bool(np.all(finite == np.round(finite)))
     if whole and (distinct <= meaning.MOST_KINDS or of_kinds or _are_labels(values)):

@@ -13,10 +13,10 @@ from vizlight.draw import movie
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
-from vizlight.looks.recipes.drawing import colors_in
+from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, colors_in
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
-from vizlight.mesh import series
+from vizlight.mesh import meaning, series
 from vizlight.mesh.drift import Drift
 from vizlight.model import kernels
 
@@ -340,10 +340,16 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
         values.append(rows[:: 1 + len(rows) // MOST_VALUES])
         # The sample may miss them.
         values += [np.array([rows.min(), rows.max()])] if len(rows) else []
-    shown = range_shown(np.concatenate(values), lengths=vectors)
+    drawn: Foreign = look.drawing.layers[0].keywords.get("cmap")
+    has_ground = isinstance(drawn, Step) and GROUND in drawn.keywords.values()
+    every = np.concatenate(values)
+    unit, _ = meaning.usual_unit(read.run(), array, float(np.abs(every).max()))
+    shown = range_shown(every / unit, lengths=vectors, amounts=has_ground)
     if shown.words(array):
-        drawn = look.drawing.layers[0].keywords.get("cmap")
-        return colors_in(shown, look.wishes.picture.get("cmap") or drawn)
+        if isinstance(drawn, Step):
+            drawn = ON_GROUND if shown.ground else ON_BANDS
+        return colors_in(shown, look.wishes.picture.get("cmap") or drawn, unit)
+    shown = shown._replace(low=shown.low * unit, high=shown.high * unit)
     step = 10.0 ** np.floor(np.log10((shown.high - shown.low) / FINE or 1.0))
     ends = np.floor(shown.low / step) * step, np.ceil(shown.high / step) * step
     return {"clim": tuple(float(f"{end:.9g}") for end in ends)}

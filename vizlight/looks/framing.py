@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from scipy.spatial import ConvexHull, QhullError
 
 from vizlight.looks.contents import LAYER
 from vizlight.vtk.cells import connectivity
@@ -44,6 +45,11 @@ SEEN = 1000
 #: their values, in that of all, from which one side does not tell of the other. They are compared
 #: in this number of squares each way.
 FLATTENED, DIFFERENT, SQUARES = 0.7, 0.5, 12
+#: Turn that takes y to z.
+Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+#: Share of the height within which points are a base, least size of one on which a thing stands, as
+#: a share of that of its shadow, and largest size of the others, as a share of this one's.
+FOOT, STANDS, SMALL_BASE = 0.02, 0.25, 0.25
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -128,7 +134,55 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
-    return _around(corners, normals, areas, _ways(), _values(surface, shown, faces))
+    values = _values(surface, shown, faces)
+    if not stands_along_y(corners, areas):
+        return _around(corners, normals, areas, _ways(), values)
+    # As if y were z, and back.
+    eye = _around(corners @ Y_TO_Z.T, normals @ Y_TO_Z.T, areas, _ways(), values)
+    toward = _vector(Y_TO_Z.T @ eye.toward)
+    return Viewpoint(toward, (0.0, 1.0, 0.0), False, f"{eye.words}, y up")
+
+
+def stands_along_y(corners: Array, areas: Array) -> bool:
+    """Return whether a surface stands on its lowest points along y, and on no others.
+
+    It does where its middle is above the hull of these points, which is a large part of the shadow
+    that it has along y, and where that of its highest ones, and those along z, are small.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (N, 3, 3)
+        Corners of triangles.
+    areas : ndarray, shape (N,)
+        Weights of the triangles, in proportion to their areas.
+    """
+    kept = np.isfinite(corners).all(axis=(1, 2)) & np.isfinite(areas)
+    corners, areas = corners[kept], areas[kept]
+    if not areas.sum() > 0:
+        return False
+    points = corners.reshape(-1, 3)
+    middle = np.average(corners.mean(axis=1), axis=0, weights=areas)
+    share = _base(points, middle, 1, 1)
+    others = (_base(points, None, axis, sign) for axis, sign in ((1, -1), (2, 1), (2, -1)))
+    return share > STANDS and all(other < SMALL_BASE * share for other in others)
+
+
+def _base(points: Array, middle: Array | None, axis: int, sign: int) -> float:
+    """Return the hull of the points at an end of an axis over that of all, seen along the axis.
+
+    0 where a middle is given that is not above it.
+    """
+    heights, flat = sign * points[:, axis], np.delete(points, axis, axis=1)
+    low = heights < heights.min() + FOOT * np.ptp(heights)
+    try:
+        whole, base = ConvexHull(flat), ConvexHull(flat[low])
+    except QhullError:
+        return 0.0  # fewer than three points, or all in a line
+    if middle is not None:
+        sides = base.equations @ np.append(np.delete(middle, axis), 1.0)
+        if sides.max() > 0:
+            return 0.0
+    return float(base.volume / whole.volume)
 
 
 def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:

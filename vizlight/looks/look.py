@@ -44,6 +44,8 @@ PAGES, MOVIES, GLTF = (".html", ".htm"), (".mp4", ".gif"), (".glb",)
 FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
 #: Files that hold all parts of a result.
 TOGETHER = (*PAGES, ".vtm")
+#: Figures of light.
+OF_LIGHT = ("slope", "heading", "shape")
 #: Most other questions that are listed.
 MOST_OTHERS = 5
 
@@ -283,13 +285,21 @@ class Look:
         return [*steps, Step("", "print", read), Step("", ".close", plotter)]
 
     def figures(self) -> Legibility:
-        """Return how much a reader reads back from the picture: :func:`vizlight.legibility`."""
+        """Return how much a reader reads back from the picture: :func:`vizlight.legibility`.
+
+        Figures of light are left out where no key of the picture explains its light.
+        """
         plotter = self.plotter()
         try:
             figures: Legibility = plotter.vizlight.legibility()
-            return figures
         finally:
             plotter.close()
+        if any(key.get("question") != "value" for key in self.drawing.keys):
+            return figures
+        scale = figures.scale
+        of_light = scale is not None and scale.question in OF_LIGHT
+        kept = {"scale": None} if of_light else {}
+        return replace(figures, **dict.fromkeys(OF_LIGHT), **kept)
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"

@@ -19,6 +19,13 @@ FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
 SKEWED, DECADES = 5.0, 100.0
 #: Share of the values that are one value far outside, from which it stands for a region apart.
 APART = 0.01
+#: Share of amounts that are 0, or too small for a logarithmic bar, from which these are the ground
+#: of a map, and the least amount that is none as a share of the largest, on other bars.
+MOSTLY_NONE, LEAST_AMOUNT = 0.1, 0.05
+#: Share of the largest amount below 0 that is an error of rounding.
+NOISE = 1e-6
+#: First digits of the classes of a logarithmic bar, whose ratios are much alike.
+DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 
 
 class Range(NamedTuple):
@@ -34,6 +41,8 @@ class Range(NamedTuple):
         Whether values lie below the lower, and above the upper end.
     apart : bool
         Whether those below are nearly all one value, such as a 0 where nothing was measured.
+    ground : bool
+        Whether those below are amounts of nearly nothing, such as rain where it is dry.
     """
 
     low: float
@@ -41,19 +50,28 @@ class Range(NamedTuple):
     logarithmic: bool = False
     clipped: tuple[bool, bool] = (False, False)
     apart: bool = False
+    ground: bool = False
+
+    @property
+    def classes(self) -> list[float]:
+        """Ends of the classes of a logarithmic bar, of the round numbers between them too."""
+        powers = range(*np.floor(np.log10([self.low, 10 * self.high])).astype(int))
+        inner = [float(f"{digit * 10.0**power:.6g}") for power in powers for digit in DIGITS]
+        return [self.low, *(level for level in inner if self.low < level < self.high), self.high]
 
     def words(self, name: str) -> str:
         """Return the words that say how the range differs from that of the values, if it does."""
+        less = f"; less than {self.low:.3g} is white" * self.ground
         if self.logarithmic:
-            return f"colours of {name} are logarithmic from {self.low:.3g} to {self.high:.3g}"
+            return f"colours of {name} are logarithmic from {self.low:.3g} to {self.high:.3g}{less}"
         if not any(self.clipped):
             return ""
         ends = f"{self.low:.3g} to {self.high:.3g}"
-        words = f"colours of {name} run from {ends}, where most values are"
+        words = f"colours of {name} run from {ends}" + (less or ", where most values are")
         return words + "; one value below, in a region apart, is grey" * self.apart
 
 
-def range_shown(values: Array, *, lengths: bool = False) -> Range:
+def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) -> Range:
     """Return the range of a bar that shows values.
 
     Parameters
@@ -62,6 +80,8 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
         Finite values, one at least.
     lengths : bool
         Whether they are lengths of vectors, with a bar that may be logarithmic.
+    amounts : bool
+        Whether they may be amounts on a map, with such a bar, and a ground where they are 0.
 
     Returns
     -------
@@ -70,12 +90,18 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
         few others take much of the bar; of decades where lengths are skewed.
     """
     low, high = float(values.min()), float(values.max())
-    first, median, third, top = np.percentile(values, (25, 50, 75, 98))
-    if lengths and top > SKEWED * median > 0:
+    first, median, third = np.percentile(values, (25, 50, 75))
+    if (lengths or amounts) and low >= -NOISE * high < 0:
+        usual, top = np.percentile(values[values > 0], (50, 98))
         # Ends of which a bar tells one, two or three in a decade.
-        high = next(end for end in _of_decades(high) if end >= high)
-        bottom = max(high / DECADES, low)
-        return Range(bottom, high, logarithmic=True, clipped=(low < bottom, False))
+        end = next(end for end in _of_decades(high) if end >= high)
+        if top > SKEWED * usual:
+            bottom = max(end / DECADES, low)
+            ground = amounts and float(np.mean(values < bottom)) > MOSTLY_NONE
+            return Range(bottom, end, True, clipped=(low < bottom, False), ground=ground)
+        if amounts and np.mean(values <= 0) > MOSTLY_NONE:
+            end = even_ends(0.0, high)[1]
+            return Range(LEAST_AMOUNT * end, end, clipped=(True, False), ground=True)
     fences = (
         max(low, median + FENCE * (first - median)), min(high, median + FENCE * (third - median)),
     )  # fmt: skip
@@ -90,8 +116,8 @@ def range_shown(values: Array, *, lengths: bool = False) -> Range:
     if not step or not is_few or (freed < LEAST_FREED and not is_apart):
         return Range(*even_ends(low, high))
     ends = (
-        _rounded(fences[0], step, np.floor) if cut[0] else low,
-        _rounded(fences[1], step, np.ceil) if cut[1] else high,
+        _rounded(fences[0] if cut[0] else low, step, np.floor),
+        _rounded(fences[1] if cut[1] else high, step, np.ceil),
     )
     return Range(*ends, clipped=cut, apart=is_apart)
 

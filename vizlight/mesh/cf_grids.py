@@ -110,8 +110,8 @@ _MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile
 #: Axes along which values stand in a list, as those of the nodes of a mesh in a file of its own.
 _LISTS = (
     r"(n?mesh\w*_)?n?_?(nod|node|vert|vertex|vertice|cell|elem|element|ele|face|edge|col|point)(e?s)?\d?"
-    r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|profiles?|rgrid|traject.*"
-    r"|values"
+    r"|n(st|sta|stations?|obs|prof|profiles?|cellse?|mesh\w*)|obs|stations?|reports?|profiles?|rgrid"
+    r"|traject.*|values"
 )
 
 #: Names that programs give to axes without one, and the longest of such axes that can be kinds.
@@ -1073,10 +1073,18 @@ def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
 
 
 def _with_numbers(data: Foreign) -> Foreign:
-    """Return a dataset whose times are numbers, as they are in files, of types that VTK has."""
+    """Return a dataset whose times are numbers, as they are in files, of types that VTK has.
+
+    Places that say that they are fake, for programs that know no others, are left out.
+    """
     import xarray
 
-    numbers = {}
+    fake = [
+        name
+        for name, one in data.coords.items()
+        if one.dims == (name,) and str(one.attrs.get("long_name", "")).lower().startswith("fake")
+    ]
+    data, numbers = data.drop_vars(fake), {}
     for name, variable in data.variables.items():
         one = _with_dates(variable)
         if one.dtype.kind in "mM" or (one.dtype.kind == "O" and one.dims == (name,)):

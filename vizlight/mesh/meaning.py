@@ -488,12 +488,15 @@ def metres(unit: str) -> float | None:
 _USUAL_UNITS = {"Pa": (100.0, "hPa")}
 #: Number from which on a unit is replaced by the usual one.
 SILLY = 1e4
+#: Units of rates of rain, in the forms of files, and their sizes in that of maps.
+_OF_RAIN, OF_RAIN = {"kg m-2 s-1": 1.0, "mm s-1": 1.0, "m s-1": 1e-3}, "mm/day"
 
 
 def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     """Return the unit in which people read an array, and its size in that of the array.
 
-    Pressures of air in Pa are read in hPa, where their numbers have five digits and more.
+    Pressures of air in Pa are read in hPa, where their numbers have five digits and more, and rates
+    of rain in millimetres a day.
 
     Parameters
     ----------
@@ -509,6 +512,9 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     is_of_air = re.search(r"air pressure|sea level|surface pressure|\bmsl\b", words) is not None
     if size >= SILLY and is_of_air and "pressure" in words:
         return _USUAL_UNITS.get(given, (1.0, given))
+    plain = re.sub(r"\*\*|\^", "", given)
+    if plain in _OF_RAIN and re.search(r"precipitation|rain|snowfall", words):
+        return _OF_RAIN[plain] / 86400, OF_RAIN
     return 1.0, given
 
 

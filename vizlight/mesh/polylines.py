@@ -91,6 +91,36 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
     return _taken(mesh, ids[kept], length, np.flatnonzero(keep_line))
 
 
+def by_end(mesh: pv.PolyData, name: str) -> pv.PolyData:
+    """Return the segments of lines, those between two labels cut in half.
+
+    Colours that run from one label to another would show those between them.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines, which are not changed; the mesh itself is returned where no segment has two labels.
+    name : str
+        Point array of labels.
+    """
+    ids, offsets = connectivity(mesh.GetLines())
+    first = np.setdiff1d(np.arange(len(ids)), offsets[1:] - 1)
+    start, end = ids[first], ids[first + 1]
+    labels, points = np.asarray(mesh.point_data[name]), np.asarray(mesh.points)
+    mixed = labels[start] != labels[end]
+    if not mixed.any():
+        return mesh
+    middles = (points[start[mixed]] + points[end[mixed]]) / 2
+    far = points[end]
+    far[mixed] = middles
+    places = np.stack([points[start], far], axis=1).reshape(-1, 3)
+    others = np.stack([middles, points[end[mixed]]], axis=1).reshape(-1, 3)
+    rows = np.concatenate([np.repeat(start, 2), np.repeat(end[mixed], 2)])
+    out = polydata(np.concatenate([places, others]), np.arange(0, len(rows) + 1, 2))
+    out.point_data[name] = labels[rows]
+    return out
+
+
 def polydata(points: Array, ends: Indices, /) -> pv.PolyData:
     """Return a mesh of polylines.
 

@@ -140,8 +140,8 @@ def _plane(middle: tuple[float, float], narrow: float, radius: float) -> Project
 
 def _around(angles: Array, middle: float) -> Array:
     """Return longitudes and latitudes in radians, with longitudes near a middle one."""
-    # Both ends of a whole turn stay where they are.
-    turns = np.round((angles[:, 0] - middle) / (2 * math.pi) * (1 - 1e-9))
+    # Both ends of a whole turn stay where they are, to the digits of files in single precision.
+    turns = np.round((angles[:, 0] - middle) / (2 * math.pi) * (1 - 1e-6))
     return angles - 2 * math.pi * np.column_stack([turns, np.zeros_like(turns)])
 
 

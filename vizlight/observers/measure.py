@@ -63,6 +63,8 @@ NORMALS = 1024
 FAST = 6.0
 #: Angle in degrees through which data turn in a structure.
 TURN = 90.0
+#: Length in pixels from which on a structure is none.
+LONGEST = 1 << 12
 #: Least number of places of a class of structure, and least readable share of it.
 FEW, HALF = 32, 0.5
 #: Share of the error of chance above which an answer is chance.
@@ -131,7 +133,7 @@ class SeenPlaces:
         )  # fmt: skip
 
     def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
-        """Return the length in pixels within which data turn by 90 degrees.
+        """Return the length in pixels within which data turn by 90 degrees, NaN where flat.
 
         Parameters
         ----------
@@ -146,8 +148,9 @@ class SeenPlaces:
             cosine = np.einsum("ij,ij->i", here, turn(other))
             steps.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
         change = np.hypot(*steps) / times
-        change[~self.apart] = np.nan
-        return np.asarray(TURN / np.maximum(change, 1e-6))
+        # What is longer than any picture is flat.
+        change[~self.apart | (change < TURN / LONGEST)] = np.nan
+        return np.asarray(TURN / change)
 
 
 def measure(
@@ -428,8 +431,11 @@ class _PictureReader:
         return {name: function() for name, function in questions.items()}
 
     def _with(self, question: str, has_it: Callable[[SeenPlaces], bool]) -> list[SeenPlaces]:
-        """Return the places where a question of light has an answer, and note those without."""
-        lit = [p for p in self.groups if p.part.lit or p.part.by_axes]
+        """Return the places where a question of light has an answer, and note those without.
+
+        Light that is even tells nothing, and no key claims that it does.
+        """
+        lit = [p for p in self.groups if (p.part.lit and p.part.scene.lights) or p.part.by_axes]
         some = [p for p in lit if has_it(p)]
         kept = [p.take(p.here.valid) for p in some]
         total, left = (sum(len(p.here) for p in each) for each in (some, kept))
@@ -522,8 +528,7 @@ class _PictureReader:
     def slope(self) -> Slope | None:
         """Return how steeply lines run."""
         # Hues of the axes tell directions, and no steepness.
-        groups = self._with("slope", lambda p: not p.part.by_axes and p.part.kind == "line")
-        groups = [p for p in groups if p.here.has_one_tangent]
+        groups = self._with("slope", lambda p: not p.part.by_axes and _is_line_in_light(p))
         if not groups:
             return None
         steep = np.concatenate([readers.steepness(p.here) for p in groups])
@@ -532,7 +537,7 @@ class _PictureReader:
 
     def heading(self) -> Heading | None:
         """Return the direction of lines in space."""
-        groups = self._with("heading", lambda p: p.part.kind == "line" and p.here.has_one_tangent)
+        groups = self._with("heading", _is_line_in_light)
         groups = _kept(groups, lambda p: readers.in_picture(p.here) > 1e-6)
         if not groups:
             return None
@@ -584,7 +589,6 @@ class _PictureReader:
             values = np.asarray(p.here.values)
             # Places without light have the colour of what is not data.
             has_value = np.isfinite(values) & p.here.valid
-            has_value &= ~_have_own_color(p.part.table, values)
             if left := int(np.count_nonzero(~has_value)):
                 text = f"value: {left} of {len(values)} places have no value, left out"
                 self.notes.append(text)
@@ -614,7 +618,7 @@ class _PictureReader:
 
     def speed(self) -> Speed | None:
         """Return how colours rank the lengths of vectors, on the mesh where they tell most."""
-        groups = [p for p in self.groups if p.here.magnitude is not None]
+        groups = [p for p in self.groups if p.here.magnitude is not None and _can_tell_length(p)]
         groups = [_once(p) for p in groups]
         groups = _kept(groups, lambda p: np.isfinite(np.asarray(p.here.magnitude)))
         figures = []
@@ -639,6 +643,18 @@ class _PictureReader:
             "samples": len(signal),
             "reason": self._reason("rank", groups, none) if unread else "",
         }
+
+
+def _can_tell_length(places: SeenPlaces) -> bool:
+    """Return whether marks have lengths, light or colours of values by which vectors may differ."""
+    part = places.part
+    return places.length is not None or part.values is not None or bool(part.scene.lights)
+
+
+def _is_line_in_light(places: SeenPlaces) -> bool:
+    """Return whether places are on lines whose colours are those of light, and not of values."""
+    part = places.part
+    return part.kind == "line" and part.values is None and places.here.has_one_tangent
 
 
 def _once(places: SeenPlaces) -> SeenPlaces:
@@ -677,7 +693,7 @@ def _scale(
     """Return the finest structure that is read; each octave of structure is judged as a whole."""
     there = np.isfinite(lengths)
     lengths, unit, right = lengths[there], unit[there], right[there]
-    octave = np.floor(np.log2(np.clip(lengths, 0.5, 1 << 12)))
+    octave = np.floor(np.log2(np.maximum(lengths, 0.5)))
     finest: float | None = None
     for step in np.unique(octave)[::-1]:
         rows = octave == step
@@ -705,25 +721,20 @@ def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:
     """Return the function from values to vectors that turn by 180 degrees along a bar."""
 
     def turn(here: Sample) -> Array:
-        at = _shares(table, np.asarray(here.values))
+        at = np.maximum(_shares(table, np.asarray(here.values)), 0.0)
         return np.stack([np.cos(np.pi * at), np.sin(np.pi * at)], axis=1)
 
     return turn
 
 
 def _shares(table: pv.LookupTable, values: Array) -> Array:
-    """Return the places of values on a bar, from 0 to 1."""
-    ends = np.array(table.scalar_range)
+    """Return the places of values on a bar, from 0 to 1, and -1 for what it has beside it."""
+    ends, below = np.array(table.scalar_range), values < table.scalar_range[0]
     if table.log_scale:
         # VTK has no logarithm of what is not positive, and takes the lower end.
         ends, values = np.log(ends), np.log(np.maximum(values, ends[0]))
-    return np.asarray(np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
-
-
-def _have_own_color(table: pv.LookupTable, values: Array) -> Bools:
-    """Return which values lie below a bar and have a colour that is not that of its end."""
-    is_apart = color_below(table) is not None
-    return np.asarray((values < table.scalar_range[0]) & is_apart)
+    shares: Array = np.clip((values - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
+    return shares if color_below(table) is None else np.where(below, -1.0, shares)
 
 
 def _table(places: SeenPlaces) -> pv.LookupTable:

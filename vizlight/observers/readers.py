@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from vizlight.filters.key import color_below
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import (
     OPPONENT,
@@ -516,7 +517,8 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     colors : Colors
         Colours of M places.
     positions : ndarray, shape (M,)
-        Places of the values on the bar, from 0 to 1.
+        Places of the values on the bar, from 0 to 1; less than 0 where they are below the bar, in
+        a colour of their own.
     table : pyvista.LookupTable
         Colours of the bar.
     lit : bool
@@ -530,11 +532,17 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     whole = np.asarray(table.values)[:, :3]
     count = min(BAR, len(whole))
     bar = whole[((np.arange(count) + 0.5) / count * len(whole)).astype(np.intp)]
+    below = color_below(table)
+    if below is not None:
+        bar = np.concatenate([np.rint(255 * below[np.newaxis]).astype(np.uint8), bar])
     amounts = np.linspace(display.LEAST, 1.0, AMOUNTS) if lit else np.ones(1)
     logarithms = likelihood(colors, lab(_in_amounts(bar, amounts)))
-    right = np.minimum((positions * count).astype(np.intp), count - 1)
+    # What is below the bar is one step below it.
+    first = len(bar) - count
+    positions = np.maximum(positions, -0.5 / count)
+    right = np.minimum(np.floor(positions * count).astype(np.intp), count - 1) + first
     other = elsewhere(len(positions))
-    answer = (_drawn(logarithms) + 0.5) / count
+    answer = (_drawn(logarithms) - first + 0.5) / count
     error, other_error = np.abs(answer - np.stack([positions, positions[other]]))
     return _compared(error, other_error, logarithms, right, other)
 

@@ -24,7 +24,7 @@ from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
-from vizlight.mesh import brains, dates, globes, meaning, series
+from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
 
 if TYPE_CHECKING:
@@ -38,10 +38,14 @@ if TYPE_CHECKING:
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
 LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
+#: Colour maps of bands, and of amounts on a ground, and the colour of this.
+ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
 
+#: Colour of a value that is the only one.
+ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
 #: Keywords that take the edges of a surface that are its borders.
@@ -49,6 +53,8 @@ BORDERS = {
     "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
     "non_manifold_edges": False,
 }  # fmt: skip
+#: Function that makes classes of colours.
+BANDS = "vizlight.maps.bands"
 #: Largest number of them as a share of that of the cells, and distance of places that are one, as a
 #: share of the size of the surface.
 MOST_BORDERS, SEAM = 0.3, 1e-6
@@ -330,6 +336,13 @@ class Case:
         right, up = np.abs(self._up)[::-1], np.abs(self._up)
         return bool(right @ (x, y) > WIDE * wide / tall * (up @ (x, y)))
 
+    @property
+    def is_of_earth(self) -> bool:
+        """Whether the mesh is a map of places on the earth that are known, or such a ball."""
+        mesh = self.data.run()
+        is_placed = not {"crs", georeference.PROJECTION}.isdisjoint(mesh.field_data.keys())
+        return self.on_globe or is_placed or georeference.has_degrees(mesh)
+
     @cached_property
     def on_globe(self) -> bool:
         """Whether the mesh lies on the earth as a ball, and is alone in the picture."""
@@ -378,7 +391,9 @@ class Case:
         """Colour map of thin lines, on which large values stand out from the ground."""
         return f"vizlight.on_{self.wishes.style}"
 
-    def ranged(self, values: Array, name: str, cmap: str, *, lengths: bool) -> tuple[Keywords, str]:
+    def ranged(
+        self, values: Array, name: str, cmap: str, *, unit: float = 1.0, **kind: bool
+    ) -> tuple[Keywords, str]:
         """Return the colours of values in the range that suits them, and words if it is not all.
 
         Parameters
@@ -389,15 +404,38 @@ class Case:
             Name of the values.
         cmap : str
             Colour map where none is asked for.
-        lengths : bool
-            Whether they are lengths of vectors.
+        unit : float, default: 1.0
+            Unit in which they are read, in that of the values.
+        **kind
+            What they are, as for :func:`vizlight.looks.ranges.range_shown`.
         """
-        colors: Keywords = {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors
         values = values[np.isfinite(values)]
-        if "clim" in colors or not values.size:
-            return colors, ""
-        shown = range_shown(values, lengths=lengths)
-        return colors | colors_in(shown, colors["cmap"]), shown.words(name)
+        if "clim" in self.wishes.colors or not values.size:
+            return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
+        shown = range_shown(values / unit, **kind)
+        colors = {"cmap": ON_GROUND if shown.ground else cmap, "nan_color": MISSING}
+        colors |= self.wishes.colors
+        return colors | colors_in(shown, colors["cmap"], unit), shown.words(name)
+
+    def ranged_of(self, mesh: Step, array: Named, cmap: str, **kind: bool) -> tuple[Keywords, str]:
+        """Return the colours of an array as :meth:`ranged` does, in the unit in which it is read.
+
+        Parameters
+        ----------
+        mesh : Step
+            Step of the mesh.
+        array : Named
+            Array; only that of values has a range of its own.
+        cmap : str
+            Colour map where none is asked for.
+        **kind
+            As for :meth:`ranged`.
+        """
+        if array.role != "values":
+            return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
+        rows = np.asarray(mesh.run()[array.name], dtype=np.float64)
+        unit, _ = meaning.usual_unit(mesh.run(), array.name, float(np.nanmax(np.abs(rows))))
+        return self.ranged(rows, array.name, cmap, unit=unit, **kind)
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""
@@ -405,7 +443,7 @@ class Case:
 
     def bar(self, array: Named, colors: Keywords) -> Keywords:
         """Return the keywords of the key of an array that is shown in colours."""
-        mesh = self.data.run()
+        mesh, table = self.data.run(), colors.get("cmap")
         bar: Keywords = {"question": "value", "title": titled(mesh, array.name)}
         if "cmap" in colors:
             bar["cmap"] = colors["cmap"]
@@ -413,11 +451,13 @@ class Case:
             low, high = colors.get("clim") or range_of(mesh, array.name)
             bar["clim"] = (low, high)
             factor, unit = meaning.usual_unit(mesh, array.name, max(abs(low), abs(high)))
+            bar["clim"] = _in_unit((low, high), 1 / factor)
             if factor != 1:
-                bar["clim"] = (low / factor, high / factor)
                 bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
+            if isinstance(table, Step) and table.path == BANDS:
+                inner, ends = table.arguments[:2]
+                bar["levels"] = _in_unit([ends[0], *inner, ends[1]], 1 / factor)
         # A region of one value below all others, such as thickness 0, is where there is no cortex.
-        table = colors.get("cmap")
         has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING
         if has_grey and brains.hemisphere(mesh):
             bar["title"] += "; grey: medial wall"
@@ -462,7 +502,7 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
     return bool(np.mean(on.any(axis=(1, 2))) > CUT and np.all(on.any(axis=0)))
 
 
-def colors_in(shown: Range, cmap: Foreign) -> Keywords:
+def colors_in(shown: Range, cmap: Foreign, unit: float = 1.0) -> Keywords:
     """Return the colours of a range, with those of values outside of it.
 
     Parameters
@@ -470,13 +510,19 @@ def colors_in(shown: Range, cmap: Foreign) -> Keywords:
     shown : Range
     cmap : str or colour map
         Colours from one end to the other.
+    unit : float, default: 1.0
+        Unit of the range, in that of the values.
     """
-    ends = shown.low, shown.high
+    ends = _in_unit([shown.low, shown.high], unit)
+    if shown.logarithmic and shown.ground:
+        inner = _in_unit(shown.classes[1:-1], unit)
+        table = Step("", BANDS, inner, ends, cmap, logarithmic=True, below=GROUND)
+        return {"cmap": table, "clim": ends}
     if not shown.logarithmic and not any(shown.clipped):
         return {"cmap": cmap, "clim": ends}
     outer = [to_hex(get_cmap_safe(cmap)(end)) for end in (0.0, 1.0)]
-    if shown.apart:
-        outer[0] = MISSING
+    if shown.apart or shown.ground:
+        outer[0] = MISSING if shown.apart else GROUND
     names = ("below_range_color", "above_range_color")
     options: Keywords = {
         name: color for name, color, cut in zip(names, outer, shown.clipped, strict=True) if cut
@@ -490,6 +536,11 @@ def colors_in(shown: Range, cmap: Foreign) -> Keywords:
     return {"cmap": table, "clim": ends}
 
 
+def _in_unit(values: Sequence[float], unit: float) -> tuple[float, ...]:
+    """Return round numbers in another unit, without the rest of rounding."""
+    return tuple(float(f"{unit * value:.12g}") for value in values)
+
+
 def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them.
 
@@ -497,7 +548,7 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
     """
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
-    unit = attributes.get("units", "") or of_brains
+    unit = attributes.get("units", "").strip() or of_brains
     title = attributes.get("long_name") or attributes.get("standard_name") or word or name
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
@@ -550,6 +601,8 @@ def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
 def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     """Return the keywords that give each kind a colour of its own."""
     kinds = kinds_of(mesh.run(), array.name)
+    if "cmap" not in keywords and len(kinds) == 1:
+        return keywords | {"cmap": _of_one(kinds[0])}
     # Numbers of parts that are no whole numbers have no colours of their own.
     if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
         return keywords
@@ -560,6 +613,14 @@ def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     own: Keywords = {"colors": of_file} if of_file else {}
     table = Step("", "vizlight.maps.kinds", named if names else list(kinds), **own)
     return keywords | {"cmap": table}
+
+
+def _of_one(value: float) -> Step:
+    """Return the step that makes the colours of a single value, whole or not."""
+    return Step(
+        "", "pyvista.LookupTable", [ONLY, ONLY], scalar_range=(value - 0.5, value + 0.5),
+        annotations={value: f"{value:.6g}"}, nan_color=MISSING,
+    )  # fmt: skip
 
 
 def unlit(lit: Step, scene: Step, name: str, **drawing: object) -> Layer:

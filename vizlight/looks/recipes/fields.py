@@ -14,6 +14,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.draw.cameras import footprint
+from vizlight.draw.margins import parted
 from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
@@ -147,8 +148,20 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
     layers = [Layer(mesh, {"scene": scene, **case.wishes.drawn(light)}), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    keys = [{"scene": scene, "title": titled(mesh.run(), array.name, course=True)}]
+    keys = [{"scene": scene, "title": _titled_course(mesh.run(), array.name)}]
     return Drawing(layers, camera, scene, lit, f"direction of {array.name}", keys, kind=mesh)
+
+
+def _titled_course(mesh: pv.DataSet, name: str) -> str:
+    """Return the title of the course of vectors, with their length where all have one.
+
+    That of unit vectors tells nothing.
+    """
+    lengths, title = _lengths(mesh, name), titled(mesh, name, course=True)
+    if not lengths.size or not _is_even(mesh, name) or np.isclose(np.median(lengths), 1, atol=EVEN):
+        return title
+    unit = parted(titled(mesh, name))[1]
+    return f"{title}; {np.median(lengths):.3g} {unit}".rstrip() + " everywhere"
 
 
 def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
@@ -258,7 +271,7 @@ def flow(case: Case) -> Drawing:
     # Lines that are asked for have their light in files.
     light = scene if case.wishes.question == "auto" else case.scene(camera)
     lit = _streamlines(case, mesh, light, keywords)
-    keys: list[Keywords] = [{"scene": scene, "title": titled(mesh.run(), array.name, course=True)}]
+    keys: list[Keywords] = [{"scene": scene, "title": _titled_course(mesh.run(), array.name)}]
     wide = round(WIDE_IN_VOLUME * case.width, 1)
     if not keywords.get("line_field"):
         wide = _head_width(case, lit, camera, WIDTHS_IN_VOLUME)

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from scipy.spatial import cKDTree
 
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
+from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning
@@ -16,7 +18,7 @@ from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from vizlight._types import Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.recipes.drawing import Case
 
 #: Name that stands for the direction of lines among the arrays that colour a picture.
@@ -27,6 +29,14 @@ DIRECTION = "direction"
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
+#: Size of the points of a map in distances of neighbours, and most points whose neighbours are
+#: looked for.
+TOUCHING, MOST_ASKED = 1.6, 2000
+#: Length of arrows as a share of the size of the data, and their form.
+LONG_ARROW = 0.03
+ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
+#: Size in pixels of balls up to which they are squares on a map.
+SMALL_BALL = 6.0
 
 
 def lines(case: Case) -> Drawing:
@@ -41,7 +51,7 @@ def lines(case: Case) -> Drawing:
     light, width = dict(case.wishes.light), _width(case)
     drawn: Keywords = {"scene": scene, "line_width": width, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
-    words = "lines by their heading"
+    words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
@@ -53,15 +63,18 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
         array = case.needed_array
-        colors = {"cmap": case.map_on_ground} | case.wishes.colors
+        colors, note = case.ranged_of(mesh, array, case.map_on_ground)
         if array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
+            if not array.of_cells:
+                mesh = Step("halves", "files.surface_of", mesh, labels=array.name)
         scene = case.wishes.scene("none", camera)
         drawn |= {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
         keys = [case.bar(array, colors) | {"scene": scene}]
         words = f"lines in the colours of {array.name}"
-    lit = case.lit(mesh, scene, **light)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+    lit = case.lit(case.data, scene, **light)
+    notes = [note] if note else []
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=case.data)
 
 
 def _width(case: Case) -> float:
@@ -87,10 +100,15 @@ def points(case: Case) -> Drawing:
     # As large as they can be without hiding each other, were they spread over the picture.
     columns, rows = case.wishes.size
     size = np.sqrt(FILLED * columns * rows / max(mesh.run().n_points, 1))
+    if case.contents.flat_axis is not None:
+        # Those of a map fill it where they are even.
+        size = max(size, TOUCHING * _apart(mesh.run()) / pixel_of(case, camera))
     size = round(float(np.clip(size, *POINT_SIZES)), 1)
-    drawn: Keywords = {"render_points_as_spheres": True, "point_size": size}
+    drawn: Keywords = {"point_size": size}
+    # Small balls of a map leave gaps between them, which squares do not.
+    drawn["render_points_as_spheres"] = case.contents.flat_axis is None or size > SMALL_BALL
     keys: list[Keywords] = []
-    words = "points"
+    words, note = "points", ""
     array = case.array
     if array is not None and array.role == "vectors":
         mesh = case.wishes.joined(mesh, array)
@@ -100,6 +118,13 @@ def points(case: Case) -> Drawing:
         drawn |= {"scalars": array.name, "show_scalar_bar": False, **colors}
         bar: Keywords = {"question": "value", **colors}
         keys = [bar | {"title": titled_length(mesh.run(), array.name)}]
+        words = f"arrows of {array.name} in the colours of its length"
+        arrows = _arrows(mesh, array.name, lengths[np.isfinite(lengths)])
+        if arrows is not None:
+            shown = {"scene": even_light(camera), "scalars": "GlyphScale", **colors}
+            layer = Layer(arrows, {**shown, "show_scalar_bar": False})
+            lit = case.lit(mesh, scene)
+            return Drawing([layer], camera, scene, lit, words, keys, kind=mesh)
         words = f"points in the colours of the length of {array.name}"
     elif array is not None:
         drawn |= {"scalars": array.name, "show_scalar_bar": False}
@@ -107,7 +132,7 @@ def points(case: Case) -> Drawing:
         if array.role == "colors":
             drawn["rgb"] = True
         else:
-            colors = {"cmap": LIGHTNESS} | case.wishes.colors
+            colors, note = case.ranged_of(mesh, array, LIGHTNESS)
             if array.role == "kinds":
                 colors = colors_of_kinds(mesh, array, case.wishes.colors)
             drawn |= colors
@@ -117,7 +142,38 @@ def points(case: Case) -> Drawing:
         # Light on balls would change the colours by which they are read.
         drawn["lighting"] = False
     lit = case.lit(mesh, scene)
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, kind=mesh)
+    notes = [note] if note else []
+    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
+
+
+def _arrows(mesh: Step, name: str, lengths: Array) -> Step | None:
+    """Return the step that makes arrows along the vectors of points, None where all are 0.
+
+    Of points that are nearer than arrows are long, one has an arrow.
+    """
+    size = float(mesh.run().length)
+    longest = float(np.percentile(lengths, 95)) if lengths.size else 0.0
+    if not longest > 0 or not size > 0:
+        return None
+    factor = float(f"{LONG_ARROW * size / longest:.3g}")
+    points = Step("", ".cast_to_poly_points", mesh)
+    geometry = Step("", "pyvista.Arrow", **ARROW)
+    return Step(
+        "arrows", ".glyph", points, orient=name, scale=name, factor=factor,
+        tolerance=LONG_ARROW / 1.5, geom=geometry,
+    )  # fmt: skip
+
+
+def _apart(mesh: pv.DataSet) -> float:
+    """Return the distance of points that are even, of others twice that of nearest neighbours."""
+    points: Array = np.asarray(mesh.points, dtype=np.float64)
+    points = np.unique(points[np.isfinite(points).all(axis=1)], axis=0)
+    if len(points) < 2:
+        return 0.0
+    some = points[:: max(len(points) // MOST_ASKED, 1)]
+    nearest = float(np.median(cKDTree(points).query(some, k=2)[0][:, 1]))
+    sides = np.sort(np.ptp(points, axis=0))[1:]
+    return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
 
 
 def _by_direction(lit: Step) -> Step:

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.ticks import even_levels, numerals_of
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import GROUND, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference
@@ -36,10 +36,10 @@ GRATICULE = "#555555"
 INK, INK_ON_RELIEF = "#1a1a1a", "#3d2610"
 #: Least distance between isolines of heights, in heights of their letters.
 SPARSE_ON_RELIEF = 0.5
-#: Most classes of lengths of vectors.
-MOST_CLASSES = 15
+#: Most round numbers between classes of lengths of vectors, before they are halved.
+MOST_CLASSES = 16
 #: Most isolines between which colours change too.
-FEW_LINES = 9
+FEW_LINES = 13
 
 
 def furnished(case: Case, drawing: Drawing) -> Drawing:
@@ -76,6 +76,10 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     array, cmap = case.array, case.wishes.colors.get("cmap")
     flat = map_parts.flat(case.data) if case.on_globe else case.data
     if array is None or array.of_cells or case.contents.dimension != 2:
+        return drawing
+    table = drawing.layers[0].keywords.get("cmap")
+    has_ground = isinstance(table, Step) and GROUND in table.keywords.values()
+    if has_ground or getattr(table, "log_scale", False):
         return drawing
     if flat is None or not (case.frame or case.on_globe):
         return drawing
@@ -131,10 +135,10 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
     low, high = clim
-    edges = sorted({low, *even_levels(low, high, MOST_CLASSES), high})
+    edges = _classes(even_levels(low, high, MOST_CLASSES), (low, high))
     table = Step("", "vizlight.maps.bands", edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
-    of_bar: Keywords = {"cmap": table, "levels": edges}
+    of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 

@@ -21,7 +21,6 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.steps import Step
-from vizlight.maps import MISSING
 from vizlight.mesh import blocks
 from vizlight.mesh.nspace import POSITION
 
@@ -72,7 +71,7 @@ def values(case: Case) -> Drawing:
         keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
-        keywords = {"cmap": LIGHTNESS, "nan_color": MISSING} | keywords
+        keywords, note = case.ranged_of(mesh, array, LIGHTNESS, amounts=case.is_of_earth)
     if array.role == "kinds":
         keywords = colors_of_kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":

@@ -14,7 +14,6 @@ from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import fields, surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
-from vizlight.maps import MISSING
 
 if TYPE_CHECKING:
     from vizlight.looks.contents import Named
@@ -26,6 +25,8 @@ LEAST_OF_BOX = 0.4
 VOXELS = 30
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
+#: Most pieces of an isosurface, where none has this share of it.
+MOST_PIECES, LARGE = 50, 0.3
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
 #: computed for that.
 ROUGH = 0.1
@@ -49,6 +50,8 @@ def isosurface(case: Case) -> Drawing:
     whole = case
     part = dict(case.wishes.part) | {"contour": array.name, "level": level}
     mesh = replace(case.wishes, part=part).isosurface(case.data)
+    if case.wishes.question == "auto" and _is_crumbs(mesh.run()):
+        return slices(whole, "; isosurfaces are crumbs")
     contents = Contents(mesh.run())
     wishes = replace(case.wishes, part=part)
     # The box tells where the isosurface is; one that is much larger would make it small.
@@ -74,6 +77,15 @@ def isosurface(case: Case) -> Drawing:
     if notes or not around:
         return drawing
     return replace(drawing, layers=[*drawing.layers, *whole.boxed(box, drawing.camera)])
+
+
+def _is_crumbs(mesh: pv.DataSet) -> bool:
+    """Return whether an isosurface is in many pieces of which none is large."""
+    if not mesh.n_cells:
+        return False
+    number = np.asarray(mesh.connectivity("all").cell_data["RegionId"])
+    sizes = np.bincount(number)
+    return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
 
 
 def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
@@ -102,12 +114,13 @@ def slices(case: Case, why: str = "") -> Drawing:
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
-    colors = {"cmap": LIGHTNESS, "nan_color": MISSING} | case.wishes.colors
+    colors, note = case.ranged_of(case.data, array, LIGHTNESS)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
     layers = [Layer(mesh, shown), *case.boxed(box, camera)]
-    return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)])
+    notes = [note] if note else []
+    return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
 
 
 def _is_scan(case: Case, array: Named) -> bool:
