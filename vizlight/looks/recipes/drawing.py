@@ -455,7 +455,8 @@ class Case:
             if factor != 1:
                 bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
             if isinstance(table, Step) and table.path == BANDS:
-                inner, ends = table.arguments[:2]
+                bands: Foreign = table.arguments
+                inner, ends = bands[:2]
                 bar["levels"] = _in_unit([ends[0], *inner, ends[1]], 1 / factor)
         # A region of one value below all others, such as thickness 0, is where there is no cortex.
         has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING

@@ -18,7 +18,7 @@ from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.recipes.drawing import Case
 
 #: Name that stands for the direction of lines among the arrays that colour a picture.
@@ -171,7 +171,8 @@ def _apart(mesh: pv.DataSet) -> float:
     if len(points) < 2:
         return 0.0
     some = points[:: max(len(points) // MOST_ASKED, 1)]
-    nearest = float(np.median(cKDTree(points).query(some, k=2)[0][:, 1]))
+    distances: Foreign = cKDTree(points).query(some, k=2)[0]
+    nearest = float(np.median(distances[:, 1]))
     sides = np.sort(np.ptp(points, axis=0))[1:]
     return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
 
