@@ -42,7 +42,7 @@ def cells(*numbers, text=True):
     return CELLS % (b"BINARY", rows[0], len(numbers), rows[1])
 
 
-OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
+OBJ = b"# 12/31/2020\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
 GEO = (
     "geo\nmade\nnode id assign\nelement id assign\npart\n         1\nall\ncoordinates\n         3\n"
     + "".join(f"{x:12.5e}\n" for x in (0, 1, 0, 0, 0, 1, 0, 0, 0))
@@ -117,6 +117,7 @@ WRONG = {
     "sizes": ("a.nrrd", NRRD.replace(b"sizes: 5", b"sizes: 500"), "of 12000 bytes"),
     "twice": ("a.nrrd", NRRD.replace(b"\n\n", b"\ntype: int\n\n"), "a key stands twice"),
     "no data": ("a.nhdr", NRRD[:-121] + b"data file: b.raw\n", "'b.raw' are missing"),
+    "no break": ("a.nhdr", NRRD[:-121] + b"data file: b.raw", "last line has no line break"),
     "huge": ("a.mha", META.replace(b"DimSize = 5", b"DimSize = 1000000000"), "bytes are there"),
     "no place": ("a.mha", META[:60], "its header has no end"),
     "sum": ("a.png", png().replace(b"IHDR\0\0\0\2", b"IHDRdddd"), "check sum"),
@@ -136,6 +137,7 @@ WRONG = {
     "no cells": ("a.vtk", cells(3, 0, 1, 2).replace(b"2 4", b"2 400"), "4 of 400 numbers of cells"),
     "text": ("a.obj", OBJ.replace(b"1 0 0", b"1 0 \0"), "bytes of 0"),
     "texture": ("a.obj", OBJ.replace(b"3/1/1", b"3/9/1"), "the texture coordinate 9 of 1"),
+    "point": ("a.obj", OBJ.replace(b"3/1/1", b"8/1/1"), "the point 8 of 3"),
     "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
     "axes": ("a.gii", b'<DataArray Dimensionality="10000000" />', "an array of 10000000 axes"),
     "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from pyvista.examples import cells
+from vtkmodules.vtkCommonCore import reference
 
 import vizlight
 from vizlight import Light, Material, Scene, View
@@ -58,6 +59,43 @@ def test_nodes_of_a_rational_cell_are_on_its_surface():
     # In the middle of the arc normals of its two chords are averaged to that of the cylinder.
     middle = 0.1 + 0.9 * (TOWARD[0] + TOWARD[1]) / np.sqrt(2)
     np.testing.assert_allclose(lit[4:], middle, atol=0.005)
+
+
+#: Number of the points of a cell of each kind by its degree.
+SIZES = {
+    "CURVE": lambda d: d + 1,
+    "TRIANGLE": lambda d: (d + 1) * (d + 2) // 2,
+    "QUADRILATERAL": lambda d: (d + 1) ** 2,
+    "TETRAHEDRON": lambda d: (d + 1) * (d + 2) * (d + 3) // 6,
+    "HEXAHEDRON": lambda d: (d + 1) ** 3,
+    "WEDGE": lambda d: (d + 1) ** 2 * (d + 2) // 2,
+}
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", SIZES)
+def test_nodes_of_any_degree_are_where_vtk_has_them(kind, degree):
+    random, n = np.random.default_rng(degree), SIZES[kind](degree)
+    cell_type = getattr(pv.CellType, f"BEZIER_{kind}")
+    grid = pv.UnstructuredGrid([n, *range(n)], [cell_type], random.normal(size=(n, 3)))
+    if kind in ("QUADRILATERAL", "HEXAHEDRON", "WEDGE"):
+        degrees = np.full((1, 3), float(degree))
+        grid.GetCellData().SetHigherOrderDegrees(pv.convert_array(degrees, "degrees"))
+    weights = random.uniform(0.3, 2, n)
+    grid.GetPointData().SetRationalWeights(pv.convert_array(weights, "weights"))
+    nodes = pv.wrap(as_lagrange(grid)).points
+    cell, place = grid.GetCell(0), [0.0] * 3
+    for node, at in zip(nodes, np.reshape(cell.GetParametricCoords(), (-1, 3))[:n], strict=True):
+        cell.EvaluateLocation(reference(0), [*at], place, [0.0] * n)
+        np.testing.assert_allclose(node, place, atol=1e-14)
+
+
+def test_a_pyramid_is_no_cell_of_vtk():
+    grid = pv.ImageData(dimensions=(2, 2, 2)).cast_to_unstructured_grid()
+    ids = pv.CellArray.from_regular_cells(np.arange(5)[np.newaxis])
+    grid.SetCells(pv.convert_array(np.array([pv.CellType.BEZIER_PYRAMID], np.uint8)), ids)
+    with pytest.raises(ValueError, match="without faces"):
+        vizlight.illuminate(grid, SCENE)
 
 
 def test_a_grid_of_other_cells_stays_itself():

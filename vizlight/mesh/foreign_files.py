@@ -156,10 +156,12 @@ def _untextured(path: Path) -> pv.DataSet | None:
     data = path.read_bytes()
     if re.search(rb"(?m)^[ \t]*vt\s", data) or _TEXTURE.search(data) is None:
         return None
+    # What is left of damaged corners may be such numbers, too.
+    while _TEXTURE.search(data):
+        data = _TEXTURE.sub(rb"\1\1", data)
     with tempfile.TemporaryDirectory() as folder:
         draft = Path(folder) / "untextured.obj"
-        lines = re.compile(rb"(?m)^[ \t]*[fl]\s.*")
-        draft.write_bytes(lines.sub(lambda line: _TEXTURE.sub(rb"\1\1", line[0]), data))
+        draft.write_bytes(data)
         return pv.read(draft, validate=False)
 
 

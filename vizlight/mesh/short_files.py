@@ -299,6 +299,8 @@ def _nrrd(file: BinaryIO) -> str:
     other = fields.get("data file", fields.get("datafile", ""))
     if not (blank or other):
         return "its header has no end"
+    if not (blank or head.endswith(b"\n")):
+        return "its last line has no line break, for which VTK's reader waits"
     if len(sizes) != int(fields["dimension"]):
         return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
     if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
@@ -394,11 +396,8 @@ def _tecplot(file: BinaryIO) -> str:
 
 
 _IJK = (b"I", b"J", b"K")
-#: Lines of OBJ that are counted, their name, and their numbers in the corners of faces.
-_CORNERS_OF_OBJ = (
-    (rb"(?m)^[ \t]*vt\s", "the texture coordinate", rb"\d/(\d+)"),
-    (rb"(?m)^[ \t]*vn\s", "the normal", rb"\d/\d*/(\d+)"),
-)
+#: Words at the begin of lines of OBJ, and what they are, by their place in the corner of a face.
+_CORNERS_OF_OBJ = ((b"v", "point"), (b"vt", "texture coordinate"), (b"vn", "normal"))
 
 
 def _mdpa(file: BinaryIO) -> str:
@@ -559,16 +558,21 @@ def _parts_of(lists: dict[str, list[Keywords]], name: str, numbers: object) -> l
 
 
 def _obj(file: BinaryIO) -> str:
-    """Compare the numbers of texture coordinates and of normals in faces with their counts."""
-    with _mapped(file) as text:
-        if text.find(b"\0") >= 0:
-            return "it has bytes of 0, and text has none"
-        for key, name, pattern in _CORNERS_OF_OBJ:
-            count = sum(1 for _ in re.finditer(key, text))
-            # Where a file has none, they are left out.
-            most = max((int(match[1]) for match in re.finditer(pattern, text)), default=0)
-            if 0 < count < most:
-                return f"a face has {name} {most} of {count}"
+    """Compare the numbers in the corners of faces with the counts of points and of the others."""
+    text = file.read()
+    if b"\0" in text:
+        return "it has bytes of 0, and text has none"
+    words = {*b" ".join(re.findall(rb"(?m)^[ \t]*[fl][ \t].*", text)).split()}
+    corners = [word.split(b"/") for word in words if b"/" in word]
+    for i, (key, name) in enumerate(_CORNERS_OF_OBJ):
+        # At least as many as there are: words may end so, too.
+        count = text.count(key + b" ") + text.count(key + b"\t")
+        numbers = (
+            int(corner[i]) for corner in corners if corner[i : i + 1] and corner[i].isdigit()
+        )
+        # Where a file has no texture coordinates or normals, they are left out.
+        if count < (most := max(numbers, default=0)) and (count or name == "point"):
+            return f"a face has the {name} {most} of {count}"
     return ""
 
 

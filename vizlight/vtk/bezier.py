@@ -8,7 +8,7 @@ import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_CURVE,
-    VTK_BEZIER_PYRAMID,
+    VTK_BEZIER_WEDGE,
     VTK_LAGRANGE_CURVE,
     vtkDataSetAttributes,
     vtkUnstructuredGrid,
@@ -38,12 +38,13 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
     grid : vtkUnstructuredGrid
         Grid; one without such cells is returned itself.
     """
+    # VTK has a number for pyramids, and no such cell.
     distinct = as_numpy(grid.GetDistinctCellTypesArray())
-    if not np.any((distinct >= VTK_BEZIER_CURVE) & (distinct <= VTK_BEZIER_PYRAMID)):
+    if not np.any((distinct >= VTK_BEZIER_CURVE) & (distinct <= VTK_BEZIER_WEDGE)):
         return grid
     # The method that returns all of them has another name in each version of VTK.
     types = np.array([grid.GetCellType(i) for i in range(grid.GetNumberOfCells())])
-    curved = (types >= VTK_BEZIER_CURVE) & (types <= VTK_BEZIER_PYRAMID)
+    curved = (types >= VTK_BEZIER_CURVE) & (types <= VTK_BEZIER_WEDGE)
     ids, ends = connectivity(grid_cells(grid))
     control = places(grid).astype(np.float64)
     of_points = point_data(grid).GetAttribute(_WEIGHTS)
