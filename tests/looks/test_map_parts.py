@@ -234,3 +234,17 @@ def test_the_title_says_what_a_value_sums_up_in_time(methods, span, words):
     meaning.attach(mesh, said)
     mesh.field_data["TimeValue"] = [48.0]
     assert vizlight.look(mesh).drawing.keys[0]["title"].startswith(words)
+
+
+def test_a_relief_of_the_whole_earth_is_bent_once_it_is_lit(tmp_path):
+    earth = chart(348, 168, west=-174.0, south=-84.0, name="elevation")
+    earth = earth.cast_to_rectilinear_grid()
+    earth.x = np.arange(21) * 360 / 21 - 170
+    look = vizlight.look(earth, "relief", size=SIZE)
+    shown = look.drawing.layers[0].mesh
+    assert shown.path == "vizlight.cartography.chart"
+    assert shown.arguments[0].path == "vizlight.tint"
+    assert "eqearth" in str(shown.run().field_data["projection"][0])
+    assert look.others[0].python == "globe=True"
+    # A page has the data, not only the frame.
+    assert look.steps(tmp_path / "a.html")[-1].path == "vizlight.live_html"

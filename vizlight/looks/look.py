@@ -16,7 +16,7 @@ from vizlight._questions import QUESTIONS
 from vizlight._words import message, one_of
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
-from vizlight.looks import film, together
+from vizlight.looks import film, map_parts, together
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
@@ -241,7 +241,8 @@ class Look:
         if wishes.source:
             key["source"] = list(wishes.source)
         live = [layer for layer in drawing.layers if layer.live]
-        if not live:
+        # The frame of a map is no data.
+        if not any(layer.keywords.get("pickable", True) for layer in live):
             shown: Keywords = {"camera": drawing.camera, "background": wishes.background, **key}
             return [Step("", "vizlight.live_html", drawing.lit, path, **shown)]
         background = wishes.background
@@ -688,6 +689,6 @@ def _others(contents: Contents, case: Case) -> tuple[Other, ...]:
     ]
     if case.question != "shape" and contents.flat_axis is None and contents.dimension > 1:
         others.append(Other("shape", None, "question='shape'", "--for shape"))
-    if is_whole_earth(contents.mesh):
+    if is_whole_earth(map_parts.before_chart(case.data).run()):
         others.insert(0, Other(case.question, None, "globe=True", "--globe"))
     return tuple(others[:MOST_OTHERS])

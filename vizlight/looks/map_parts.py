@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw import isolines as iso
@@ -15,13 +16,11 @@ from vizlight.draw.cameras import MARGIN
 from vizlight.draw.map_frames import has_bar
 from vizlight.draw.margins import LETTERS
 from vizlight.looks.steps import Step
-from vizlight.mesh import georeference, meaning
+from vizlight.mesh import georeference, globes, meaning
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import pyvista as pv
 
     from vizlight._types import Array, Keywords
     from vizlight.looks.contents import Named
@@ -43,7 +42,8 @@ SPARSE = 1.3
 WITH_EXTREMES = {
     "air_pressure_at_sea_level", "air_pressure_at_mean_sea_level", "geopotential_height",
 }  # fmt: skip
-#: Function that puts a flat map on a ball.
+#: Functions that draw a map in degrees on a projection, and that put it on a ball.
+CHART = "vizlight.cartography.chart"
 GLOBE = "vizlight.cartography.globe"
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
@@ -153,6 +153,14 @@ def smoothed(mesh: Step, array: Named) -> Step | None:
     if factor < 2 or not np.isfinite(grid.point_data[array.name]).all():
         return None
     return Step("smooth", "vizlight.cartography.smoothed", mesh, array.name, factor)
+
+
+def before_chart(mesh: Step) -> Step:
+    """Return the step of the map in degrees of which a step has bent the rows, else the step."""
+    source = mesh.arguments[0] if mesh.path == CHART else None
+    if not isinstance(source, Step) or not isinstance(mesh.run(), pv.StructuredGrid):
+        return mesh
+    return mesh if globes.middle_of(source.run()) is None else source
 
 
 def flat(mesh: Step) -> Step | None:

@@ -17,7 +17,7 @@ from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
-from vizlight.mesh import charts, georeference, meaning, series
+from vizlight.mesh import charts, georeference, globes, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
@@ -171,7 +171,10 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
         return step, contents
     array = contents.named(wishes.array or "") or next(iter(contents.arrays), None)
     is_relief = array is not None and array.role == "heights" and bool(dimensions(mesh))
-    straight = is_relief or wishes.question in RELIEFS or mesh.n_points > MOST_BENT
+    # Shadows are followed over straight rows; a relief of the whole earth is bent once it is lit.
+    is_lit_first = wishes.question in ("auto", "relief") and globes.middle_of(mesh) is not None
+    of_rows = (is_relief or wishes.question in RELIEFS) and not is_lit_first
+    straight = of_rows or mesh.n_points > MOST_BENT
     text = charts.suited(mesh, straight=straight)
     if not text:
         return step, contents

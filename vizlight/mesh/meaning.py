@@ -465,9 +465,8 @@ def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | N
 _METRES = {
     "m": 1.0, "metre": 1.0, "meter": 1.0, "km": 1e3, "kilometre": 1e3, "kilometer": 1e3,
     "dam": 10.0, "decametre": 10.0, "decameter": 10.0, "dm": 0.1, "decimetre": 0.1,
-    "decimeter": 0.1, "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2,
-    "mm": 1e-3, "millimetre": 1e-3, "millimeter": 1e-3,
-    "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
+    "decimeter": 0.1, "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2, "mm": 1e-3,
+    "millimetre": 1e-3, "millimeter": 1e-3, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048,
     "us survey foot": 1200 / 3937, "us_survey_foot": 1200 / 3937,
 }  # fmt: skip
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.looks import map_parts
 from vizlight.looks.framing import Viewpoint
 from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of
 from vizlight.looks.steps import Step
@@ -34,26 +35,32 @@ def relief(case: Case) -> Drawing:
     scene = case.wishes.scene("relief", camera)
     raised, note = _raised(case, array)
     keywords: Keywords = {"lit": True, **raised}
-    if isinstance(data.run(), pv.StructuredGrid) and "raster" not in keywords:
+    straight = map_parts.before_chart(data)
+    if isinstance(straight.run(), pv.StructuredGrid) and "raster" not in keywords:
         # Rows and columns that are not at right angles are sampled on an even grid.
         keywords["raster"] = 0.0
     if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
         keywords["occlusion"] = "sky"
-    lit = case.wishes.step("lit", "relief_shadow", data, scene, **keywords)
+    lit = case.wishes.step("lit", "relief_shadow", straight, scene, **keywords)
     notes = [note] if note else []
     if not keywords["lit"]:
-        return _share(case, lit, camera, scene, f"shadow on {array.name}", "t", notes)
+        bent = lit if straight is data else Step("chart", data.path, lit)
+        return _share(case, bent, camera, scene, f"shadow on {array.name}", "t", notes)
     colors = case.wishes.colors
     if "cmap" not in colors:
         ends = colors.get("clim") or range_of(data.run(), array.name)
         colors = {"cmap": Step("", "vizlight.maps.heights", *ends)}
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
+    drawn: Keywords = {"show_scalar_bar": False}
+    if straight is not data:
+        shown = Step("chart", data.path, shown)
+        drawn |= {"scalars": "rgb", "rgb": True, "lighting": False}
     keys = [case.bar(array, colors)]
     # The filter has said how many points have no height.
-    layer = Layer(shown, {"show_scalar_bar": False}, quiet=True)
+    layer = Layer(shown, drawn, quiet=True, live=straight is data)
     return Drawing(
-        [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=data, name="t",
-        colors=colors_of(array, colors),
+        [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=straight,
+        name="t", colors=colors_of(array, colors),
     )  # fmt: skip
 
 
