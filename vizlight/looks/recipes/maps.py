@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.ticks import even_levels, numerals_of
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import GROUND, Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference
@@ -120,7 +120,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         shown = ends[0] / factor, ends[1] / factor
         edges = _classes(levels, shown)
         first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
-        table = Step("", "vizlight.maps.bands", inner, (first_end, last_end), *filter(None, [cmap]))
+        table = Step("", BANDS, inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
         of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
         keys = [key | of_bar for key in keys]
@@ -136,7 +136,7 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
         return drawing
     low, high = clim
     edges = _classes(even_levels(low, high, MOST_CLASSES), (low, high))
-    table = Step("", "vizlight.maps.bands", edges[1:-1], (edges[0], edges[-1]), cmap)
+    table = Step("", BANDS, edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
     of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
