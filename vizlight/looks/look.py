@@ -295,10 +295,10 @@ class Look:
             plotter.close()
         if any(key.get("question") != "value" for key in self.drawing.keys):
             return figures
-        scale = figures.scale
-        of_light = scale is not None and scale.question in OF_LIGHT
-        kept = {"scale": None} if of_light else {}
-        return replace(figures, **dict.fromkeys(OF_LIGHT), **kept)
+        left_out: Keywords = dict.fromkeys(OF_LIGHT)
+        if figures.scale is not None and figures.scale.question in OF_LIGHT:
+            left_out["scale"] = None
+        return replace(figures, **left_out)
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"
