@@ -170,8 +170,9 @@ def _apart(mesh: pv.DataSet) -> float:
     if len(points) < 2:
         return 0.0
     some = points[:: max(len(points) // MOST_ASKED, 1)]
-    nearest = float(np.median(scipy.spatial.cKDTree(points).query(some, k=2)[0][:, 1]))
-    sides: Array = np.sort(np.asarray(np.ptp(points, axis=0)))[1:]
+    distances: Array = np.asarray(scipy.spatial.cKDTree(points).query(some, k=2)[0])
+    nearest = float(np.median(distances[:, 1]))
+    sides = np.sort(np.ptp(points, axis=0))[1:]
     return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
 
 
