@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.spatial import ConvexHull, QhullError
+import scipy
 
 from vizlight.looks.contents import LAYER
 from vizlight.vtk.cells import connectivity
@@ -175,8 +175,8 @@ def _base(points: Array, middle: Array | None, axis: int, sign: int) -> float:
     heights, flat = sign * points[:, axis], np.delete(points, axis, axis=1)
     low = heights < heights.min() + FOOT * np.ptp(heights)
     try:
-        whole, base = ConvexHull(flat), ConvexHull(flat[low])
-    except QhullError:
+        whole, base = scipy.spatial.ConvexHull(flat), scipy.spatial.ConvexHull(flat[low])
+    except scipy.spatial.QhullError:
         return 0.0  # fewer than three points, or all in a line
     if middle is not None:
         sides = base.equations @ np.append(np.delete(middle, axis), 1.0)

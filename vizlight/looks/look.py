@@ -297,10 +297,10 @@ class Look:
             plotter.close()
         if any(key.get("question") != "value" for key in self.drawing.keys):
             return figures
-        without: Keywords = dict.fromkeys(OF_LIGHT)
+        left_out: Keywords = dict.fromkeys(OF_LIGHT)
         if figures.scale is not None and figures.scale.question in OF_LIGHT:
-            without["scale"] = None
-        return replace(figures, **without)
+            left_out["scale"] = None
+        return replace(figures, **left_out)
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"

@@ -728,7 +728,7 @@ def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:
 
 
 def _shares(table: pv.LookupTable, values: Array) -> Array:
-    """Return the places of values on a bar, from 0 to 1, and -1 for what it has beside it."""
+    """Return the places of values on a bar, from 0 to 1, and -1 below it in a colour of its own."""
     ends, below = np.array(table.scalar_range), values < table.scalar_range[0]
     if table.log_scale:
         # VTK has no logarithm of what is not positive, and takes the lower end.

@@ -407,7 +407,7 @@ class Case:
         unit : float, default: 1.0
             Unit in which they are read, in that of the values.
         **kind
-            What they are, as for :func:`vizlight.looks.ranges.range_shown`.
+            Kind of the values, as for :func:`vizlight.looks.ranges.range_shown`.
         """
         values = values[np.isfinite(values)]
         if "clim" in self.wishes.colors or not values.size:
@@ -455,9 +455,9 @@ class Case:
             if factor != 1:
                 bar["title"] = f"{bar['title'].rpartition(' (')[0]} ({unit})"
             if isinstance(table, Step) and table.path == BANDS:
-                bands: Foreign = table.arguments
-                inner, ends = bands[:2]
-                bar["levels"] = _in_unit([ends[0], *inner, ends[1]], 1 / factor)
+                arguments: tuple[Foreign, ...] = table.arguments
+                inner, (first, last) = arguments[:2]
+                bar["levels"] = _in_unit([first, *inner, last], 1 / factor)
         # A region of one value below all others, such as thickness 0, is where there is no cortex.
         has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING
         if has_grey and brains.hemisphere(mesh):

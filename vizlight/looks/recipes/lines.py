@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from scipy.spatial import cKDTree
+import scipy
 
 from vizlight.filters.tint import RGB
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
@@ -171,7 +171,7 @@ def _apart(mesh: pv.DataSet) -> float:
     if len(points) < 2:
         return 0.0
     some = points[:: max(len(points) // MOST_ASKED, 1)]
-    distances: Foreign = cKDTree(points).query(some, k=2)[0]
+    distances: Array = np.asarray(scipy.spatial.cKDTree(points).query(some, k=2)[0])
     nearest = float(np.median(distances[:, 1]))
     sides = np.sort(np.ptp(points, axis=0))[1:]
     return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
