@@ -18,7 +18,7 @@ from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Foreign, Keywords
+    from vizlight._types import Array, Keywords
     from vizlight.looks.recipes.drawing import Case
 
 #: Name that stands for the direction of lines among the arrays that colour a picture.
