@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
-from vizlight.mesh import cf_grids, dates, meaning, projections
+from vizlight.mesh import dates, meaning, projections
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -529,14 +529,3 @@ def test_fake_places_are_left_out_for_true_ones():
         },
     )
     assert vizlight.read(data).bounds_size[:2] == pytest.approx((80 + 80 / 9, 80.0))
-
-
-def test_places_at_zero_beside_near_ones_are_true():
-    lon, lat = np.meshgrid(np.arange(-5.0, 6.0), np.arange(-5.0, 6.0))
-    lon, lat = lon + 0.1 * lat, lat + 0.05 * lon
-    lon[5, 6] = lat[5, 6] = 0.0
-    assert not cf_grids._without_place(lon, lat).any()
-    lon[:4, :4] = lat[:4, :4] = 0.0
-    missing = cf_grids._without_place(lon, lat)
-    assert missing[:3, :3].all()
-    assert not missing[4:].any()

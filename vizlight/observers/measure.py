@@ -431,11 +431,8 @@ class _PictureReader:
         return {name: function() for name, function in questions.items()}
 
     def _with(self, question: str, has_it: Callable[[SeenPlaces], bool]) -> list[SeenPlaces]:
-        """Return the places where a question of light has an answer, and note those without.
-
-        Light that is even tells nothing, and no key claims that it does.
-        """
-        lit = [p for p in self.groups if (p.part.lit and p.part.scene.lights) or p.part.by_axes]
+        """Return the places where a question of light has an answer, and note those without."""
+        lit = [p for p in self.groups if p.part.lit or p.part.by_axes]
         some = [p for p in lit if has_it(p)]
         kept = [p.take(p.here.valid) for p in some]
         total, left = (sum(len(p.here) for p in each) for each in (some, kept))

@@ -121,6 +121,7 @@ def points(case: Case) -> Drawing:
         words = f"arrows of {array.name} in the colours of its length"
         arrows = _arrows(mesh, array.name, lengths[np.isfinite(lengths)])
         if arrows is not None:
+            camera = case.camera(arrows, case.eye(mesh))
             shown = {"scene": even_light(camera), "scalars": "GlyphScale", **colors}
             layer = Layer(arrows, {**shown, "show_scalar_bar": False})
             lit = case.lit(mesh, scene)
