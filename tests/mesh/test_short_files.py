@@ -166,6 +166,8 @@ WRONG = {
 
 @pytest.mark.parametrize("name", WHOLE)
 def test_whole_files_are_read(name, tmp_path):
+    if name.endswith(".avs"):
+        pytest.importorskip("meshio")
     (tmp_path / name).write_bytes(WHOLE[name])
     assert vizlight.read(tmp_path / name).n_points > 2
 
