@@ -108,7 +108,7 @@ CASES = {
     "empty.stl": Case(b"", 2, NOT_A_MESH),
     "empty.obj": Case(b"", 2, NOT_A_MESH),
     "zeros.vtu": Case(b"\0" * 512, 2, NOT_A_MESH),
-    "zeros.glb": Case(b"\0" * 512, 2, NOT_A_MESH),
+    "zeros.glb": Case(b"\0" * 512, 2, "its header cannot be read"),
     "zeros.vtkhdf": Case(b"\0" * 512, 2, "neither netCDF nor HDF5"),
     "zeros.trk": Case(b"\0" * 1000, 2, NOT_A_MESH),
     "words.nothing": Case(b"what is this", 2, NOT_A_MESH),
@@ -191,8 +191,8 @@ CASES = {
         image(data='<DataArray type="Float32" Name="a" format="ascii">1 2</DataArray>'),
         2, "file: expected",
     ),
-    "short.gltf": Case(gltf(), 2, NOT_A_MESH),
-    "past.gltf": Case(gltf(bufferViews=[{"buffer": 7, "byteLength": 36}]), 2, NOT_A_MESH),
+    "short.gltf": Case(gltf(), 2, "bytes of a buffer"),
+    "past.gltf": Case(gltf(bufferViews=[{"buffer": 7, "byteLength": 36}]), 2, "of a buffer"),
     "cut.su2": Case(
         text("NDIME= 2", "NPOIN= 4", "0 0 0", "1 0 1", "1 1 2"), 2, NOT_A_MESH
     ),

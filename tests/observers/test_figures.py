@@ -42,6 +42,17 @@ def test_what_is_unreadable_is_one_row_and_a_reason():
     assert json.loads(json.dumps(found.to_dict()))["direction"]["median"] == 12.5
 
 
+def test_figures_are_left_out_with_their_scale():
+    scale = Scale(question="direction", pixels=8.0, length=None, median=20.0)
+    figures = Legibility(direction=READ, value=UNREAD, scale=scale, **HOW)
+    left = figures.without("direction", "shape")
+    assert (left.direction, left.value, left.scale) == (None, UNREAD, None)
+    assert figures.without("value").scale == scale
+    assert figures.without() == figures
+    with pytest.raises(ValueError, match="questions: expected 'direction', .*, got 'hue'"):
+        figures.without("hue")
+
+
 @pytest.mark.parametrize(
     ("pixels", "length", "text"),
     [(None, None, "none"), (8.125, None, "8.12 pixels"), (16, 2.5, "16 pixels, 2.5 of the unit")],

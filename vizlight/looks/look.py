@@ -283,6 +283,8 @@ class Look:
         """Return the steps that print how much a reader reads back from the picture."""
         plotter, steps = self._picture()
         read = Step("", ".vizlight.legibility", plotter)
+        if self._unexplained:
+            read = Step("", ".without", read, *self._unexplained)
         return [*steps, Step("", "print", read), Step("", ".close", plotter)]
 
     def figures(self) -> Legibility:
@@ -295,12 +297,13 @@ class Look:
             figures: Legibility = plotter.vizlight.legibility()
         finally:
             plotter.close()
-        if any(key.get("question") != "value" for key in self.drawing.keys):
-            return figures
-        left_out: Keywords = dict.fromkeys(OF_LIGHT)
-        if figures.scale is not None and figures.scale.question in OF_LIGHT:
-            left_out["scale"] = None
-        return replace(figures, **left_out)
+        return figures.without(*self._unexplained)
+
+    @property
+    def _unexplained(self) -> tuple[str, ...]:
+        """Questions of light that no key of the picture explains."""
+        has_key = any(key.get("question") != "value" for key in self.drawing.keys)
+        return () if has_key else OF_LIGHT
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"

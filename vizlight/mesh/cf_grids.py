@@ -104,7 +104,10 @@ _TURNING = "GRIB_alternativeRowScanning"
 #: Degrees beyond 360 from which a grid shows a part of the earth twice.
 _MORE_THAN_ALL = 10.0
 #: Axes that are no place: of them the first value is taken.
-_MEMBERS = r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*|nf|n?tiles?"
+_MEMBERS = (
+    r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
+    r"|nf|n?tiles?"
+)
 
 
 #: Axes along which values stand in a list, as those of the nodes of a mesh in a file of its own.

@@ -7,8 +7,10 @@ import html
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from vizlight import _check
+
 if TYPE_CHECKING:
-    from vizlight._types import Vector
+    from vizlight._types import Keywords, Vector
 
 #: Least information in bits of a question that can be read.
 FLOOR = 0.3
@@ -301,6 +303,30 @@ class Legibility:
             for name in QUESTIONS
             if isinstance(figure := getattr(self, name), Figure) and figure.unreadable
         }
+
+    def without(self, *questions: str) -> Legibility:
+        """Return the figures but for those of some questions, and a scale that is of these.
+
+        Parameters
+        ----------
+        *questions : str
+            Names of figures.
+
+        Returns
+        -------
+        Legibility
+
+        Raises
+        ------
+        ValueError
+            If there is no such figure.
+        """
+        for question in questions:
+            _check.choice("questions", question, QUESTIONS)
+        names: Keywords = dict.fromkeys(questions)
+        if self.scale is not None and self.scale.question in questions:
+            names["scale"] = None
+        return dataclasses.replace(self, **names)
 
     def _rows(self) -> list[tuple[str, ...]]:
         rows = list[tuple[str, ...]]()
