@@ -21,6 +21,7 @@ from vizlight.draw.render import PlotterKeywords
 from vizlight.geometry import manifolds
 from vizlight.geometry.solids.primitives import Solid
 from vizlight.looks.look import Look
+from vizlight.observers.figures import Legibility
 from vizlight.pieces.sources import Slabs
 from vizlight.scene.scene import SceneKeywords
 from vizlight.shading.arrays import Shading
@@ -336,8 +337,9 @@ PROTOCOLS = {
     Shading: {"arrays", "of", "part"},
     Options: {"of"},
     Slabs: {"empty", "nodes"},
-    # What the command line runs, and words of calls that take files of any number.
+    # What the command line runs, and words of calls that take files or questions of any number.
     Look: {"read_steps", "script", "figures", "show"},
+    Legibility: {"without"},
 }
 TYPED_DICTS = {"PlotterKeywords": lambda: PlotterKeywords, "SceneKeywords": lambda: SceneKeywords}
 
