@@ -39,8 +39,8 @@ def exact(normals, power=20):
 @pytest.mark.parametrize("levels", [8, 0.02, [0.2, 0.4, 0.6, 0.8]])
 def test_a_shiny_sphere_is_right_everywhere(levels, random, claim):
     center, radius = random.uniform(-3, 3, 3), random.uniform(0.5, 4)
-    found = isoluminance(Sphere(tuple(center), radius), SHINY, levels=levels)
-    bands = found["bands"]
+    sphere = isoluminance(Sphere(tuple(center), radius), SHINY, levels=levels)
+    bands = sphere["bands"]
     assert bands.is_manifold
     place, polygon = banded.places(polygons(bands), random, 4)
     normal = unit(place - center)
@@ -49,7 +49,7 @@ def test_a_shiny_sphere_is_right_everywhere(levels, random, claim):
     claim(np.quantile(error, 0.999), 1.1 * claimed)
     if isinstance(levels, float):
         assert claimed <= levels
-    assert found["contours"].n_lines > 50
+    assert sphere["contours"].n_lines > 50
 
 
 def test_closed_forms_and_halved_edges_agree():

@@ -107,13 +107,13 @@ def normals_of(
     given = given_normals(mesh, value, n)
     if given is not None:
         return given
-    # Those without a view are kept, and closed pieces have the same ones.
-    found = computed_normals(mesh)
-    if view is not None and found.any_open:
-        found = computed_normals(mesh, view=view, sides=warn)
+    # Those of a surface without a view are kept, and closed pieces have the same ones.
+    sided = computed_normals(mesh) if isinstance(mesh, pv.PolyData) else None
+    if sided is None or (view is not None and sided.any_open):
+        sided = computed_normals(mesh, view=view, sides=warn)
     if warn:
-        warn_of_edges(float(found.sharp), isinstance(mesh, pv.PolyData))
-    return found.vectors
+        warn_of_edges(float(sided.sharp), isinstance(mesh, pv.PolyData))
+    return sided.vectors
 
 
 def warn_of_edges(share: float, splits: bool) -> None:

@@ -435,9 +435,9 @@ def _ensight(file: BinaryIO) -> str:
             name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
             if not (folder / name).is_file():
                 return f"it names {name!r}, which is missing"
-            found = _parts(folder / name)
-            parts = found if section == b"GEOMETRY" else parts
-            if found is not None and parts is not None and (other := found - parts):
+            numbers = _parts(folder / name)
+            parts = numbers if section == b"GEOMETRY" else parts
+            if numbers is not None and parts is not None and (other := numbers - parts):
                 return f"{name!r} has the part {min(other)!r}, which the geometry has not"
     return ""
 

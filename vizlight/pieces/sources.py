@@ -45,7 +45,7 @@ STRUCTURED = {
 #: Last reader of a structured grid, of each thread.
 _LAST = threading.local()
 #: Files that name the files of their pieces.
-INDICES = (".pvtu", ".pvtp", ".vtm")
+INDICES = (*files.PIECES, ".vtm")
 HDF = (".vtkhdf", ".hdf")
 
 

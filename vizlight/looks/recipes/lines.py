@@ -150,7 +150,7 @@ def points(case: Case) -> Drawing:
 def _arrows(mesh: Step, name: str, lengths: Array) -> Step | None:
     """Return the step that makes arrows along the vectors of points, None where all are 0.
 
-    Of points that are nearer than arrows are long, one has an arrow.
+    Points nearer to each other than the length of an arrow share one.
     """
     size = float(mesh.run().length)
     longest = float(np.percentile(lengths, 95)) if lengths.size else 0.0
