@@ -217,6 +217,7 @@ OWN = {
     **FILTERS,
     "Light": {"position": (3.0, 0.0, 0.0)},
     "Light.unclamped": {"position": (3.0, 0.0, 0.0)},
+    "Light.linear": {"start": (3.0, 0.0, 0.0), "end": (3.0, 1.0, 0.0)},
     "View": {"position": (3.0, 0.0, 0.0)},
     "Scene": {"lights": Light(direction=UP), "view": View(direction=UP)},
     "DepthCue": {"front": 0.0, "back": 1.0},

@@ -1,9 +1,10 @@
 """Cos-theta shadows on height fields: compiled code beside NumPy, and a closed form.
 
 Hills have a power spectrum like that of terrain; NumPy and, where the extra ``fast`` is installed,
-compiled code are timed in turn. The shadow of a hemisphere on a plane has a closed form; the error
-is there that of the nodes, which falls with their spacing. Of hard shadows, with a depth of nearly
-0, the error is the share of nodes that are on the wrong side, from rays in small steps.
+compiled code are timed in turn; in fragments the picture has a pixel for each node. The shadow of a
+hemisphere on a plane has a closed form; the error is there that of the nodes, which falls with
+their spacing. Of hard shadows, with a depth of nearly 0, the error is the share of nodes that are
+on the wrong side, from rays in small steps.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+import pyvista as pv
 from scipy import ndimage
 
+import vizlight
 from studies import Row, Study, peak_memory, take_turns
-from vizlight import _compiled
+from vizlight import Light, Material, Scene, _compiled
 from vizlight.geometry.relief import shadowing
 
 #: Exponent by which the amplitude of the hills falls with the frequency, and their height. Both
@@ -121,13 +124,38 @@ def hemisphere(side, depth=0.1):
     return [Row("hemisphere", side, float(error.mean()), cost, {"largest error": error.max()})]
 
 
+def fragments(side, repeats=3):
+    """Return the row of hills whose shadow each fragment casts, one pixel for each node."""
+    grid = pv.ImageData(dimensions=(side, side, 1), spacing=(1 / (side - 1),) * 3)
+    grid["height"] = hills(side).ravel()
+    # Of diffuse light alone the grey level is t.
+    plain = Material(ambient=0.0, diffuse=1.0, specular=0.0)
+    scene = Scene(lights=Light(direction=sun(HEIGHT)), material=plain)
+    lit = vizlight.relief_shadow(grid, scene, lit=True, depth=DEPTH)
+    plotter = pv.Plotter(off_screen=True, window_size=(side, side))
+    plotter.disable_anti_aliasing()
+    plotter.vizlight.add_mesh(lit, light="fragments")
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = 0.5 * side / (side - 1)
+    shown = plotter.screenshot(return_img=True)[::-1, :, 0] / 255
+    cost = 1e9 * take_turns({"": plotter.render}, repeats)[""] / side**2
+    plotter.close()
+    # The outermost nodes are on the border of the mesh, which may show the ground behind it.
+    error = np.abs(shown - np.reshape(lit["t"], (side, side)))[1:-1, 1:-1]
+    return [
+        Row("hills, in fragments", side, float(error.mean()), cost, {"largest error": error.max()})
+    ]
+
+
 def steps(quick):
-    """Return the steps: hills, hills under other suns, hemispheres, hard shadows."""
+    """Return the steps: hills in two ways, under other suns, hemispheres, hard shadows."""
     sides = (128, 256) if quick else (256, 512, 1024, 2048)
     small = [side for side in sides if side <= SMALL]
     made = [partial(measure, side, repeats=1 if quick else 3) for side in sides]
     made += [partial(measure, side, height, repeats=1) for height in HEIGHTS for side in small]
     made += [partial(hemisphere, side) for side in (76, 151, 301)]
+    made += [partial(fragments, side, repeats=1 if quick else 3) for side in small]
     return made + [partial(hard, side) for side in small]
 
 

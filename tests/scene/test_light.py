@@ -9,6 +9,7 @@ from vectors import unit
 from vizlight import Light, Material, Scene, View
 from vizlight.model import falloff
 from vizlight.scene.conversion import lights_of
+from vizlight.shading.engine import shade
 
 
 def test_plain_values():
@@ -191,3 +192,52 @@ def test_a_spotlight_warns():
     with pytest.warns(UserWarning, match="spotlight of cone angle 20 degrees"):
         (read,) = lights_of([spot], camera())
     assert read.position == (1.0, 2.0, 3.0)
+
+
+def mean_cosine(start, end, place, normal):
+    """Return the mean over a segment of the cosine toward it where it is above the horizon.
+
+    n . (x - p) is linear along the segment: its two parts, across the line and along it, over the
+    distance have an inverse hyperbolic sine and the distance itself for integrals.
+    """
+    length = np.linalg.norm(end - start)
+    way = (end - start) / length
+    low, high = normal @ (start - place), normal @ (end - place)
+    if max(low, high) <= 0:
+        return 0.0
+    cut = length * low / (low - high) if min(low, high) < 0 else 0.0
+    ends = np.array([cut if low < 0 else 0.0, cut if high < 0 else length])
+    nearest = (place - start) @ way
+    foot = start + nearest * way - place
+    off = np.linalg.norm(foot)
+    whole = (normal @ foot) * np.arcsinh((ends - nearest) / off)
+    whole += (normal @ way) * np.hypot(ends - nearest, off)
+    return np.diff(whole)[0] / length
+
+
+def test_linear_light_is_its_integral(seed):
+    random = np.random.default_rng(seed)
+    start, end = np.array([-1.0, 0, 0]), np.array([1.0, 0, 0])
+    lamps = Light.linear(start, end, color="red")
+    assert sum(lamp.intensity for lamp in lamps) == pytest.approx(1)
+    scene = Scene(lights=lamps, material=Material(ambient=0, diffuse=1, specular=0))
+    places, normals = random.uniform(-3, 3, (4000, 3)), unit(random.normal(size=(4000, 3)))
+    along = np.clip(places[:, 0], -1, 1)
+    far = np.hypot(np.hypot(places[:, 0] - along, places[:, 1]), places[:, 2]) >= 1
+    places, normals = places[far], normals[far]
+    lit = shade(places, None, scene, normals=normals).luminance
+    exact = [mean_cosine(start, end, *pair) for pair in zip(places, normals, strict=True)]
+    ends = [np.einsum("ij,ij->i", normals, tip - places) > 0 for tip in (start, end)]
+    error, cut = np.abs(lit - exact), ends[0] != ends[1]
+    assert error[~cut].max() < 1e-5
+    assert error[cut].max() < 0.01
+    assert cut.any()
+
+
+test_bad_linear_lights = refusals(
+    lambda arguments: Light.linear(*arguments[0], **arguments[1]),
+    ((((0, 0, 0), (1, 0)), {}), "end: expected 3 components, as start has, got 2"),
+    ((((0, 0, 0), (1, 0, 0)), {"lamps": 0}), "lamps: expected"),
+    ((((0, 0, np.inf), (1, 0, 0)), {}), "start: expected finite"),
+    ((((0, 0, 0), (1, 0, 0)), {"intensity": -1}), "intensity: expected"),
+)

@@ -102,7 +102,8 @@ class Component:
             Place where the light is computed: at the points of the mesh, the numbers that a filter
             attaches; or in each fragment, from interpolated tangents and normals, which is right
             between the points of a coarse mesh too. "auto": in fragments where the plan allows.
-            ``"fragments"`` warns where it does not.
+            ``"fragments"`` warns where it does not, and casts the cos-theta shadows of an even
+            height field in each fragment, of lamps that move too.
         scalars : str or array_like, optional
             Array that gives the colours, by its name or with one row per point or cell. Light keeps
             them readable, as in :func:`vizlight.tint`: without a highlight, and grey for missing
@@ -173,7 +174,8 @@ class Component:
 
         Light at the points is bit-identical to the filter's for the same camera; halos blend the
         borders of lines with the ground. Light in
-        fragments is within 4 of 255 of it on fine meshes.
+        fragments is within 4 of 255 of it on fine meshes, shadows within 2 of 255 at the nodes of a
+        height field.
         """
         plotter = self._open_plotter()
         blocks.check(mesh)
@@ -772,7 +774,9 @@ def _add_cloud(
 def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords) -> Live:
     """Return a live light in each fragment, or at the points where that is asked for or needed."""
     stroke = stroke_of(source.mesh, drawing)
-    reason = "asked for" if light == "points" else _reason(source, drawing, stroke)
+    # A shadow stays where the camera turns: it is cast in fragments where that is asked for.
+    cast = light == "fragments"
+    reason = "asked for" if light == "points" else _reason(source, drawing, stroke, cast=cast)
     if not reason:
         return Fragments(source, scene, stroke)
     if light == "fragments":
@@ -784,11 +788,11 @@ def _live(source: Source, scene: Scene | None, light: LightAt, drawing: Keywords
     return Live(source, scene, stroke._replace(round=False), reason=reason)
 
 
-def _reason(source: Source, drawing: Keywords, stroke: Stroke) -> str:
+def _reason(source: Source, drawing: Keywords, stroke: Stroke, *, cast: bool = False) -> str:
     """Return why the light cannot be computed in each fragment, or an empty string."""
     if drawing.get("render_points_as_spheres") or drawing.get("render_lines_as_tubes"):
         return "VTK shades spheres and tubes by normals of their own"
-    return unfit(source, stroke)
+    return unfit(source, stroke, cast=cast)
 
 
 def add_recorded(

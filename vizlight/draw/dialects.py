@@ -126,6 +126,8 @@ class Dialect:
         into = "".join(f"{word} {v.kind} {suffixed(v.name)};\n" for v in varyings)
         declared = uniforms_in if self.web else []
         uniforms = "".join(f"uniform {u.kind} {u.name};\n" for u in declared)
+        if self.web and glsl.HEIGHTS in program.body:
+            uniforms += f"uniform sampler2D {glsl.HEIGHTS};\n"
         written = f"{constants}{program.body}\n  gl_FragData[0] = vec4(vizColor, opacity);\n"
         return [
             *self.passing(varyings),

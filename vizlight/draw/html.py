@@ -22,7 +22,7 @@ from PIL import Image
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS
-from vizlight.draw import backends, dialects, glsl
+from vizlight.draw import backends, dialects, glsl, ground
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
     from vizlight.draw.live import LightAt, Live
     from vizlight.filters.relight import Source
+    from vizlight.mesh.casters import EvenField
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.plan import Plan
 
@@ -230,6 +231,9 @@ class Page:
             "ambientColor": [scene.ambient_intensity * c for c in scene.ambient_color or WHITE],
             "specularColor": list(prop.GetSpecularColor()),
         }
+        field = live.source.field
+        if not isinstance(field, str):
+            entry["field"] = self._field(field, matrix)
         if scene.exposure is not None:
             entry["exposure"] = scene.exposure
         cue = scene.depth_cue
@@ -250,6 +254,14 @@ class Page:
             entry["colored"] = True
         return entry
 
+    def _field(self, field: EvenField, matrix: Array) -> dict[str, object]:
+        """Return the height field that casts a shadow, and its numbers in the page's space."""
+        every = ground.numbers(field, matrix)
+        values = {
+            n.name: self.moved(n.value) if n.space == "position" else list(n.value) for n in every
+        }
+        return {"heights": _places(field.heights.reshape(-1, 1)), "numbers": values}
+
     def _written(
         self, live: Fragments, scene: Scene, rows: Sequence[dict[str, object]]
     ) -> tuple[dict[str, int], dict[str, list[float]], Plan]:
@@ -267,8 +279,8 @@ class Page:
         # The page finds the ends of a depth cue.
         cue = dataclasses.replace(scene.depth_cue or DepthCue(), front=0.0, back=1.0)
         sources, inputs = {"": live.source}, live.source.inputs
-        furry = inputs.fur_height is not None
-        if live.source.options.conditioned and inputs.normals is not None and not furry:
+        on_surface = inputs.normals is not None and inputs.tangents is not None
+        if live.source.options.conditioned and on_surface and inputs.fur_height is None:
             sources["free "] = _unconditioned(live.source)
         constants: dict[str, list[float]] = {}
         places: dict[str, int] = {}
@@ -278,6 +290,8 @@ class Page:
             lit = scene.replace(lights=lamps, material=whole, depth_cue=cue if ended else None)
             plan, source = _plan(lit, sources[free]), sources[free]
             uniforms = glsl.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
+            if not isinstance(source.field, str):
+                uniforms += ground.numbers(source.field, np.eye(4))
             if plan.occluded:
                 uniforms.append(glsl.Uniform("vizSky", "float", (1.0,)))
             constants |= {n.name: list(n.value) for n in uniforms if n.name in _CONSTANT}

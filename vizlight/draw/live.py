@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw import dialects, glsl, strokes
+from vizlight.draw import dialects, glsl, ground, strokes
 from vizlight.draw.glsl import Stroke, Uniform
 from vizlight.filters import lighting, relight
 from vizlight.filters.tint import light_on_colors, map_colors, values_of
@@ -512,7 +512,12 @@ def _transformed(inputs: ShadingInputs, matrix: Array) -> ShadingInputs:
 REVERSED = 0.02
 
 
-def unfit(source: Source, stroke: Stroke = Stroke()) -> str:  # noqa: B008 (a tuple is not changed)
+def unfit(
+    source: Source,
+    stroke: Stroke = Stroke(),  # noqa: B008 (a tuple is not changed)
+    *,
+    cast: bool = False,
+) -> str:
     """Return why a source cannot be lit in each fragment, or an empty string.
 
     Parameters
@@ -520,6 +525,9 @@ def unfit(source: Source, stroke: Stroke = Stroke()) -> str:  # noqa: B008 (a tu
     source : Source
     stroke : Stroke
         How its lines are drawn.
+    cast : bool, default: False
+        Whether a height field casts its shadow in each fragment, which takes longer than the rest
+        of the light.
 
     Returns
     -------
@@ -527,6 +535,10 @@ def unfit(source: Source, stroke: Stroke = Stroke()) -> str:  # noqa: B008 (a tu
     """
     inputs, options = source.inputs, source.options
     layout = inputs.layout
+    if layout.shadowed and cast:
+        if isinstance(source.field, str):
+            return f"t of the cos-theta shadow is known at the points: {source.field}"
+        layout = layout._replace(shadowed=False)
     alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
     # A round line has the normals of a cylinder, made in the shader: there is no room for others.
     if stroke.round and (options.conditioned or not alone):
@@ -684,6 +696,8 @@ class Fragments(Live):
         """Give an actor the material of the scene, as far as VTK can have it."""
         prop = actor.GetProperty()
         prop.SetInterpolationToPhong()
+        if not isinstance(self.source.field, str) and prop.GetTexture(glsl.HEIGHTS) is None:
+            ground.attach(actor, self.source.field)
         if self.scene is None:
             return
         material = self.scene.material
@@ -714,6 +728,8 @@ class Fragments(Live):
         # VTK has a specular colour only where it has lights of its own.
         shown = prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor()
         numbers = glsl.numbers(scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data)
+        if not isinstance(self.source.field, str):
+            numbers += ground.numbers(self.source.field, np.reshape(_elements(actor), (4, 4)))
         if renew:
             turned = self.source.sided is not None
             written = glsl.write(plan, turned=turned, stroke=self.stroke, data=data)

@@ -13,6 +13,7 @@ from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, records
+from vizlight.mesh.casters import EvenField, FieldCaster
 from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene
@@ -42,6 +43,7 @@ class Source(NamedTuple):
     changed; None where that takes the filter itself. Where normals are turned to the eye,
     ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
     a volume that are not on its surface. ``shares`` gives the shares of light inside a bundle.
+    ``field`` is the height field that casts the shadow, or why a shader cannot cast it.
     """
 
     mesh: pv.DataSet
@@ -51,6 +53,7 @@ class Source(NamedTuple):
     sided: Sided | None = None
     inside: int = 0
     shares: bundles.Dimmed | None = None
+    field: EvenField | str = ""
 
     @property
     def facing(self) -> Facing:
@@ -284,7 +287,12 @@ def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     t = shadows.recorded(relief_options, scene)
     if t is None:
         t = shadows.ratios(relief_options, progress_bar=False)
-    return Source(mesh, shadows.inputs(t), ShadingOptions(), None)
+    field: EvenField | str = "a closed surface casts it"
+    if isinstance(shadows.caster, FieldCaster):
+        field = shadows.caster.even(mesh)
+    if relief_options.angular_diameter > 0:
+        field = "the lights are discs"
+    return Source(mesh, shadows.inputs(t), ShadingOptions(), None, field=field)
 
 
 def _of_fur(

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -34,6 +34,8 @@ DEPTH = 0.01
 FAR = 1e100
 #: Range of heights, as a share of the side of a map, below which its slopes are not seen.
 UNSEEN = 1e-4
+#: Largest difference of steps that are even, as a share of their mean.
+EVEN = 1e-4
 #: Options that only height fields have.
 FIELD_ALONE = ("elevation", "exaggeration", "border", "raster")
 
@@ -100,6 +102,27 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaste
     raise TypeError(_check.message("mesh", expected, type(mesh).__name__, remedy))
 
 
+class EvenField(NamedTuple):
+    """Height field of even rows and columns, by which a shader casts shadows.
+
+    Attributes
+    ----------
+    heights : ndarray, shape (ny, nx)
+        Heights above the origin.
+    origin : ndarray, shape (3,)
+        Place of the first node at the height 0, in the unit of the mesh.
+    axes : ndarray, shape (3, 3)
+        Rows by which a vector of the mesh becomes cells along x and y, and a height.
+    depth : float
+        Depth d at which light is gathered.
+    """
+
+    heights: Array
+    origin: Array
+    axes: Array
+    depth: float
+
+
 class FieldCaster:
     """Shadows of a height field."""
 
@@ -159,6 +182,25 @@ class FieldCaster:
         t = self._heights.to_points(t)
         t[~self.valid] = 0
         return t
+
+    def even(self, mesh: pv.DataSet) -> EvenField | str:
+        """Return the field for a shader that draws its mesh, or why it has none."""
+        field = self._field
+        if isinstance(self._heights, Raster):
+            return "the height field is sampled from a surface"
+        if field.border != "extend":
+            return "a border of walls is known at the points"
+        if self.depth <= shadowing.LEAST_DEPTH * field.size:
+            return "the limit for depth 0 is known at the points"
+        steps = [np.diff(axis) for axis in (field.x, field.y)]
+        if any(np.ptp(step) > EVEN * step.mean() for step in steps):
+            return "rows or columns of the height field are uneven"
+        if not np.allclose(self.points[:, :2], np.asarray(mesh.points)[:, :2], rtol=1e-6):
+            return "the mesh is drawn in other units than its shadows"
+        step_x, step_y = (float(step.mean()) for step in steps)
+        axes = self._turn / np.array([[step_x], [step_y], [1.0]])
+        # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
+        return EvenField(field.heights, field.origin @ self._turn, axes, self.depth)
 
     def _inner(self, rows: Array) -> Array:
         """Return the rows at the nodes of the grid itself."""

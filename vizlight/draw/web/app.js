@@ -174,6 +174,13 @@ class App {
       } else numbers[`vizLight${i}`] = unit(l.eye ? l.value : rotate(view, l.value));
       numbers[`vizColor${i}`] = l.color.map((c) => c * l.intensity);
     });
+    if (given.field) {
+      Object.assign(numbers, given.field.numbers, { vizFieldFrom: place(view, given.field.numbers.vizFieldFrom) });
+      ['X', 'Y', 'Z'].forEach((axis) => {
+        const row = given.field.numbers[`vizField${axis}`];
+        numbers[`vizField${axis}`] = [...rotate(view, row), row[3]];
+      });
+    }
     const cue = given.cue || (this.state.fade > 0 ? { front: null, back: null, scales: [1, 1 - this.state.fade] } : null);
     if (cue) numbers.vizCueEnds = this.endsOf(cue, mesh, view);
     const near = ordered.filter((l) => l.position).length;
@@ -308,7 +315,8 @@ class App {
   // A ball is far from all lamps: those with a place shine from where they stand about the centre.
   lightOfBall(numbers, view) {
     const lamps = this.state.sets[this.leader.given.lights].filter((l) => l.intensity > 0);
-    const found = { ...numbers };
+    // A ball casts no shadow of the field.
+    const found = { ...numbers, vizDepth: [0] };
     lamps.forEach((l, i) => {
       found[`vizLight${i}`] = this.seen(l, view);
       found[`vizColor${i}`] = l.color.map((c) => c * l.intensity);

@@ -178,6 +178,7 @@ const CAPSULE_GROUND = `
 const FRAGMENT = `#version 300 es
 #define varying in
 precision highp float;
+precision highp sampler2D;
 varying vec4 ownShade;
 uniform vec4 ownCut; uniform float ownOpacity;
 out vec4 ownOut;
@@ -330,6 +331,16 @@ class Mesh {
     const keys = ['normals', 'tangents', 'colors', 'widths', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
+    if (given.field) {
+      const [columns, rows] = given.field.numbers.vizFieldSize;
+      const heights = await unpackPlaces(given.field.heights);
+      mesh.heights = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, mesh.heights);
+      // Floats that are not filtered may be read everywhere.
+      [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER].forEach((name) => gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST));
+      gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, columns, rows);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, columns, rows, gl.RED, gl.FLOAT, heights);
+    }
     mesh.capsules = Boolean(given.halo || given.widths);
     if (given.moving) mesh.moving = Object.fromEntries(await Promise.all(['phase', 'passing', 'grown'].map(async (k) => [k, await unpack(given.moving[k])])));
     await Promise.all(Object.entries(given.values || {}).map(async ([name, packed]) => { mesh.values[name] = await unpack(packed); }));
@@ -429,6 +440,7 @@ class Mesh {
     // Faces are moved back by a little, or they would hide parts of the edges on them.
     (this.edges.length ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
+    if (this.heights) gl.bindTexture(gl.TEXTURE_2D, this.heights);
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
       const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
