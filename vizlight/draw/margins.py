@@ -173,9 +173,9 @@ class Margin:
         scale = min(scale, (BAND / TITLE_SIZE - 0.1) / (1.2 * max(len(lines), 1)))
         places = ((0.4 if len(lines) < 2 else 0.1) * letters, upper + 0.7 * letters)
         for text, y, shown in zip(self._titles, places, (not lowered, lowered), strict=True):
-            text.SetVisibility(shown)
             text.GetTextProperty().SetFontSize(max(round(letters * scale), LEAST))
-            text.SetInput("\n".join(lines))
+            # Empty and not hidden: who draws the picture without its words hides them himself.
+            text.SetInput("\n".join(lines) if shown else "")
             text.SetPosition(gap, y)
 
     def _beside(self, room: tuple[float, float], short: int, rows: Array) -> None:
@@ -373,10 +373,10 @@ class MarginKey:
         self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
         most = tall / (APART * letters) + 1
         shown = _thinned([share for share, _ in self._marks], self._zero, most)
-        for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+        for label, (share, word), visible in zip(self._labels, self._marks, shown, strict=True):
             label.GetTextProperty().SetJustificationToLeft()
             label.GetTextProperty().SetVerticalJustificationToCentered()
-            label.SetVisibility(visible)
+            label.SetInput(word if visible else "")
             label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
         self._heading.GetTextProperty().SetJustificationToLeft()
         self._heading.SetPosition(left, y + box[1] / 2 - words)
@@ -400,11 +400,11 @@ class MarginKey:
         widest = LETTER * letters * max(len(word) for _, word in self._marks)
         most = (right - left) / (widest + letters) + 1
         shown = _thinned([share for share, _ in self._marks], self._zero, most)
-        for label, (share, _), visible in zip(self._labels, self._marks, shown, strict=True):
+        for label, (share, word), visible in zip(self._labels, self._marks, shown, strict=True):
             label.GetTextProperty().SetFontSize(max(round(letters), 8))
             label.GetTextProperty().SetJustificationToCentered()
             label.GetTextProperty().SetVerticalJustificationToTop()
-            label.SetVisibility(visible)
+            label.SetInput(word if visible else "")
             label.SetPosition(left + share * (right - left), upper - high - 0.3 * letters)
 
     def _move(self, places: Array) -> None:

@@ -12,6 +12,9 @@ from PIL import Image
 import vizlight
 from vizlight import Scene
 from vizlight.draw.vector import figure
+from vizlight.draw.vector.files import Words
+from vizlight.draw.vector.samples import enlarged, samples_of
+from vizlight.draw.vector.words import words_of
 from vizlight.files import FileError
 
 pytestmark = pytest.mark.opengl
@@ -141,6 +144,37 @@ def test_details_that_are_too_many_become_pixels_with_a_note(plotter, tmp_path, 
     with pytest.warns(UserWarning, match=r"'noise.svg' (holds pixels|has \d+ kB)"):
         text = plotter.vizlight.save_graphic(tmp_path / "noise.svg").read_text()
     assert "data:image/png" in text or "<path" in text
+
+
+def test_pixels_that_do_not_fit_as_png_are_jpeg(plotter, tmp_path, monkeypatch):
+    monkeypatch.setattr(figure, "LARGEST", 40_000)
+    rough = np.random.default_rng(3).normal(size=(300, 300, 1))
+    field = pv.ImageData(dimensions=(300, 300, 1), spacing=(0.01, 0.01, 1), origin=(-1.5, -1.5, 0))
+    field["c"] = np.cumsum(rough, axis=0).ravel()
+    plotter.add_mesh(field, scalars="c", cmap="viridis", lighting=False, show_scalar_bar=False)
+    seen_from_above(plotter)
+    with pytest.warns(UserWarning, match="'rough.svg' holds pixels and words, in"):
+        path = plotter.vizlight.save_graphic(tmp_path / "rough.svg")
+    assert "data:image/jpeg;base64," in path.read_text()
+    assert path.stat().st_size <= 40_000
+
+
+def test_words_of_keys_are_not_drawn_beside_their_text(plotter):
+    ball = pv.Sphere()
+    ball["height"] = ball.points[:, 2]
+    plotter.vizlight.add_mesh(ball, scalars="height", scene=Scene(), show_scalar_bar=False)
+    plotter.vizlight.add_key()
+    plotter.screenshot(return_img=True)
+    words, props = words_of(plotter)
+    places = [(*word.place, word.size) for word in words if isinstance(word, Words)]
+    assert len(places) > 3
+    # The margin is laid out anew for the larger picture.
+    with enlarged(plotter, 2, props):
+        plotter.render()
+        picture = samples_of(plotter).colors
+    for x, y, size in np.rint(2 * np.array(places)).astype(int):
+        around = picture[max(y - size // 2, 0) : y + size // 2, x : x + size]
+        assert np.ptp(around, axis=(0, 1)).max() == 0
 
 
 def test_the_error_falls_until_the_file_fits_and_is_told(plotter, tmp_path, monkeypatch):

@@ -40,6 +40,9 @@ HOPELESS = 48.0
 #: Power of the error to which the size falls, as measured, and share of the largest size that is
 #: aimed at.
 POWER, AIM = 1.5, 0.9
+#: Pixels in place of paths, until they fit: how many along each of the picture's own, and the
+#: quality of JPEG, None for PNG.
+PIXELS = ((2, None), (2, 92), (1, 92))
 #: Most samples of a picture, and most along a side of a pixel.
 SAMPLES, FINE = 12_000_000, 4
 
@@ -134,16 +137,16 @@ class _Drawn:
         )
         return _Attempt(self._written(suffix, fills, strokes, words), error, palette.error)
 
-    def pixels(self, suffix: str) -> _Attempt:
-        """Return the figure with the picture as pixels, two for each of its own."""
-        step = max(self.scale // 2, 1)
+    def pixels(self, suffix: str, along: int, quality: int | None) -> _Attempt:
+        """Return the figure with so many pixels along each of the picture's own, as PNG or JPEG."""
+        step = max(self.scale // along, 1)
         colors = np.clip(np.rint(self.samples.colors), 0, 255).astype(np.uint8)
         rows, columns = (side // step * step for side in colors.shape[:2])
         parts = colors[:rows, :columns].reshape(rows // step, step, columns // step, step, -1)
         mean = np.rint(parts.mean(axis=(1, 3))).astype(np.uint8)
         shown = np.broadcast_to(mean, (*mean.shape[:2], 3))
         size = (columns / self.scale, rows / self.scale)
-        picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size)]
+        picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size, quality)]
         courses = [_in_channels(course, 3) for course in self.courses]
         strokes: list[Item] = [*strokes_of(courses, self.background, COARSEST)]
         data = self._written(suffix, picture, strokes, "pixels, strokes and words")
@@ -195,8 +198,11 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
     if best is not None:
         return best
     # Pixels in place of faces help nothing where it is the strokes that are many.
-    pixels = drawn.pixels(suffix)
-    return pixels if len(pixels.data) <= LARGEST else first
+    for along, quality in PIXELS:
+        pixels = drawn.pixels(suffix, along, quality)
+        if len(pixels.data) <= LARGEST:
+            return pixels
+    return first
 
 
 def _note(path: Path, best: _Attempt, *, error: float | None) -> None:

@@ -84,11 +84,15 @@ class Words:
 
 @dataclass(frozen=True)
 class Picture:
-    """Pixels, ndarray of uint8 of shape (rows, columns, 3), from a place over a size in pixels."""
+    """Pixels, ndarray of uint8 of shape (rows, columns, 3), from a place over a size in pixels.
+
+    In SVG they are a JPEG of a quality from 1 to 95, or for None a PNG.
+    """
 
     pixels: NDArray[np.uint8]
     place: tuple[float, float]
     size: tuple[float, float]
+    quality: int | None = None
 
 
 Item: TypeAlias = "Fill | Polyline | Words | Picture"
@@ -199,12 +203,17 @@ def _text(item: Words) -> Iterable[str]:
 
 def _image(item: Picture) -> str:
     data = io.BytesIO()
-    Image.fromarray(item.pixels).save(data, "PNG", optimize=True)
+    picture, kind = Image.fromarray(item.pixels), "png" if item.quality is None else "jpeg"
+    if item.quality is None:
+        picture.save(data, "PNG", optimize=True)
+    else:
+        # Colours are as fine as their light.
+        picture.save(data, "JPEG", quality=item.quality, optimize=True, subsampling=0)
     text = base64.b64encode(data.getvalue()).decode()
     (x, y), (width, height) = item.place, item.size
     return (
         f'<image x="{x}" y="{y}" width="{width:g}" height="{height:g}" preserveAspectRatio="none" '
-        f'href="data:image/png;base64,{text}"/>\n'
+        f'href="data:image/{kind};base64,{text}"/>\n'
     )
 
 
