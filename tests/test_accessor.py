@@ -65,7 +65,7 @@ def blocks_of(mesh):
 
 
 def test_accessor_on_blocks():
-    blocks = pv.MultiBlock([pv.Sphere(), pv.Cube()])
+    blocks = pv.MultiBlock([pv.Sphere(), pv.Plane()])
     lit = blocks.vizlight.illuminate(SCENE)
     assert all("luminance" in block.point_data for block in lit)
 

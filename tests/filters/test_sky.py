@@ -223,7 +223,7 @@ def test_a_sky_that_is_older_than_the_mesh_is_told():
     for stale in (moved, fewer):
         with pytest.warns(UserWarning, match=r"have changed since .* vizlight.sky\(mesh\) finds"):
             vizlight.illuminate(stale, SCENE, occlusion="sky")
-    part = pv.Cube().clean()
+    part = pv.Box().clean()
     named = vizlight.sky(part, name="view", feature_angle=None)
     vizlight.illuminate(named, SCENE, occlusion="view", feature_angle="auto")
 

@@ -90,7 +90,7 @@ def test_a_field_of_heights_in_cells_casts_shadows():
 
 
 def test_the_remedy_for_a_partitioned_dataset_helps():
-    parts = pv.PartitionedDataSet([pv.Sphere(), pv.Cube()])
+    parts = pv.PartitionedDataSet([pv.Sphere(), pv.Plane()])
     with pytest.raises(TypeError, match=r"pyvista\.MultiBlock\(list\(mesh\)\)"):
         vizlight.illuminate(parts)
     assert vizlight.illuminate(pv.MultiBlock(list(parts))).n_blocks == 2

@@ -7,7 +7,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Scene, View
 from vizlight.geometry.lines import simplices
-from vizlight.mesh.normals import welded
+from vizlight.mesh.normals import normals_of, welded
 from vizlight.vtk import cells, corners, normals, orientation, topology
 
 
@@ -184,3 +184,19 @@ def test_what_is_no_soup_is_the_same_mesh():
     lines = pv.Line()
     assert welded(BALL) is BALL
     assert welded(lines) is lines
+
+
+def test_normals_for_an_eye_are_computed_once(monkeypatch):
+    computed, calls = normals._computed, []
+    monkeypatch.setattr(normals, "_computed", lambda *a, **k: calls.append(k) or computed(*a, **k))
+    view = View(direction=(0, 0, -1))
+    sheet, ball = plain(pv.Plane(i_size=0.7)), plain(pv.Sphere(radius=0.7))
+    assert np.all(normals_of(sheet, None, 3, view)[:, 2] < 0)
+    assert len(calls) == 1
+    for eye in (view, None, view):
+        outward = normals_of(ball, None, 3, eye)
+        assert np.einsum("ij,ij->i", outward, ball.points).min() > 0
+    assert len(calls) == 2
+    # Without an eye those of the sheet are its own, which are then kept.
+    normals_of(sheet, None, 3, None)
+    assert normals.known_normals(sheet) is not None

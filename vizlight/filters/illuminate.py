@@ -341,4 +341,4 @@ def _warn_of_normals(
     # Normals may belong to positions in n-space, and faces in 3-space say nothing of those.
     if options.positions is None:
         given = [mesh for mesh, own in known if not own.computed]
-        normals.warn_of_contradiction(given, options.normals)
+        normals.warn_of_contradiction(given, options.normals, options.feature_angle)

@@ -38,6 +38,7 @@ from vizlight.vtk.normals import (
     computed_normals,
     creases,
     given_normals,
+    known_normals,
     remember,
     sided_normals,
 )
@@ -108,11 +109,14 @@ def normals_of(
     if given is not None:
         return given
     # Those of a surface without a view are kept, and closed pieces have the same ones.
-    sided = computed_normals(mesh) if isinstance(mesh, pv.PolyData) else None
+    surface = mesh if isinstance(mesh, pv.PolyData) else None
+    sided = None if surface is None or view is None else known_normals(surface)
     if sided is None or (view is not None and sided.any_open):
-        sided = computed_normals(mesh, view=view, sides=warn)
+        sided = computed_normals(mesh, view=view, sides=warn or surface is not None)
+        if surface is not None and not sided.any_open:
+            remember(surface, sided)
     if warn:
-        warn_of_edges(float(sided.sharp), isinstance(mesh, pv.PolyData))
+        warn_of_edges(float(sided.sharp), surface is not None)
     return sided.vectors
 
 
@@ -154,27 +158,20 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
         )
 
 
-def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
-    """Warn once if many of the normals that surfaces have are none of their faces.
+def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: FeatureAngle) -> None:
+    """Warn once if normals that surfaces have are none of their faces, or smear their creases.
 
-    A sign is no contradiction: light takes the side that is seen.
+    A sign is no contradiction: light takes the side that is seen. Creases that an ``angle`` would
+    split are left to :func:`warn_of_idle`.
     """
+    sharp = 0.0
     for mesh in meshes[:MOST_MESHES]:
         if not isinstance(mesh, pv.PolyData) or not has_faces(mesh):
             continue
         rows = given_normals(mesh, value, 3)
         if rows is None:
             continue
-        corners = triangles(mesh)
-        # A sample: the test is for a mesh as a whole, not for each of its points.
-        corners = corners[:: max(len(corners) // MOST_FACES, 1)]
-        a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
-        with np.errstate(all="ignore"):
-            faces, own = np.cross(b - a, c - a), np.asarray(rows[corners], np.float64).mean(axis=1)
-            area, size = (np.sqrt(np.einsum("ij,ij->i", x, x)) for x in (faces, own))
-            # cos 60 degrees is 1/2; the sign is left out, as light takes the side that is seen.
-            off = np.abs(np.einsum("ij,ij->i", faces, own)) < area * size / 2
-            share = float(np.sum(area, where=off) / np.sum(area))
+        share, leaning = _lean_shares(mesh, rows)
         if share > CONTRADICT:
             _check.warn(
                 f"the mesh has normals that lean from its faces by more than 60 degrees on "
@@ -182,6 +179,34 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object) -> None:
                 "mesh.point_data.active_normals_name = None"
             )
             return
+        # On a coarse mesh of a smooth shape they lean too, but no edge of it is a crease.
+        if leaning > MANY_SHARP and not isinstance(angle, float | int):
+            sharp = max(sharp, creases(mesh, has_normals=True))
+    if sharp > MANY_SHARP:
+        _check.warn(
+            f"the mesh has normals that are averaged across its sharp edges, {sharp:.0%} of all, "
+            "and faces beside these are shaded as if they were round; clear them: "
+            f"mesh.point_data.active_normals_name = None, and pass feature_angle={SHARP:g}"
+        )
+
+
+def _lean_shares(mesh: pv.PolyData, normals: Raw) -> tuple[float, float]:
+    """Return the share of a surface 60 degrees off its normals, and of corners SHARP degrees off.
+
+    The sign is left out, as light takes the side that is seen.
+    """
+    corners = triangles(mesh)
+    # A sample: the test is for a mesh as a whole, not for each of its points.
+    corners = corners[:: max(len(corners) // MOST_FACES, 1)]
+    a, b, c = np.asarray(places(mesh)[corners], np.float64).transpose(1, 0, 2)
+    with np.errstate(all="ignore"):
+        face, area = kernels.unit(np.cross(b - a, c - a).T)
+        at_corners = np.asarray(normals[corners], np.float64)
+        # cos 60 degrees is 1/2.
+        off = np.abs(kernels.dot(kernels.unit(at_corners.mean(axis=1).T)[0], face)) < 1 / 2
+        cosine = np.abs(np.einsum("ij,jki->jk", face, kernels.unit_rows(at_corners)))
+        leaning = np.count_nonzero(cosine < np.cos(np.radians(SHARP))) / max(cosine.size, 1)
+        return float(np.sum(area, where=off) / np.sum(area)), leaning
 
 
 def onlooker(scene: Scene) -> View | None:

@@ -59,11 +59,8 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     """
     if not isinstance(mesh, vtkPolyData):
         return compute()
-    # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
-    key = name, *_digests(mesh)
-    with _LOCK:
-        entry = _KEPT.get(key)
-    if entry is not None:
+    key = _key(mesh, name)
+    if (entry := _KEPT.get(key)) is not None:
         return cast("T", entry.value)
     value = compute()
     points = vtkWeakReference()
@@ -73,6 +70,18 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
         if len(_KEPT) <= _SWEEP or next(_CALLS) % max(_SWEEP, len(_KEPT) // _SWEEP) == 0:
             _forget()
     return value
+
+
+def recalled(mesh: vtkPolyData, name: str) -> object:
+    """Return what :func:`once` keeps of a surface, None where it keeps nothing."""
+    entry = _KEPT.get(_key(mesh, name))
+    return None if entry is None else entry.value
+
+
+def _key(mesh: vtkPolyData, name: str) -> tuple[str, ...]:
+    """Return what tells a result of a surface from others."""
+    # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
+    return name, *_digests(mesh)
 
 
 def _forget() -> None:

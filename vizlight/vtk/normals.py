@@ -41,7 +41,7 @@ from vizlight.vtk.corners import (
     surface_normals,
 )
 from vizlight.vtk.hull import dimension, scattered, surface_of
-from vizlight.vtk.memory import once
+from vizlight.vtk.memory import once, recalled
 from vizlight.vtk.orientation import (
     CORNERS,
     MOST_LEAN,
@@ -502,6 +502,12 @@ def computed_normals(
         name = "normals" if block is None else f"normals {digest(block)}"
         return once(mesh, name, lambda: _frozen(_computed(mesh, block=block)), owner)
     return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told, block=block)
+
+
+def known_normals(mesh: vtkPolyData) -> Sided | None:
+    """Return what :func:`computed_normals` keeps of a surface, None where it keeps nothing."""
+    sided = recalled(mesh, "normals")
+    return sided if isinstance(sided, Sided) else None
 
 
 def remember(mesh: vtkPolyData, sided: Sided) -> None:

@@ -14,6 +14,7 @@ from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import fields, surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
+from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
     from vizlight.looks.contents import Named
@@ -83,8 +84,7 @@ def _is_crumbs(mesh: pv.DataSet) -> bool:
     """Return whether an isosurface is in many pieces of which none is large."""
     if not mesh.n_cells:
         return False
-    number = np.asarray(mesh.connectivity("all").cell_data["RegionId"])
-    sizes = np.bincount(number)
+    sizes = np.bincount(piece_numbers(mesh))
     return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
 
 
