@@ -55,10 +55,10 @@ def levels(lit):
     return np.clip(np.rint(255 * light), 0, 255)
 
 
-def drawn(mesh, scene, then=None):
+def drawn(mesh, scene, then=None, light="fragments"):
     plotter = pv.Plotter(off_screen=True, window_size=(COUNT * PIXELS,) * 2)
     plotter.disable_anti_aliasing()
-    actor = plotter.vizlight.add_mesh(mesh, scene=scene, light="fragments")
+    actor = plotter.vizlight.add_mesh(mesh, scene=scene, light=light)
     plotter.camera = camera()
     if then is not None:
         plotter.screenshot(return_img=True)
@@ -86,6 +86,13 @@ def test_a_lamp_that_moves_casts_its_shadow_without_another_walk_at_the_points(m
 
     monkeypatch.setattr(shadowing, "_follow", walk)
     assert np.abs(at_nodes(drawn(lit, first, then)) - expected).max() <= 1
+
+
+def test_shadows_at_the_points_are_cast_again_for_another_scene():
+    first, then = (Scene(lights=[LAMPS[name]]) for name in ("far", "low"))
+    lit = vizlight.relief_shadow(field(), first, lit=True)
+    expected = levels(vizlight.relief_shadow(field(), then, lit=True))
+    assert np.abs(at_nodes(drawn(lit, first, then, "points")) - expected).max() <= 2
 
 
 def test_fields_that_are_turned_about_the_vertical_and_of_unequal_steps():

@@ -536,7 +536,9 @@ class Component:
         return live.explain(live.scene_of(plotter.renderer, actor))
 
     def set_scene(self, actor: vtkActor, scene: AnyScene, /) -> None:
-        """Light an actor by another scene, from the next frame on; nothing else is computed again.
+        """Light an actor by another scene, from the next frame on.
+
+        Nothing else is computed again, but the cos-theta shadows of light at the points.
 
         Parameters
         ----------

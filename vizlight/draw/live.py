@@ -261,6 +261,9 @@ class Live:
 
     def set_scene(self, scene: Scene, actor: vtkActor) -> None:
         """Take another scene, by which the next frame is lit."""
+        if self.reason and self.source.inputs.shadow is not None:
+            (self.source,), _ = relight.from_record(self.source.mesh, scene)
+            self._placed = None
         self.scene, self._state = scene, ()
         self.start(actor)
 
