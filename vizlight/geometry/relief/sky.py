@@ -334,13 +334,13 @@ class _Horizons:
     def _samples(self, count: int, shift: float) -> Array:
         if (count, shift) not in self.sampled:
             view, total = _View(self.field, self.slopes, 0), np.zeros(len(self.some[0]))
-            rises = [slope[self.some] for slope in self.slopes]
+            right, up = (slope[self.some] for slope in self.slopes)
             stretch = self.field.stretch[self.some[0]]
             # NumPy follows the rays of all azimuths at once that see the field turned alike.
             for _, alike in itertools.groupby(_ways(count, shift), view.turn_of):
                 ways = list(alike)
                 for way, t in zip(ways, self._horizons(view, ways), strict=True):
-                    total += _seen(t, *rises, stretch, way, self.openness)
+                    total += _seen(t, right, up, stretch, way, self.openness)
             self.sampled[count, shift] = total / count
         return self.sampled[count, shift]
 
@@ -433,7 +433,8 @@ class _View:
     def add(self, total: Array, openness: bool, way: tuple[float, float]) -> None:
         """Add the sky that all nodes see toward the azimuth, by compiled code."""
         assert self.turn is not None
-        stretch = self.field.stretch[:: self.turn[2]]
+        swap, _, up = self.turn
+        stretch = self.field.stretch[::up]
         local = np.stack([stretch, *_local(stretch, way)])
         rows, mean = len(self.y), self.y[-1] / (len(self.y) - 1)
         # Scan lines are parallel to the azimuth, a mean row apart: from below the last node of the
@@ -450,7 +451,7 @@ class _View:
             scan_lines.azimuth(
                 self.z, self.x, self.y, self.p, self.q, self.slope, (first, mean),
                 (int(lines.start), int(lines.stop)), self.near, crowd, openness,
-                local, self.turn[0], part,
+                local, swap, part,
             )  # fmt: skip
             return int(lines.stop)
 
