@@ -5,17 +5,19 @@ import warnings
 import numpy as np
 import pytest
 import pyvista as pv
+import scipy
 from fields import X, Y, Z, grids, level, step
 from lamps import DEFAULT, SHINY, shiny
 from refusals import refusals
 
 import vizlight
 from studies.relief import hills
-from vizlight import Light, Material, Scene, relief_day, relief_shadow
+from vizlight import Light, Material, Scene, cartography, relief_day, relief_shadow
 from vizlight.filters import relight
 from vizlight.filters.relief_shadow import Shadows
 from vizlight.geometry import relief, sun
 from vizlight.geometry.relief import height_field
+from vizlight.mesh import georeference
 
 TOWARD = np.array([0.6, -0.5, 0.4])
 SCENE = Scene(lights=Light(direction=TOWARD), material=shiny(ambient=0.1, specular=0))
@@ -440,3 +442,47 @@ def test_a_shadow_is_cast_once_for_a_field_and_its_picture(monkeypatch):
     shadowed["height"][50:90] += 3
     with pytest.raises(ValueError, match="matches its record"):
         relight.from_record(shadowed)
+
+
+def lit_on_a_sphere(longitudes, latitudes, heights, azimuth, altitude):
+    """Return t at depth 0 by rays in geocentric coordinates, through ground that is bilinear."""
+    radius = georeference.METRES * 180 / np.pi
+    east, north = np.meshgrid(*np.radians([longitudes, latitudes]))
+    zenith = np.stack([np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)])
+    places = (radius + heights) * zenith
+    right = np.stack([-np.sin(east), np.cos(east), 0 * east])
+    level = np.sin(azimuth) * right + np.cos(azimuth) * np.cross(zenith, right, axis=0)
+    way = np.cos(altitude) * level + np.sin(altitude) * zenith
+    sides = (np.gradient(places, edge_order=2, axis=axis) for axis in (2, 1))
+    normals = np.cross(*sides, axis=0)
+    cosine = np.einsum("i...,i...", normals, way) / np.linalg.norm(normals, axis=0)
+    steps = np.diff(np.radians(latitudes))[0], np.diff(np.radians(longitudes))[0]
+    lit = cosine > 0
+    step = radius * steps[0] * np.cos(north).min() / 8
+    for distance in np.arange(step, np.ptp(heights) / np.tan(altitude), step):
+        x, y, z = places + distance * way
+        far = np.sqrt(x * x + y * y + z * z)
+        rows = (np.arcsin(z / far) - north[0, 0]) / steps[0]
+        columns = (np.arctan2(y, x) - east[0, 0]) / steps[1]
+        ground = scipy.ndimage.map_coordinates(heights, [rows, columns], order=1, mode="nearest")
+        lit &= far - radius > ground - 1
+    return np.where(lit, cosine, 0)
+
+
+@pytest.mark.parametrize(
+    ("span", "middle", "most"), [(1, 60, 0.004), (10, 60, 0.008), (60, 50, 0.03), (150, 0, 0.03)]
+)
+def test_maps_in_degrees_have_the_shadows_of_a_sphere(span, middle, most, random):
+    """From the equator to 80 degrees north, heights such that some third is in shadow."""
+    count = 60
+    waves = np.hypot(*np.meshgrid(*2 * [np.fft.fftfreq(count)])) + 1 / count
+    rough = np.fft.ifft2(np.fft.fft2(random.normal(size=2 * (count,))) / waves**1.2 * (waves < 0.2))
+    heights = 0.2 * span / count * georeference.METRES * rough.real / np.diff(rough.real).std()
+    longitudes = np.linspace(0, span, count)
+    latitudes = middle + np.linspace(-span / 2, span / 2, count)
+    grid = cartography.in_degrees(pv.RectilinearGrid(longitudes, latitudes, [0.0]))
+    grid["height"] = heights.ravel()
+    t = np.asarray(relief_shadow(grid, sun=(250, 12), depth=0)["t"]).reshape(heights.shape)
+    expected = lit_on_a_sphere(longitudes, latitudes, heights, *np.radians([250, 12]))
+    assert 0.2 < np.mean(expected == 0) < 0.6
+    assert np.abs(t - expected)[4:-4, 4:-4].mean() < most

@@ -47,6 +47,19 @@ def test_the_first_group_is_read_and_other_grids_are_told(tmp_path):
     assert "on other grids: t2m at heightAboveGround 2" in meaning.line(mesh)
 
 
+def test_missing_messages_are_told(tmp_path):
+    with (tmp_path / "a.grib").open("wb") as file:
+        for date, level in ((20200101, 500), (20200101, 850), (20200102, 850)):
+            message = eccodes.codes_grib_new_from_samples("regular_ll_pl_grib2")
+            eccodes.codes_set(message, "dataDate", date)
+            eccodes.codes_set(message, "level", level)
+            eccodes.codes_set_values(message, np.arange(16.0 * 31))
+            eccodes.codes_write(message, file)
+            eccodes.codes_release(message)
+    mesh = vizlight.read(tmp_path / "a.grib")
+    assert "t has 3 of the 4 messages of its axes" in meaning.line(mesh)
+
+
 @pytest.mark.parametrize(
     ("height", "names", "size"), [(2, {"t2m"}, (11, 7, 1)), (10, {"u10", "v10"}, (6, 4, 1))]
 )

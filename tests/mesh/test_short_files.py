@@ -12,12 +12,15 @@ import pyvista as pv
 
 import vizlight
 from vizlight.files import FileError
+from vizlight.mesh import short_files
 
 NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n" + bytes(120)
 META = (
     b"ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 5 4 3\nElementSpacing = 1 1 1\n"
     b"ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + bytes(120)
 )
+GRIB1 = b"GRIB\0\0\x28\1" + bytes(28) + b"7777"
+GRIB2 = b"GRIB\0\0\0\2" + (40).to_bytes(8, "big") + bytes(20) + b"7777"
 ATOM = b"ATOM      1  CA  ALA A   1       0.000   0.000   0.500  1.00  0.00           C\n"
 HELIX = b"HELIX    1  HA GLY A   86  GLY A   94  1                                   9\n"
 TECPLOT = (
@@ -142,6 +145,9 @@ WRONG = {
     "axes": ("a.gii", b'<DataArray Dimensionality="10000000" />', "an array of 10000000 axes"),
     "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
     "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),
+    "message": ("a.grib", GRIB1 + GRIB2[:-9], "message 2 does not end where its length of 40"),
+    "begin": ("a.grb", GRIB1 + GRIB2[9:], "the begin of message 2 is missing"),
+    "edition": ("a.grb2", GRIB1 + GRIB2.replace(b"\2", b"\5"), "the begin of message 2"),
     "fraction": ("a.gltf", gltf("buffers", byteLength=0.5), "its byteLength is 0.5"),
     "bytes": ("a.gltf", gltf("buffers", byteLength=100), "of 100 bytes of a buffer"),
     "file": ("a.gltf", gltf("buffers", uri="b.bin"), "'b.bin', which is missing"),
@@ -170,6 +176,13 @@ def test_whole_files_are_read(name, tmp_path):
         pytest.importorskip("meshio")
     (tmp_path / name).write_bytes(WHOLE[name])
     assert vizlight.read(tmp_path / name).n_points > 2
+
+
+def test_messages_of_both_editions_are_followed(tmp_path):
+    """Also with other bytes between them, and of a length that counts in steps of 120 bytes."""
+    large = b"GRIB\x80\0\2\1" + bytes(200) + b"7777"
+    (tmp_path / "a.grib").write_bytes(b"a head\r\n" + GRIB1 + bytes(99) + large + GRIB2 + bytes(7))
+    assert not short_files.missing_part(tmp_path / "a.grib")
 
 
 @pytest.mark.parametrize("kind", WRONG)

@@ -274,7 +274,11 @@ def relief_shadow(
     -----
     ``t = d / r``, r the length inside the solid of the segment from ``p' = p - d n`` to the
     light; 1 where r is less than d. A field of cells of size h errs by h^2 / d, in the mean
-    where shadows begin. Rays through a closed surface are followed in float64.
+    where shadows begin. Rays through a closed surface are followed in float64. On a map in degrees
+    each point is lit in the frame of its own row, as if the parallels were straight and the earth
+    flat: with heights so large that a third of the map is in shadow, t is off by 0.004 in the mean
+    on a map of 1 degree, 0.008 on one of 10, and 0.03 on one of 60 or 150, beside straight rays
+    through the ground of a sphere.
     Source: cos-theta, section 3, which prints ``t = r/d`` once; it is d/r.
 
     Examples

@@ -127,15 +127,17 @@ class FieldCaster:
     """Shadows of a height field."""
 
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
-        # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
-        grid = georeference.in_metres(grid)
         heights = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         # Where the ground goes on beyond the border and in holes its slope does, for one cell.
         self._rim = int(options.border == "extend")
         nodes = height_field.continued(heights.x, heights.y, heights.z) if self._rim else (
             heights.x, heights.y, heights.z
         )  # fmt: skip
-        field = self._field = height_field.make(*nodes, border=options.border)
+        stretch = heights.stretch
+        if stretch is not None:
+            stretch = np.pad(stretch, self._rim, mode="edge")
+        field = height_field.make(*nodes, border=options.border, stretch=stretch)
+        self._field = field
         self._normal, self._heights = height_field.normals(field), heights
         # From the axes of the mesh to those of the grid's rows and columns.
         self._turn = np.eye(3) if heights.turn is None else heights.turn
@@ -147,6 +149,7 @@ class FieldCaster:
             x=field.x[self._rim :][: len(heights.x)] - field.x[self._rim],
             y=field.y[self._rim :][: len(heights.y)] - field.y[self._rim],
             heights=self._inner(field.heights),
+            stretch=field.stretch[self._rim :][: len(heights.y)],
             top=float(np.nanmax(heights.z) - np.nanmin(heights.z)),
         )
         self.depth = _depth(options.depth, height_field.default_depth(inner))
@@ -195,8 +198,9 @@ class FieldCaster:
         steps = [np.diff(axis) for axis in (field.x, field.y)]
         if any(np.ptp(step) > EVEN * step.mean() for step in steps):
             return "rows or columns of the height field are uneven"
-        if not np.allclose(self.points[:, :2], np.asarray(mesh.points)[:, :2], rtol=1e-6):
-            return "the mesh is drawn in other units than its shadows"
+        of_mesh = np.asarray(mesh.points)[:, :2]
+        if np.ptp(field.stretch) or not np.allclose(self.points[:, :2], of_mesh, rtol=1e-6):
+            return "the field is a map in degrees"
         step_x, step_y = (float(step.mean()) for step in steps)
         axes = self._turn / np.array([[step_x], [step_y], [1.0]])
         # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
@@ -213,10 +217,14 @@ class FieldCaster:
         # Below the horizon every ray is inside for ever; the oracle does not integrate that.
         if not self.effort or (way is not None and way[2] <= 0):
             return math.nan
+        place = self._turn @ self.points[point] - field.origin
+        # In the frame of the point, where the field has been stretched along x.
+        scale = np.array([field.stretch[np.argmin(np.abs(field.y - place[1]))], 1.0, 1.0])
         return rays.relief_ratio(
-            field.x, field.y, field.heights, self._turn @ self.points[point] - field.origin,
+            scale[0] * field.x, field.y, field.heights, scale * place,
             self._turn @ self.normals[point], self.depth, way=way,
-            end=None if end is None else end - field.origin, wall=field.border != "extend",
+            end=None if end is None else scale * (end - field.origin),
+            wall=field.border != "extend",
         )  # fmt: skip
 
     def _turned(self, vector: VectorLike | None) -> Array | None:

@@ -184,7 +184,8 @@ def read(
             warnings.filterwarnings("ignore", category=FutureWarning, module="cfgrib")
             group, along, note = grib_groups.opened(path, at or {})
             with group as file:
-                reader = _Reader(file, [note] if note else [])
+                notes = grib_groups.missing_messages(file)
+                reader = _Reader(file, [*notes, note] if note else notes)
                 return reader.grid(time, along, nodata, str(path))
         engine = "zarr" if path.suffix.lower() in ZARR else None
         options: Keywords = {"engine": engine, "decode_times": False}

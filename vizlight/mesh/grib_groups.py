@@ -6,6 +6,7 @@ import atexit
 import functools
 import hashlib
 import importlib
+import math
 import shutil
 import tempfile
 from typing import TYPE_CHECKING
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Keywords
 
-__all__ = ["opened"]
+__all__ = ["missing_messages", "opened"]
 
 
 @functools.cache
@@ -79,6 +80,27 @@ def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, obj
         else:
             break
     return whole, dict(at), ""
+
+
+def missing_messages(data: Foreign) -> list[str]:
+    """Return words for variables that lack messages: those of some steps, levels or members.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Data that cfgrib has opened; where a message is missing they are NaN.
+    """
+    words = []
+    for name, variable in data.variables.items():
+        # The array that cfgrib reads from is wrapped several times; it knows where messages are.
+        array: Foreign = variable._data
+        while hasattr(array, "array"):
+            array = array.array
+        if hasattr(array, "field_id_index"):
+            total = math.prod(array.shape[: -array.geo_ndim])
+            count = len(array.field_id_index)
+            words += [f"{name} has {count} of the {total} messages of its axes"] * (count < total)
+    return words
 
 
 def _first_group(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:

@@ -36,6 +36,8 @@ class Heights:
     z : ndarray, shape (ny, nx)
     place : ndarray of int, shape (ny, nx)
         Index of each node among the points of the grid.
+    stretch : ndarray, shape (ny,), optional
+        Length of a unit of x in each row of a map in degrees; None where it is 1.
     turn : ndarray, shape (3, 3), optional
         Rotation about the vertical from the axes of the mesh to the axes x and y; None where they
         are the same.
@@ -45,6 +47,7 @@ class Heights:
     y: Array
     z: Array
     place: Indices
+    stretch: Array | None = None
     turn: Array | None = None
 
     def covered(self) -> Bools:
@@ -103,13 +106,17 @@ def heights_of(
 ) -> Heights:
     """Return the height field of a grid of one layer, or of a surface sampled at a spacing.
 
+    Lengths of a map in degrees are in metres from its centre, and each of its rows has its own
+    length of a unit of x, unless its rows are aslant to the parallels.
+
     Raises
     ------
     TypeError, ValueError
         If the grid has more than one layer, is tilted, has no such elevation, or its x and y do not
         form straight rows and columns at right angles.
     """
-    factor = _check.number("exaggeration", factor)
+    # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
+    grid, factor = georeference.in_metres(grid), _check.number("exaggeration", factor)
     if raster is not None:
         return _sampled(grid, elevation, factor, _check.number("raster", raster, low=0.0))
     if isinstance(grid, pv.PolyData):
@@ -132,7 +139,15 @@ def heights_of(
         x, z, place = x[::-1], z[:, ::-1], place[:, ::-1]
     if y[0] > y[-1]:
         y, z, place = y[::-1], z[::-1], place[::-1]
-    return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, turn)
+    stretch = _stretch(grid, y) if turn is None else None
+    return Heights(x, y, np.asarray(z, dtype=np.float64) * factor, place, stretch, turn)
+
+
+def _stretch(mesh: pv.DataSet, y: Array) -> Array | None:
+    """Return the length of a unit of x in rows at y of a map that was in degrees, else None."""
+    if georeference.LATITUDE not in mesh.field_data:
+        return None
+    return 1 / georeference.rates(mesh, np.stack([0 * y, y, 0 * y], axis=1))[:, 0]
 
 
 def _sampled(
@@ -174,7 +189,8 @@ def _sampled(
         raise ValueError(_check.message("raster", "nodes that the mesh covers", "none"))
     place = np.arange(heights.size).reshape(heights.shape)
     # Points at the outline interpolate nodes beyond it, which so have the height of the nearest.
-    return Raster(x, y, height_field.filled(heights), place, surface_points=points)
+    filled, stretch = height_field.filled(heights), _stretch(mesh, y)
+    return Raster(x, y, filled, place, stretch, surface_points=points)
 
 
 def _check_layer(grid: Grid) -> tuple[int, int]:

@@ -660,12 +660,40 @@ _ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
 _WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
 
 
+#: Bytes of the section at the begin of a message of GRIB with its length, by its edition.
+_GRIB_HEAD = {1: 8, 2: 16}
+#: Bytes by which the length of a large message of edition 1 may be rounded, in which it is counted.
+_GRIB_UNIT = 120
+
+
+def _grib(file: BinaryIO) -> str:
+    """Follow the messages, each of which states its length and ends in four digits."""
+    at, count = 0, 0
+    with _mapped(file) as data:
+        while (start := data.find(b"GRIB", at)) >= 0:
+            edition = data[start + 7] if start + 7 < len(data) else 0
+            head = data[start : start + _GRIB_HEAD.get(edition, 0)]
+            if b"7777" in data[at:start] or len(head) < 8:
+                return f"the begin of message {count + 1} is missing or damaged"
+            count += 1
+            size, slack = int.from_bytes(head[8:] if edition == 2 else head[4:7], "big"), 0
+            if edition == 1 and size >= 1 << 23:
+                size, slack = (size - (1 << 23)) * _GRIB_UNIT + 4, _GRIB_UNIT
+            last = data.rfind(b"7777", start + size - slack - 4, start + size)
+            if last < 0:
+                return f"message {count} does not end where its length of {size} bytes says"
+            at = last + 4
+        rest = b"7777" in data[at:]
+    return f"the begin of message {count + 1} is missing or damaged" if rest else ""
+
+
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
     ".stl": _stl, ".gii": _gifti, ".foam": _foam,
     **dict.fromkeys((".glb", ".gltf"), _gltf),
     **dict.fromkeys((".avs", ".inp"), _avs),
+    **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
     **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
     **dict.fromkeys((".mha", ".mhd"), _meta),
     **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),

@@ -11,7 +11,7 @@ import scipy
 from vizlight import _check, _compiled
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
-from vizlight.mesh import blocks, bundles, georeference, normals, sky_rays
+from vizlight.mesh import blocks, bundles, normals, sky_rays
 from vizlight.mesh.height_grids import Grid, elevation_name, heights_of
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
@@ -154,7 +154,6 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
     """Return the height field of a grid of one layer; None where it is none."""
     if not (is_grid(mesh) and isinstance(mesh, Grid) and mesh.dimensions[2] == 1):
         return None
-    mesh = georeference.in_metres(mesh)
     if not isinstance(mesh, pv.StructuredGrid):
         # Without heights such a grid is flat.
         has_heights = elevation is not None or elevation_name(mesh) is not None
@@ -174,10 +173,13 @@ def _of_field(
     report: Callable[[int], None],
 ) -> Sky:
     """Return the sky of a height field."""
-    ground = fields.sky(field.x, field.y, field.z, error=error, progress=report)
+    nodes = field.x, field.y, field.z
+    ground = fields.sky(*nodes, error=error, stretch=field.stretch, progress=report)
     opened = None
     if openness:
-        other = fields.sky(field.x, field.y, field.z, error=error, openness=True, progress=report)
+        other = fields.sky(
+            *nodes, error=error, openness=True, stretch=field.stretch, progress=report
+        )
         # A hole has no horizon: its openness is 0.
         opened = np.nan_to_num(field.to_points(other.share))
     share = field.to_points(ground.share)

@@ -5,7 +5,7 @@ import pytest
 from fields import hills, places, sun
 
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field
+from vizlight.geometry.relief import height_field, shadowing
 
 pytestmark = pytest.mark.usefixtures("each_code")
 
@@ -92,3 +92,18 @@ def test_a_light_on_the_surface():
     t = relief.shadow(x, y, z, depth=0.1, position=light)
     assert t[9, 7] == pytest.approx(1, abs=1e-9)
     assert np.all((t >= 0) & (t <= 1))
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.2])
+@pytest.mark.parametrize("light", [{"direction": sun(25, 70)}, {"position": (4.0, 3.0, 9.0)}])
+def test_rows_of_other_lengths_are_lit_like_a_field_of_their_own(light, depth):
+    """Each row as if all had its length of a unit of x, as degrees of longitude have."""
+    x, y, z = hills(30, 26)
+    stretch = np.linspace(1.2, 0.3, len(y))
+    field = height_field.make(x, y, z, border="extend", stretch=stretch)
+    t = shadowing.ratio(field, height_field.normals(field), depth, **light)
+    key, (along, *others) = next((key, way) for key, way in light.items())
+    for row, length in enumerate(stretch):
+        way = (along * length if key == "position" else along, *others)
+        expected = relief.shadow(length * x, y, z, depth=depth, **{key: way})[row]
+        np.testing.assert_allclose(t[row], expected, atol=1e-10)

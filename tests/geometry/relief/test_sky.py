@@ -206,6 +206,21 @@ def test_unequal_spacing_and_the_number_of_threads():
 
 
 @FAST
+@pytest.mark.parametrize("openness", [False, True])
+def test_rows_of_other_lengths_see_a_field_of_their_own(openness, fast):
+    """Each row as if all had its length of a unit of x, as degrees of longitude have."""
+    x, y, z = np.arange(16.0), np.arange(14.0), rough(16, 0.6)[:14]
+    stretch = np.linspace(0.3, 1.2, len(y))
+    found = sky(x, y, z, error=0.05, stretch=stretch, openness=openness)
+    assert found.error <= 0.05
+    rows = [2, 7, 12]
+    expected = [
+        sky(stretch[row] * x, y, z, error=0.02, openness=openness).share[row] for row in rows
+    ]
+    assert np.quantile(np.abs(found.share[rows] - expected), 0.95) <= found.error + 0.02
+
+
+@FAST
 def test_a_mirrored_field_has_the_mirrored_sky(fast):
     z, x = rough(28, 0.6), np.arange(28.0)
     found = sky(x, x, z, error=0.01).share
@@ -273,6 +288,9 @@ def test_bad_errors(error):
 
 
 def test_bad_fields():
+    for stretch in (1.0, [1.0, -1.0], [1.0, np.nan]):
+        with pytest.raises(ValueError, match="stretch: expected 2 positive numbers"):
+            sky([0, 1], [0, 1], np.zeros((2, 2)), stretch=stretch)
     x = np.arange(3.0)
     with pytest.raises(ValueError, match="z: expected heights, got NaN everywhere"):
         sky(x, x, np.full((3, 3), np.nan))

@@ -57,6 +57,8 @@ class Field:
         Largest height.
     border : {"extend", "wall"}
         Shape of the solid beyond the outermost nodes.
+    stretch : ndarray, shape (ny,)
+        Length of a unit of x in each row.
     """
 
     origin: Array
@@ -66,6 +68,7 @@ class Field:
     edges: tuple[Array, Array]
     top: float
     border: Border
+    stretch: Array
 
     @cached_property
     def corners(self) -> Array:
@@ -108,8 +111,10 @@ class Field:
         return float(max(self.x[-1], self.y[-1], self.top))
 
 
-def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
-    """Return the :class:`Field` of heights over a grid.
+def make(
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border, stretch: ArrayLike | None = None
+) -> Field:
+    """Return the :class:`Field` of heights over a grid; without ``stretch`` it is 1 in all rows.
 
     Raises
     ------
@@ -129,6 +134,10 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
     if not max(*(np.abs(axis).max() for axis in (*axes, np.nan_to_num(wide)))) <= _check.FARTHEST:
         expected = f"a field within {_check.FARTHEST:g} of the origin"
         raise ValueError(_check.message("x, y, z", expected, "one farther away"))
+    lengths = np.ones(shape[0]) if stretch is None else _check.floats("stretch", stretch)
+    if lengths.shape != shape[:1] or not np.all((lengths > 0) & np.isfinite(lengths)):
+        expected = f"{shape[0]} positive numbers, one for each row"
+        raise ValueError(_check.message("stretch", expected, lengths))
     there = ~np.isnan(wide)
     if not there.any():
         raise ValueError(_check.message("z", "heights", "NaN everywhere"))
@@ -151,6 +160,7 @@ def make(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border) -> Field:
         edges=(_edges(axes[0]), _edges(axes[1])),
         top=top,
         border=border,
+        stretch=lengths.astype(np.float64),
     )
 
 
@@ -239,7 +249,8 @@ def normals(field: Field) -> Array:
 
 def slopes(field: Field) -> tuple[Array, Array]:
     """Return the slopes along x and along y at the nodes, shapes (ny, nx); see :func:`normals`."""
-    return _slope(field.heights, field.x), _slope(field.heights.T, field.y).T
+    along = _slope(field.heights, field.x) / field.stretch[:, np.newaxis]
+    return along, _slope(field.heights.T, field.y).T
 
 
 def _slope(heights: Array, nodes: Array) -> Array:

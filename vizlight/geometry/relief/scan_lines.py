@@ -87,13 +87,16 @@ def under(nodes: Array, k: int, side: float) -> int:
 @_compiled.kernel(rounding=_compiled.ROUNDING, seconds=3.0)
 def azimuth(
     z: Array, x: Array, y: Array, p: Array, q: Array, slope: float, grid: tuple[float, float],
-    some: tuple[int, int], near: int, crowd: int, openness: bool, out: Array,
+    some: tuple[int, int], near: int, crowd: int, openness: bool, local: Array, swapped: bool,
+    out: Array,
 ) -> None:  # fmt: skip
     """Write the sky that the nodes between some scan lines see toward an azimuth.
 
     ``z`` is padded by ``near`` nodes; ``p`` and ``q``, the slopes of the ground along columns and
     rows, are not. ``grid`` has the height of scan line 0 at column 0 and the distance of lines,
-    ``crowd`` is the largest number of nodes of a column between two of them.
+    ``crowd`` is the largest number of nodes of a column between two of them. ``local`` has for each
+    row, or with ``swapped`` for each column, the length of a unit along it, that of one along the
+    azimuth, and the change of local azimuths.
     """
     first, spacing = grid
     columns, rows = len(x), len(y)
@@ -152,9 +155,14 @@ def azimuth(
                         # cell here.
                         t = crossed(z, x, y, i, k, slope, m, t, math.inf)
                         right, up = p[k - near, i - near], q[k - near, i - near]
-                        upright = 1 / math.sqrt(1 + right * right + up * up)
                         rise = (right + slope * up) / length
-                        out[k - near, i - near] = seen(t, rise, upright, openness)
+                        at = i - near if swapped else k - near
+                        right, up = (
+                            (right, up / local[0, at]) if swapped else (right / local[0, at], up)
+                        )
+                        upright = 1 / math.sqrt(1 + right * right + up * up)
+                        share = seen(t / local[1, at], rise / local[1, at], upright, openness)
+                        out[k - near, i - near] = share * local[2, at]
                     k -= 1
             # Nodes from the line before up to this one.
             if line > some[0]:

@@ -170,10 +170,11 @@ def shadow(
 
 def toward(
     field: Field, direction: VectorLike | None, position: VectorLike | None
-) -> Callable[[Array], tuple[Array, Array]]:
+) -> Callable[[Array, Array | float], tuple[Array, Array]]:
     """Return a function from starts (3, N) to the unit directions (3, N) and lengths (N,) of rays.
 
-    Starts and lengths are relative to the field's origin. A lamp must not be inside the solid.
+    Starts are relative to the field's origin. A second argument is the length of a unit of x at
+    each start, which directions and lengths heed. A lamp must not be inside the solid.
     """
     if (direction is None) == (position is None):
         got = "neither" if direction is None else "both"
@@ -187,7 +188,7 @@ def toward(
         # The sine of 180 degrees is not 0 in a computer; a ray in a plane of nodes stays there.
         way[np.abs(way) < ROUNDING] = 0
         way /= np.linalg.norm(way)
-        return lambda start: (
+        return lambda start, _: (
             np.repeat(way[:, np.newaxis], start.shape[1], axis=1),
             np.full(start.shape[1], walks.FAR),
         )
@@ -201,8 +202,9 @@ def toward(
         expected = f"a light outside the solid, above {height:.9g} there"
         raise ValueError(_check.message("position", expected, vector, "raise the light"))
 
-    def to_lamp(start: Array) -> tuple[Array, Array]:
+    def to_lamp(start: Array, stretch: Array | float) -> tuple[Array, Array]:
         way = lamp[:, np.newaxis] - start
+        way[0] *= stretch
         size = kernels.length(way)
         # A start at the lamp has no direction, and a ray of length 0.
         unit = way / np.where(size > 0, size, 1)
@@ -223,6 +225,7 @@ def ratio(
 ) -> Array:
     """Return :func:`shadow` for a validated field and its normals.
 
+    Each ray is straight in the frame of its own node, with x as long everywhere as in its row.
     ``report`` takes the number of rays that are done.
     """
     if depth * LEAST_DEPTH > field.size:
@@ -243,11 +246,17 @@ def ratio(
     def work(rows: Slice) -> int:
         numbers = np.arange(rows.start, rows.stop)
         row, column = np.divmod(numbers, shape[1])
-        nodes = np.stack([field.x[column], field.y[row], heights[rows]])
+        stretch = field.stretch[row]
+        start = np.stack([field.x[column], field.y[row], heights[rows]])
         # The source's p' is a depth below the node along its normal; for the limit it is the node.
-        start = nodes if limit else nodes - depth * normals[rows].T
-        way, reach = ways(start)
+        if not limit:
+            below = depth * normals[rows].T
+            below[0] /= stretch
+            start -= below
+        way, reach = ways(start, stretch)
         cosine = np.einsum("ij,ji->i", normals[rows], way)
+        # From here on per unit of length, in the coordinates of the grid.
+        way[0] /= stretch
         leave = np.minimum(around.leave(row, column, start, way), reach)
         # What is vertical never leaves the cells, and meets nothing behind them.
         _follow(field, start + np.where(leave < walks.FAR, leave, 0.0) * way, way,
@@ -257,8 +266,8 @@ def ratio(
             t[rows] = np.where(t[rows] <= least, np.clip(cosine, 0, 1), 0)
             return int(rows.stop)
         with np.errstate(divide="ignore"):
-            below = np.where(cosine > 0, depth / cosine, np.inf)
-        inside = t[rows] + np.minimum(leave, below)
+            plane = np.where(cosine > 0, depth / cosine, np.inf)
+        inside = t[rows] + np.minimum(leave, plane)
         inside[inside >= 0.5 * walks.FAR] = np.inf
         # r of less than d counts as d.
         t[rows] = depth / np.maximum(inside, depth)
@@ -302,7 +311,7 @@ def _lengths(
     field: Field,
     start: Callable[[Slice], Array],
     count: int,
-    ways: Callable[[Array], tuple[Array, Array]],
+    ways: Callable[[Array, float], tuple[Array, Array]],
 ) -> Array:
     """Return the lengths inside the solid of rays; a function of rows gives their starts (3, N)."""
     length = np.empty(count)
@@ -312,7 +321,7 @@ def _lengths(
     def work(rows: Slice) -> int:
         places = start(rows)
         # A slice of an array is a view of it: the block writes into the result.
-        _follow(field, places, *ways(places), length[rows], fast=fast)
+        _follow(field, places, *ways(places, 1.0), length[rows], fast=fast)
         return int(rows.stop)
 
     for _ in _pool.run(work, _pool.blocks(count, BLOCK)):

@@ -82,6 +82,7 @@ def sky(
     *,
     error: float = 0.01,
     openness: bool = False,
+    stretch: ArrayLike | None = None,
     progress: Callable[[int], None] = lambda _: None,
 ) -> SkyShares:
     """Return the share of the sky that the nodes of a height field see.
@@ -99,6 +100,9 @@ def sky(
         Error that 95 of 100 nodes shall keep to, from 0.0001 to 0.5; of the openness in radians.
     openness : bool, default: False
         Whether the mean angle between the zenith and the horizon is returned, in radians.
+    stretch : array_like, shape (ny,), optional
+        Lengths of a unit of x in the rows, as of degrees of longitude: a node sees the field as if
+        the length were that of its own row everywhere. Default: 1.
     progress : callable, optional
         Function of the number of azimuths that are done.
 
@@ -119,7 +123,7 @@ def sky(
     """
     error = _check.number("error", error, low=LEAST, high=LARGEST)
     # With the other border holes would be filled, and so block the sky.
-    field = height_field.make(x, y, np.asarray(z), border="wall")
+    field = height_field.make(x, y, np.asarray(z), border="wall", stretch=stretch)
     if _compiled.active() and _large(field, error):
         # Where compiling fails NumPy finds the horizons, only later.
         with contextlib.suppress(_compiled.FailedError):
@@ -189,23 +193,36 @@ def _ways(count: int, shift: float) -> list[tuple[float, float]]:
     return [(math.cos(turn), math.sin(turn)) for turn in turns]
 
 
-def _seen(t: Array, p: Array, q: Array, way: tuple[float, float], openness: bool) -> Array:
+def _local(stretch: Array, way: tuple[float, float]) -> tuple[Array, Array]:
+    """Return the length of a unit along an azimuth of the grid, and the change of local azimuths.
+
+    Both are those of rows with a stretch: where all are 1, so are these, exactly.
+    """
+    length: Array = np.sqrt(1 + (stretch * stretch - 1) * (way[0] * way[0]))
+    return length, stretch / (length * length)
+
+
+def _seen(
+    t: Array, p: Array, q: Array, stretch: Array, way: tuple[float, float], openness: bool
+) -> Array:
     """Return the sky seen above horizons of slope t from ground of slopes p and q.
 
-    The integral over elevation from the horizon up is closed.
+    The azimuth and t are those of the grid, the slopes those of the ground. The integral over
+    elevation from the horizon up is closed.
     """
+    length, share = _local(stretch, way)
     # The sky ends at the level plane, also where a horizon is lower.
-    t = np.maximum(t, 0.0)
+    t = np.maximum(t / length, 0.0)
     if openness:
-        return np.asarray(np.arctan2(1.0, t))
+        return np.asarray(share * np.arctan2(1.0, t))
     # Slope of the ground along the azimuth: what rises toward it hides the sky below its own plane.
-    rise = p * way[0] + q * way[1]
+    rise = p * (way[0] * stretch / length) + q * (way[1] / length)
     t = np.maximum(t, rise)
     square = 1 / (1 + t * t)
     # Twice the integral of (n . w) cos(e) over elevations e above the horizon, so that the mean of
     # all azimuths is V.
     value = (square - rise * (np.arctan2(1.0, t) - t * square)) / np.sqrt(1 + p * p + q * q)
-    return np.asarray(value)
+    return np.asarray(share * value)
 
 
 class _Horizons:
@@ -272,7 +289,7 @@ class _Horizons:
     def _add(self, total: Array, view: _View, way: tuple[float, float], near: int | None) -> None:
         """Add the sky that all nodes see toward an azimuth."""
         if self.fast and near is not None:
-            view.add(total, self.openness)
+            view.add(total, self.openness, way)
             return
         heights = self.field.heights
         if self.fast or not self.even:
@@ -289,11 +306,14 @@ class _Horizons:
             least = MISSED * self.error
             # The openness changes with the slope itself, the share with its square.
             least *= least if self.openness else 1.0
+            # A slope of the grid is a steeper one where x is shorter.
+            least *= min(float(self.field.stretch.min()), 1.0) ** 2
             view.oriented(horizons)[:] = crossings.sweep(view.z, widths, view.slope, columns, least)
             if near is not None:
                 start = near * widths[0] * math.hypot(1.0, view.slope)
                 np.fmax(horizons, _by_steps(self.field, way, start), out=horizons)
-        total += _seen(horizons, *self.slopes, way, self.openness)
+        stretch = self.field.stretch[:, np.newaxis]
+        total += _seen(horizons, *self.slopes, stretch, way, self.openness)
 
     def spread(self, count: int) -> Array:
         """Return estimates of the errors at the random nodes that a number of azimuths makes.
@@ -314,12 +334,13 @@ class _Horizons:
     def _samples(self, count: int, shift: float) -> Array:
         if (count, shift) not in self.sampled:
             view, total = _View(self.field, self.slopes, 0), np.zeros(len(self.some[0]))
-            rises = [slope[self.some] for slope in self.slopes]
+            right, up = (slope[self.some] for slope in self.slopes)
+            stretch = self.field.stretch[self.some[0]]
             # NumPy follows the rays of all azimuths at once that see the field turned alike.
             for _, alike in itertools.groupby(_ways(count, shift), view.turn_of):
                 ways = list(alike)
                 for way, t in zip(ways, self._horizons(view, ways), strict=True):
-                    total += _seen(t, rises[0], rises[1], way, self.openness)
+                    total += _seen(t, right, up, stretch, way, self.openness)
             self.sampled[count, shift] = total / count
         return self.sampled[count, shift]
 
@@ -370,7 +391,9 @@ class _View:
     """
 
     def __init__(self, field: height_field.Field, slopes: tuple[Array, Array], near: int) -> None:
-        self.field, self.slopes, self.near = field, slopes, near
+        self.field, self.near = field, near
+        # Along the grid, as the azimuth is.
+        self.slopes = slopes[0] * field.stretch[:, np.newaxis], slopes[1]
         self.turn: tuple[bool, int, int] | None = None
 
     def turn_of(self, way: tuple[float, float]) -> tuple[bool, int, int]:
@@ -407,8 +430,12 @@ class _View:
         turned = values[::up, ::right]
         return turned.T if swap else turned
 
-    def add(self, total: Array, openness: bool) -> None:
+    def add(self, total: Array, openness: bool, way: tuple[float, float]) -> None:
         """Add the sky that all nodes see toward the azimuth, by compiled code."""
+        assert self.turn is not None
+        swap, _, up = self.turn
+        stretch = self.field.stretch[::up]
+        local = np.stack([stretch, *_local(stretch, way)])
         rows, mean = len(self.y), self.y[-1] / (len(self.y) - 1)
         # Scan lines are parallel to the azimuth, a mean row apart: from below the last node of the
         # first row to above the first one of the last.
@@ -423,7 +450,8 @@ class _View:
         def work(lines: Slice) -> int:
             scan_lines.azimuth(
                 self.z, self.x, self.y, self.p, self.q, self.slope, (first, mean),
-                (int(lines.start), int(lines.stop)), self.near, crowd, openness, part,
+                (int(lines.start), int(lines.stop)), self.near, crowd, openness,
+                local, swap, part,
             )  # fmt: skip
             return int(lines.stop)
 
