@@ -62,8 +62,10 @@ def run(total, seed, folder, say, suffixes=SUFFIXES):
     mesh = pv.Plane(i_resolution=SIDE, j_resolution=SIDE)
     mesh.save(folder / "plane.vtp")
     counts, news, waits = Counter(), {}, {}
+    (folder / "new").mkdir()
     for suffix in suffixes:
-        out = folder / f"new.{suffix}"
+        # The titles of pages have the names of their files.
+        out = folder / "new" / f"a.{suffix}"
         start = time.monotonic()
         code, error = light(folder / "plane.vtp", out)
         if code:

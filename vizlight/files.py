@@ -79,8 +79,8 @@ FORMATS: dict[str, tuple[str, ...]] = {
 }
 #: Ends of names of files that have points for each face, or for each colour.
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
-#: Indices of pieces of one mesh, whose cells name their points.
-PIECES = (".pvtp", ".pvtu")
+#: Indices of pieces of one mesh, whose cells name their points, and of pieces of one grid.
+PIECES, GRID_PIECES = (".pvtp", ".pvtu"), (".pvti", ".pvtr", ".pvts")
 #: Ends of names of files in which y is up.
 Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 #: Names of the blocks of Exodus: those of elements, and of what is chosen among them.
@@ -263,19 +263,20 @@ def _read(
     # A file that is cut short may end the process inside its reader, and is refused before that.
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
+    # VTK ends the process where a piece of a grid has an error.
+    for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
+        _read(piece, None, (), whole=True)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
     # Damaged numbers overflow in readers, which say what is wrong beside that.
     with reading, captured_errors() as errors, np.errstate(all="ignore"):
         try:
             data: Foreign = _found(path, time, at, nodata)
-            for block in blocks.all_blocks(data):
-                # Before blocks are joined, since joining reads their cells.
-                _check_block(block, path)
-            several = isinstance(data, pv.MultiBlock) and not whole
-            for part in blocks.by_dimension(data) if several else [data]:
-                meshes.append(_whole(part, path.suffix.lower(), overlays, time, notes))
-                overlays = []
+            if _faults(errors):
+                # Its cells may end the process.
+                meshes = [block for block in blocks.all_blocks(data) if block.n_points]
+            else:
+                meshes = _meshes(data, path, overlays, time, notes, whole=whole)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
@@ -284,10 +285,8 @@ def _read(
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
-    # A directive that VTK does not know costs a field of an OpenFOAM case, and not the case.
     unread = [match for match in map(_DIRECTIVE.search, errors) if match]
-    harmless = _DIRECTIVE.search, _HARMLESS.search
-    errors = [error for error in errors if not any(search(error) for search in harmless)]
+    errors = _faults(errors)
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
         got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)
@@ -305,6 +304,35 @@ def _read(
     if notes:
         _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
     return meshes
+
+
+def _meshes(
+    data: Foreign,
+    path: Path,
+    overlays: Sequence[Path],
+    time: object,
+    notes: list[str],
+    *,
+    whole: bool,
+) -> list[Foreign]:
+    """Return the meshes of the contents of a file, whose blocks are checked."""
+    for block in blocks.all_blocks(data):
+        # Before blocks are joined, since joining reads their cells.
+        _check_block(block, path)
+    several = isinstance(data, pv.MultiBlock) and not whole
+    return [
+        _whole(part, path.suffix.lower(), () if i else overlays, time, notes)
+        for i, part in enumerate(blocks.by_dimension(data) if several else [data])
+    ]
+
+
+def _faults(errors: list[str]) -> list[str]:
+    """Return the messages of VTK for which a file is refused.
+
+    A directive that VTK does not know costs a field of an OpenFOAM case, and not the case.
+    """
+    harmless = _DIRECTIVE.search, _HARMLESS.search
+    return [error for error in errors if not any(search(error) for search in harmless)]
 
 
 def _check_selection(time: object, at: object) -> None:

@@ -94,6 +94,13 @@ translation 6 0 0 children [ {TETRAHEDRON} ] }} description "# {{" }} ] bboxSize
         (0, 1),
     ),
     "size": ("Shape { geometry Box { } }", (-1, 1)),
+    "commas": (TETRAHEDRON.replace("1 0 0", "1,# {\n0 ,0"), (0, 1)),
+    "base 16": (
+        TETRAHEDRON.replace(
+            "{", "{ appearance Appearance { texture PixelTexture { image 1 2 3 0xFF 0x00ff00 } }", 1
+        ),
+        (0, 1),
+    ),
     "prototypes": (
         f"""PROTO A [ field SFVec3f at 5 0 0 eventIn SFBool b ] {{ Transform {{
 translation IS at set_b IS b children [ {TETRAHEDRON} ] }} Script {{ }} }}
@@ -123,9 +130,17 @@ def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
             for a, b in itertools.pairwise("ABCD")
         )
         + "D { }": "its nodes are used too often",
+        TETRAHEDRON.replace("point [", "point "): "its brackets do not close",
+        TETRAHEDRON.replace("coordIndex [", "coordIndex {"): "its brackets do not close",
+        TETRAHEDRON[:-1]: "its brackets do not close",
+        TETRAHEDRON.replace("point", "DEF point"): "Coordinate has no point",
+        TETRAHEDRON.replace("1 0 0", "1 0"): "Coordinate has no point of three numbers a row",
+        TETRAHEDRON.replace("1 2 3", "1 x 3"): "'x' stands after '0 2 1 -1",
+        TETRAHEDRON.replace("coordI", "normalI"): "a normalIndex and no coordIndex",
+        f"Transform {{ scale 1 2 children [ {TETRAHEDRON} ] }}": "scale has 2 numbers",
     }.items(),
 )
-def test_prototypes_without_an_end(text, words, tmp_path):
+def test_scenes_that_end_the_process_in_vtk_are_refused(text, words, tmp_path):
     with pytest.raises(vizlight.files.FileError, match=words):
         vizlight.read(written(tmp_path, text))
 

@@ -99,7 +99,9 @@ def xml(count, folder):
     return (folder / "whole.vtp").read_bytes().replace(b'Points="3"', b'Points="%d"' % count)
 
 
+BMP = struct.pack("<2sI4xIIiiHHI20x", b"BM", 70, 54, 40, 2, 2, 1, 24, 0) + bytes(range(16))
 WHOLE = {
+    "a.bmp": BMP,
     "a.nrrd": NRRD,
     "a.mha": META,
     "a.png": png(),
@@ -126,14 +128,18 @@ WRONG = {
     "sum": ("a.png", png().replace(b"IHDR\0\0\0\2", b"IHDRdddd"), "check sum"),
     "cut": ("a.png", png()[:-9], "check sum|requires a buffer"),
     "no size": ("a.pnm", b"P5\n# a comment", "width and height"),
+    "wide": ("a.bmp", BMP.replace(b"\2\0\0\0\2", b"\2\0\0\7\2"), r"70 of \d{9} bytes"),
+    "no width": ("a.bmp", BMP.replace(b"\2\0\0\0\2", b"\0\0\0\0\2"), "0 pixels wide"),
     "column": ("a.pdb", ATOM.replace(b"   0.000   0.500", b"   0.00    0.500"), "no numbers in"),
+    "short atom": ("a.pdb", ATOM[:53], "no numbers in the columns"),
     "helix": ("a.pdb", ATOM + HELIX.replace(b"86", b"xx"), "no numbers in"),
     "nodes": ("a.dat", TECPLOT.replace(b"N=3", b"N=300"), "of 903 numbers"),
     "negative": ("a.tec", TECPLOT.replace(b"E=1", b"E=-5"), "negative"),
     "no zone": ("a.dat", TECPLOT[:9], "no VARIABLES and ZONE"),
-    "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "the ends of 1 of its blocks"),
+    "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "do not end as they begin"),
     "short": ("a.vtk", FIELD.replace(b"a 1 4", b"a 3 4"), "4 of 12 numbers"),
     "word": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 \xb5 3 4\n"), "words stand among"),
+    "kind": ("a.vtk", FIELD.replace(b"4 float\n1", b"4 5\n1"), "a field has the type '5'"),
     "huge cell": ("a.vtk", cells(3, 0, 1, 2, 99999999, 1, 2, 3), "corners of 2 cells are not 8"),
     "binary cell": ("a.vtk", cells(3, 0, 1, 2, -7, 1, 2, 3, text=False), "corners of 2 cells"),
     "version": ("a.vtk", cells(3, 0, 1, 2).replace(b" 4.2", b""), "corners of 2 cells are not 4"),
@@ -165,6 +171,7 @@ WRONG = {
     "columns": ("a.pdb", ATOM.replace(b"   1  ", b"1" + b"0" * 30), "no numbers in the columns"),
     "twice said": ("a.case", b"FORMAT\ntype: x\n" + CASE, "the section FORMAT stands twice"),
     "section": ("a.case", CASE[:52], "no such section as b'VARI'"),
+    "variable": ("a.case", CASE.replace(b"per node", b"per \0"), "no such variable as"),
     "missing": ("a.case", CASE.replace(b"a.geo", b"b.geo"), "'b.geo', which is missing"),
     "part": ("a.case", CASE, "the part b'7', which the geometry has not"),
 }
@@ -235,6 +242,26 @@ def test_pieces_cover_the_whole(tmp_path, suffix, binary):
         path.write_bytes(re.sub(rb'WholeExtent="0', b'WholeExtent="' + number, whole, count=1))
         with pytest.raises(FileError, match=reason):
             vizlight.read(path)
+
+
+def test_damaged_pieces_of_grids(tmp_path):
+    GRIDS["vtr"].save(tmp_path / "a.vtr")
+    head = '<VTKFile type="PRectilinearGrid"><PRectilinearGrid WholeExtent="0 3 0 2 0 4">'
+    pieces = '<PCoordinates>{0}{0}{0}</PCoordinates><Piece Extent="0 3 0 2 0 4" Source="a.vtr"/>'
+    pieces = pieces.format('<PDataArray type="Float64"/>')
+    (tmp_path / "a.pvtr").write_text(f"{head}{pieces}</PRectilinearGrid></VTKFile>")
+    assert vizlight.read(tmp_path / "a.pvtr").n_points == 60
+    whole = (tmp_path / "a.vtr").read_bytes()
+    (tmp_path / "a.vtr").write_bytes(whole.replace(b"LittleEndian", b"BigEndian"))
+    with pytest.raises(FileError, match=r"a\.vtr' .*Error reading compression header"):
+        vizlight.read(tmp_path / "a.pvtr")
+
+
+@pytest.mark.filterwarnings("default:.*may be cut")
+def test_a_file_of_atoms_that_ends_within_a_line(tmp_path):
+    (tmp_path / "a.pdb").write_bytes(ATOM + ATOM.replace(b"0.500", b"0.900")[:62])
+    with pytest.warns(UserWarning, match="may be cut in its last line"):
+        vizlight.read(tmp_path / "a.pdb")
 
 
 def test_places_beyond_the_largest(tmp_path):

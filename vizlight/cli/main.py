@@ -65,7 +65,7 @@ def _with_command(words: list[str]) -> list[str]:
 def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
     # The error of reading repeats VTK's words.
     if category.__name__ != "VTKExecutionWarning":
-        complain(message)
+        complain(" ".join(str(message).split()))
 
 
 def _fail(error: object) -> int:

@@ -125,6 +125,8 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
     faces, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+    # No area is beyond the largest number, and no direction depends on lengths.
+    corners = corners / (np.abs(corners).max() or 1.0)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(normals, axis=1)
     total = normals.sum(axis=0)
@@ -250,6 +252,8 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     _, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+    # No area is beyond the largest number, and no direction depends on lengths.
+    corners = corners / (np.abs(corners).max() or 1.0)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
     return _around(corners, normals, np.linalg.norm(normals, axis=1), ways)

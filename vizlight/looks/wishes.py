@@ -181,7 +181,7 @@ class Wishes:
             ends = zip(fixed.GetPosition(), fixed.GetFocalPoint(), strict=True)
             toward = tuple(a - b for a, b in ends)
         elif self.view is not None:
-            toward = direction(self.view)
+            toward = direction(self.view, n=None)
         if len(toward) not in (3, n):
             expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
             raise ValueError(message("view", expected, repr(toward)))
@@ -329,8 +329,8 @@ class Wishes:
         return factor, words if factor != 1 else ""
 
 
-def direction(view: object) -> Vector:
-    """Return the direction toward the eye of a view: a name, or three numbers.
+def direction(view: object, *, n: int | None = 3) -> Vector:
+    """Return the direction toward the eye of a view: a name, or n numbers.
 
     Raises
     ------
@@ -342,7 +342,7 @@ def direction(view: object) -> Vector:
             expected = f"a direction (x, y, z), a camera, or one of {', '.join(map(repr, VIEWS))}"
             raise ValueError(message("view", expected, repr(view)))
         return VIEWS[view]
-    return _check.vector("view", view, direction=True)
+    return _check.vector("view", view, direction=True, n=n)
 
 
 def _given(**values: object) -> Keywords:

@@ -15,17 +15,20 @@ import pyvista as pv
 from vizlight import _check
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterator, Mapping, Sequence
+    from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
     from vizlight._types import Array, Foreign, Raw
 
 SUFFIXES = (".wrl", ".vrml", ".3ds")
 #: VTK's parser of VRML keeps its state in variables of the process.
 _LOCK = threading.Lock()
-#: Words, runs of numbers, texts, brackets and comments of VRML 2.
+#: Texts of VRML 2, and commas and comments, which stand for a gap: VTK takes few commas.
+_GAP = re.compile(r'("(?:\\.|[^"\\])*")|,|#[^\n]*')
+#: Texts, brackets, runs of numbers, some in base 16, and words.
 _TOKENS = re.compile(
-    r'#[^\n]*|"(?:\\.|[^"\\])*"|[\[\]{}]'
-    r'|[-+.\d][-+.\d\s,]*(?:(?<=[.\d])[eE][-+\d][-+.\d\s,]*)*|[^\s,\[\]{}"#]+'
+    r'"(?:\\.|[^"\\])*"|[\[\]{}]'
+    r"|[-+.\d][-+.\d\s]*(?:(?:(?<=[.\d])[eE][-+\d]|(?<=0)[xX][\da-fA-F]+)[-+.\d\s]*)*"
+    r'|[^\s\[\]{}"]+'
 )
 #: Most tokens of a scene whose nodes that are used again are written out, and of a use of a
 #: prototype.
@@ -46,6 +49,8 @@ _LEFT_OUT = {"center", "scaleOrientation"}
 _GROUPS = ("Anchor", "Billboard", "Collision", "Group", "LOD", "Switch")
 #: Fields with what is in nodes.
 _CHILDREN = ("children", "level", "choice")
+#: Fields of three numbers for each row, which VTK takes as they come, by the node that has them.
+_TRIPLES = {"Coordinate": "point", "Normal": "vector", "Color": "color"}
 #: Places of a shape by which its transforms are told.
 _ORIGIN, _AXES = np.zeros(3), np.eye(3)
 
@@ -208,23 +213,38 @@ def _instances(words: list[str], prototypes: dict[str, _Prototype]) -> Iterator[
 _ACCESS = ("eventIn", "eventOut", "exposedField", "field")
 
 
+#: Brackets that close, each with the one that it closes.
+_OPENING = {"]": "[", "}": "{"}
+
+
+def _depths(words: Iterable[str]) -> Iterator[int]:
+    """Yield the number of brackets around each token; a bracket is not around itself.
+
+    VTK ends the process where they do not fit.
+    """
+    stack: list[str] = []
+    for word in words:
+        if word in _OPENING and [_OPENING[word]] != stack[-1:]:
+            raise ValueError("its brackets do not close")
+        if word in _OPENING:
+            stack.pop()
+        yield len(stack)
+        if word in _OPENING.values():
+            stack.append(word)
+    if stack:
+        raise ValueError("its brackets do not close")
+
+
 def _closing(words: Sequence[str], begin: int) -> int:
     """Return the number of the token after the next group in brackets."""
-    depth = 0
-    for i in range(begin, len(words)):
-        depth += (words[i] in ("[", "{")) - (words[i] in ("]", "}"))
-        if words[i] in ("]", "}") and depth <= 0:
-            return i + 1
-    raise ValueError("its brackets do not close")
+    depths = _depths(words[i] for i in range(begin, len(words)))
+    ends = (i + 1 for i, depth in enumerate(depths, begin) if not depth and words[i] in _OPENING)
+    return next(ends, len(words))
 
 
 def _parted(words: list[str], names: Container[str]) -> Iterator[tuple[str, list[str]]]:
     """Yield each name that is in no brackets, with the tokens up to the next one."""
-    depth, starts = 0, []
-    for i, word in enumerate(words):
-        if not depth and word in names:
-            starts.append(i)
-        depth += (word in ("[", "{")) - (word in ("]", "}"))
+    starts = [i for i, depth in enumerate(_depths(words)) if not depth and words[i] in names]
     for start, end in itertools.pairwise([*starts, len(words)]):
         yield words[start], words[start + 1 : end]
 
@@ -252,7 +272,7 @@ def _written_out(text: str) -> list[str]:
     names: dict[str, list[str]] = {}
     # Brackets that are open: the name of what they hold, and where it begins.
     stack: list[tuple[str, int]] = []
-    every = [word for word in _TOKENS.findall(text) if word[0] != "#"]
+    every = _TOKENS.findall(_GAP.sub(r"\1 ", text))
     named, words = ("", 0), _instances(every, {})
     for word in words:
         if word == "DEF":
@@ -303,23 +323,38 @@ class _Node(NamedTuple):
 def _nodes(tokens: Sequence[str]) -> Iterator[_Node]:
     """Yield the Transforms, the Shapes and groups, the inner ones first."""
     stack: list[_Node] = []
-    for i, word in enumerate(tokens):
-        if word and word in "[{":
+    for i, (word, _) in enumerate(zip(tokens, _depths(tokens), strict=True)):
+        if word in _OPENING.values():
             before = tokens[i - 1] if word == "{" and i else ""
             stack.append(_Node(before, i - 1, 0, {}, []))
-        elif word and word in "]}" and stack:
+            # After the bracket stands the token for sizes, and around the numbers others may.
+            numbers = " ".join(tokens[i + 3 : i + 5]).strip("[{ }]").split()
+            if before in _TRIPLES and (tokens[i + 2] != _TRIPLES[before] or len(numbers) % 3):
+                raise ValueError(f"{before} has no {_TRIPLES[before]} of three numbers a row")
+        elif word in _OPENING:
             closed = stack.pop()
+            inside = tokens[closed.begin : i] if closed.name == "IndexedFaceSet" else ()
+            if "normalIndex" in inside and "coordIndex" not in inside:
+                raise ValueError("IndexedFaceSet has a normalIndex and no coordIndex")
             if closed.name in ("Shape", "Transform", *_GROUPS):
                 yield closed._replace(end=i)
             if stack and len(stack[-1].children) == 1:
                 stack[-1].children.append(i)
+        elif stack and tokens[stack[-1].begin + 1] == "[" and _mixed(tokens[i - 1], word):
+            raise ValueError(f"{word[:20]!r} stands after {tokens[i - 1][:20]!r} in a list")
         elif stack and word in _FIELDS:
-            values = tokens[i + 1].replace(",", " ").split()
-            # A PROTO may set it.
-            if len(values) == len(_FIELDS[word]):
-                stack[-1].fields[word] = i, [float(value) for value in values]
+            values = tokens[i + 1].split()
+            if len(values) != len(_FIELDS[word]):
+                raise ValueError(f"{word} has {len(values)} numbers")
+            stack[-1].fields[word] = i, [float(value) for value in values]
         elif stack and word in _CHILDREN:
             stack[-1].children[:] = [i]
+
+
+def _mixed(before: str, word: str) -> bool:
+    """Return whether one of two tokens is numbers and the other a word, not a bracket."""
+    numbers = [token[:1] in "+-.0123456789" for token in (before, word)]
+    return before not in ("[", *_OPENING) and numbers[0] != numbers[1]
 
 
 def _plain(tokens: Sequence[str], nodes: Sequence[_Node], place: Array) -> str:
@@ -335,7 +370,7 @@ def _plain(tokens: Sequence[str], nodes: Sequence[_Node], place: Array) -> str:
             words[node.end] += " ] }"
         if node.name in _GROUPS:
             words[node.begin] = "Transform"
-            first, last = _kept(words, node)
+            first, last = _kept(tokens, node)
             for i in (*range(node.begin + 2, first), *range(last + 1, node.end)):
                 words[i] = ""
             words[node.begin + 2] = "children [" + words[node.begin + 2]
@@ -360,25 +395,22 @@ def _plain(tokens: Sequence[str], nodes: Sequence[_Node], place: Array) -> str:
     return "#VRML V2.0 utf8\n" + "\n".join(words)
 
 
-def _kept(words: Sequence[str], node: _Node) -> tuple[int, int]:
-    """Return the first and the last word that count of what is in a group."""
+def _kept(tokens: Sequence[str], node: _Node) -> tuple[int, int]:
+    """Return the first and the last token that count of what is in a group."""
     if len(node.children) < 2:
         return node.end, node.end - 1
     first, last = node.children
-    if words[first + 1] != "[":
+    if tokens[first + 1] != "[":
         return first + 1, last
     first, last = first + 2, last - 1
     number = {"LOD": 0, "Switch": -1}.get(node.name)
     if number is None:
         return first, last
-    if "whichChoice" in words[node.begin : node.end]:
-        number = int(words[words.index("whichChoice", node.begin) + 1])
-    depth, ends = 0, [first]
-    for i in range(first, last + 1):
-        brackets = [word.strip() for word in words[i].split()]
-        depth += sum((word in ("[", "{")) - (word in ("]", "}")) for word in brackets)
-        if "}" in brackets and not depth:
-            ends.append(i + 1)
+    if "whichChoice" in tokens[node.begin : node.end]:
+        number = int(tokens[tokens.index("whichChoice", node.begin) + 1])
+    inside = tokens[first : last + 1]
+    depths = enumerate(_depths(inside), first)
+    ends = [first, *(i + 1 for i, depth in depths if tokens[i] == "}" and not depth)]
     if not 0 <= number < len(ends) - 1:
         return node.end, node.end - 1
     return ends[number], ends[number + 1] - 1

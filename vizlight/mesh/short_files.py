@@ -271,6 +271,19 @@ def _png(file: BinaryIO) -> str:
     return ""
 
 
+def _bmp(file: BinaryIO) -> str:
+    """Compare a picture with its width and height, of which VTK's reader makes room."""
+    if file.read(2) != b"BM":
+        return ""  # VTK's reader says so
+    start, length, width, height, bits = struct.unpack("<8xIIii2xH", file.read(28))
+    if length < 40:
+        return ""  # of the oldest kind, with sizes of 2 bytes
+    if width < 1:
+        return f"it is {width} pixels wide"
+    # Rows are filled up to 4 bytes.
+    return _size(file, start + (width * bits + 31) // 32 * 4 * abs(height))
+
+
 def _pnm(file: BinaryIO) -> str:
     """Compare a picture with its width and height."""
     head = file.read(_HEAD)
@@ -348,12 +361,14 @@ def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: b
 def _pdb(file: BinaryIO) -> str:
     """Check the columns of numbers of molecules, whose places are fixed."""
     whole, place = re.compile(rb"\s*[+-]?\d"), re.compile(rb"\s*[+-]?\d+\.?\d*")
+    line = b""
     for line in file:
         if line.startswith((b"ATOM", b"HETATM")):
             places = [line[at : at + 8] for at in (30, 38, 46)]
             good = line[:54].isascii() and all(map(place.fullmatch, places))
-            # Lines have 80 columns by the format.
-            good = good and whole.match(line[22:26]) is not None and len(line.rstrip()) <= 80
+            # Lines have 80 columns by the format, the last three of places end in the 54th.
+            good = good and whole.match(line[22:26]) is not None
+            good = good and 54 <= len(line.rstrip()) <= 80
         elif line.startswith((b"HELIX", b"SHEET")):
             start = 21 if line.startswith(b"HELIX") else 22
             good = all(map(whole.match, (line[start : start + 4], line[33:37])))
@@ -361,6 +376,7 @@ def _pdb(file: BinaryIO) -> str:
             continue
         if not good:
             return f"no numbers in the columns of the line {line[:60]!r}"
+    warn_of_last_line(Path(file.name), line)
     return ""
 
 
@@ -401,10 +417,12 @@ _CORNERS_OF_OBJ = ((b"v", "point"), (b"vt", "texture coordinate"), (b"vn", "norm
 
 
 def _mdpa(file: BinaryIO) -> str:
-    """Count the ends of blocks."""
-    words = re.findall(rb"(?m)^[ \t]*(Begin|End)\b", file.read())
-    lacking = words.count(b"Begin") - words.count(b"End")
-    return f"the ends of {lacking} of its blocks are missing" if lacking else ""
+    """Compare the ends of blocks with their begins; meshio goes on past the end of the file."""
+    blocks: dict[bytes, list[bytes]] = {b"Begin": [], b"End": []}
+    for word, name in re.findall(rb"(?m)^[ \t]*(Begin|End)[ \t]+(\w+)", file.read()):
+        blocks[word].append(name)
+    differ = sorted(blocks[b"Begin"]) != sorted(blocks[b"End"])
+    return "its blocks do not end as they begin" if differ else ""
 
 
 #: Words of an EnSight case that stand alone in a line.
@@ -412,6 +430,13 @@ _SECTIONS = (
     b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
     b"SCRIPTS",
 )  # fmt: skip
+
+
+#: Kinds of variables of EnSight.
+_KIND = re.compile(
+    rb"(?i)\s*(constant\s+per\s+case(\s+file)?"
+    rb"|(complex\s+)?(scalar|vector|tensor(\s+a?symm?)?)\s+per\s+(measured\s+)?(node|element))\s*"
+)
 
 
 def _ensight(file: BinaryIO) -> str:
@@ -428,6 +453,8 @@ def _ensight(file: BinaryIO) -> str:
             sections.add(section)
         elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
             return f"no such section as {line[:40]!r}"
+        elif section == b"VARIABLE" and colon and not _KIND.fullmatch(head):
+            return f"no such variable as {line[:40]!r}"
         elif words and section in (b"GEOMETRY", b"VARIABLE"):
             # Stars stand for the digits of a step; numbers without a file, and pairs of files.
             if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
@@ -634,8 +661,10 @@ def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
         if array is None:
             return "an array of a field is missing"
         count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
-        if "string" in kind or kind in ("bit", "long", "unsigned_long"):
+        if "string" in kind or kind in ("bit", "long", "unsigned_long", "variant"):
             return ""
+        if not any(part in kind for part in _BYTES):
+            return f"an array of a field has the type {kind!r}"
         if is_text:
             word = _WORD.search(data, at)
             end = len(data) if word is None else word.start()
@@ -690,7 +719,7 @@ def _grib(file: BinaryIO) -> str:
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
-    ".stl": _stl, ".gii": _gifti, ".foam": _foam,
+    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp,
     **dict.fromkeys((".glb", ".gltf"), _gltf),
     **dict.fromkeys((".avs", ".inp"), _avs),
     **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
