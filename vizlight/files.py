@@ -375,9 +375,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     size = dimensions(mesh)
     if min(size, default=1) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {size}")
-    low, high = np.reshape(mesh.bounds, (3, 2)).T
-    # Points that are not finite have no bounds: the lower one is then above the upper one.
-    if np.any((low <= high) & (np.maximum(-low, high) > _check.FARTHEST)):
+    if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
     odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]

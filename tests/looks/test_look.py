@@ -203,6 +203,7 @@ def test_options_win_over_the_rule():
     ("mesh", "options", "error", "words"),
     [
         (pv.PolyData(), {}, ValueError, "data: expected a mesh with points"),
+        (pv.PolyData([[0.0, 0, 1e150]]), {}, ValueError, r"data: expected points within 1e\+100"),
         (3, {}, TypeError, "data: expected a PyVista mesh"),
         ("none.vtp", {}, FileError, "no such file"),
         (ball(p=lambda x, y, z: x), {"array": "q"}, ValueError, "array: expected the name of an"),

@@ -540,6 +540,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:
         raise ValueError(message("data", "a mesh with points", "none"))
+    if blocks.is_too_far(mesh):
+        expected = f"points within {_check.FARTHEST:g} of the origin"
+        raise ValueError(message("data", expected, str(mesh.bounds), "scale the mesh"))
     if not mesh.n_cells and not isinstance(mesh, pv.PolyData):
         # VTK draws points that are cells.
         step = Step("points", ".cast_to_poly_points", step)

@@ -293,3 +293,10 @@ def polydata(points: Array, cells: Indices) -> pv.PolyData:
 def cell_array(ids: Indices, ends: Indices) -> pv.CellArray:
     """Return cells, given their corners, one cell after the other, and where each begins."""
     return pv.CellArray.from_arrays(np.asarray(ends, dtype=int), np.asarray(ids, dtype=int))
+
+
+def is_too_far(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh has a coordinate beyond the largest."""
+    low, high = np.reshape(mesh.bounds, (3, 2)).T
+    # Points that are not finite have no bounds: the lower one is then above the upper one.
+    return bool(np.any((low <= high) & (np.maximum(-low, high) > _check.FARTHEST)))
