@@ -132,6 +132,17 @@ def warn_of_edges(share: float, splits: bool) -> None:
 
 def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
     """Warn if float32 points so far from the origin are rounded that computed normals suffer."""
+    worst = _rounding(meshes)
+    if worst > ROUNDED:
+        _check.warn(
+            f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
+            "of the spacing between them, and normals computed from them are off by as much; "
+            "subtract an origin from them before they become float32, or keep them in float64"
+        )
+
+
+def _rounding(meshes: Sequence[pv.DataSet]) -> float:
+    """Return the largest rounding of float32 points, as a share of the spacing between them."""
     float32 = [
         mesh
         for mesh in meshes
@@ -149,13 +160,7 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
     # Distance of neighbouring float32 numbers there, against the mean spacing of points on a
     # surface.
     spacing = side / np.sqrt([n_points(mesh) for mesh in float32])
-    worst = float(np.max(np.spacing(far.astype(np.float32)) / spacing, initial=0.0))
-    if worst > ROUNDED:
-        _check.warn(
-            f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
-            "of the spacing between them, and normals computed from them are off by as much; "
-            "subtract an origin from them before they become float32, or keep them in float64"
-        )
+    return float(np.max(np.spacing(far.astype(np.float32)) / spacing, initial=0.0))
 
 
 def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: FeatureAngle) -> None:
@@ -179,8 +184,10 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: Fe
                 "mesh.point_data.active_normals_name = None"
             )
             return
-        # On a coarse mesh of a smooth shape they lean too, but no edge of it is a crease.
-        if leaning > MANY_SHARP and not isinstance(angle, float | int):
+        # On a coarse mesh of a smooth shape they lean too, but no edge of it is a crease; the faces
+        # of points that are rounded are none of theirs.
+        split = isinstance(angle, float | int)
+        if leaning > MANY_SHARP and not split and _rounding([mesh]) <= ROUNDED:
             sharp = max(sharp, creases(mesh, has_normals=True))
     if sharp > MANY_SHARP:
         _check.warn(
