@@ -9,6 +9,9 @@ cos-theta shadows. The single number t contains the direct light, the shadow on 
 light that passes through thin parts.
 """
 
+import matplotlib.pyplot as plt
+import numpy as np
+
 import vizlight
 from vizlight import Light, Material, Scene, render
 
@@ -36,3 +39,30 @@ plotter = render.make_plotter(
     background="black",
 )
 plotter.show()
+
+# %%
+# Left: t itself, one number from 0 to 1, on the last relief. Right: how it is made. From the point
+# p' a depth d below the surface the way to the lamp is inside the solid for two lengths, r1 below
+# the surface itself and r2 through another part; t is d / (r1 + r2).
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.6), width_ratios=(1, 1.2))
+columns, rows = relief.dimensions[:2]
+image = left.imshow(lit["t"].reshape(rows, columns), origin="lower", cmap="gray", vmin=0, vmax=1)
+left.set_axis_off()
+figure.colorbar(image, ax=left, label="t", shrink=0.75)
+x = np.linspace(0, 10, 501)
+z = np.interp(x, [0, 3.5, 5, 6, 6.5, 7.5, 8, 10], [2, 2, 0.5, 0.5, 3.4, 3.4, 0.5, 0.5])
+surface, start, lamp = np.array([2.2, 2.0]), np.array([2.2, 1.4]), np.array([9.5, 4.3])
+right.fill_between(x, z, color="0.85")
+along = np.linspace(start, lamp, 2001)
+inside = along[:, 1] < np.interp(along[:, 0], x, z)
+length = np.hypot(*(lamp - start)) * np.mean(inside)
+right.plot(*along.T, color="0.6", lw=1)
+for part, name in ((along[:, 0] < 5, "r1"), (along[:, 0] >= 5, "r2")):
+    piece = along[inside & part]
+    right.plot(*piece.T, color="tab:orange", lw=3)
+    right.annotate(name, np.add(piece.mean(axis=0), (0.1, -0.5)))
+right.plot(*np.transpose([surface, start]), "k:", *start, "k.", *lamp, "y*", ms=9)
+right.annotate("p'", np.add(start, (-0.5, -0.15)))
+right.set(title=f"t = d / (r1 + r2) = {0.6 / length:.2f}", aspect="equal", xticks=[], yticks=[])
+plt.show()

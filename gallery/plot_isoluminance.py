@@ -36,7 +36,7 @@ shapes = {
     "cylinder": (Frustum((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), dull),
     "cone": (Frustum((0, 0, 0), (0, 0, 1.6), (0, 0.8)), dull),
     "frustum": (Frustum((0, 0, 0), (0, 0, 1.2), (0.4, 0.9)), dull),
-    "disc": (Frustum((0, 0, 0), (0, 0, 0.2), (1, 1)), dull),
+    "block": (Block(size=(1.2, 1.2, 1.2)), dull),
     "machined part": (part, dull),
     "highlight": (Sphere(), shiny),
     "near light": (Frustum((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), near),
@@ -51,6 +51,8 @@ plotter = render.make_plotter(
     bar="luminance",
 )
 for number, found in enumerate(drawn):
+    if not found["contours"].n_points:
+        continue  # each face of the block is one band
     plotter.subplot(*divmod(number, 4))
     lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
     # The lines lie in the bands: shift them slightly toward the viewer.

@@ -59,6 +59,7 @@ SECTIONS = {
     },
     "What is there in 4-space?": {
         "plot_codimension": "Eight tori and curves on tori, uncompensated and compensated",
+        "plot_field_in_4_space": "A torus three times: smooth, in bands of lines, and in both",
         "plot_complex_curve": "Graph of a complex function at four steps of a turn",
     },
     "How does it move?": {
@@ -72,8 +73,8 @@ ORDER = list(ALTS)
 
 #: Scripts whose thumbnail is made from the first picture; others have it from the last.
 FIRST = (
-    "plot_depth", "plot_highlights", "plot_principal_lines", "plot_read_direction", "plot_satin",
-    "plot_seeping_light",
+    "plot_bas_relief", "plot_depth", "plot_highlights", "plot_principal_lines",
+    "plot_read_direction", "plot_satin", "plot_seeping_light",
 )  # fmt: skip
 
 #: Part of a picture that its thumbnail shows: left, top, right and bottom as shares of 1. Other
@@ -84,6 +85,7 @@ PARTS = {
     "plot_carotid": (0.1, 0.05, 0.9, 0.9),
     "plot_complex_curve": (0.1, 0.05, 0.85, 1.0),
     "plot_depth": (0.67, 0.06, 1.0, 0.7),
+    "plot_field_in_4_space": (0.67, 0.1, 1.0, 0.95),
     "plot_furry_torus": (0.67, 0.1, 1.0, 0.8),
     "plot_highlights": (0.2, 0.04, 0.97, 0.36),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),

@@ -3,6 +3,7 @@
 import numpy as np
 import oracles
 import pytest
+import scipy.special
 from refusals import refusals
 
 from vizlight.model import brightness, cylinder, reflection
@@ -41,8 +42,16 @@ def test_the_mean_over_a_fibre_depends_on_the_eye_as_the_source_says():
     normals = np.stack([0 * angle, np.cos(angle), np.sin(angle)], axis=1)
     integral = 2 * np.pi * np.maximum(normals @ wi, 0).mean()
     plain = reflection.diffuse(wi, [line])
-    assert integral / 2 == pytest.approx(plain, abs=1e-9)
-    assert integral / np.pi == pytest.approx(2 / np.pi * plain, abs=1e-9)
+    across = np.array([0.0, *wi[1:]]) / np.hypot(*wi[1:])
+    half = np.pi * np.linspace(-0.5, 0.5, 20_001)
+    lit = np.outer(np.cos(half), across) + np.outer(np.sin(half), np.cross(line, across))
+    for between in np.radians([90, 60, 30, 10, 0]):
+        eye = np.cos(between) * line + np.sin(between) * across
+        seen = lit - np.outer(lit @ eye, eye)
+        length = np.linalg.norm(np.diff(seen, axis=0), axis=1).sum()
+        # Half of an ellipse: 2 across the line, and pi along it.
+        share = 1 / scipy.special.ellipe(np.sin(between) ** 2)
+        assert integral / length == pytest.approx(share * plain, abs=1e-6)
     # The exact mean of the visible half, by its projected width.
     assert cylinder.diffuse(wi, wi, line) == pytest.approx(np.pi / 4 * plain)
     assert cylinder.diffuse(wi, line, line) == pytest.approx(1 / np.pi * plain)

@@ -236,8 +236,9 @@ def relief_shadow(
     exaggeration : float, default: 1.0
         Factor of the heights; only for height fields.
     border
-        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. Walls reach
-        down without end.
+        As for :func:`vizlight.geometry.relief.inside_length`; only for height fields. With
+        "extend" the slope of the last cells goes on for one cell first. Walls reach down without
+        end.
     raster : float, optional
         Spacing of an even grid on which curvilinear grids and open surfaces are sampled from
         above, such as a TIN; 0 for the root of the mean area per point. Shadows then end within a

@@ -32,6 +32,17 @@ def test_a_plane_has_the_cosine_for_every_depth(depth):
         np.testing.assert_allclose(t[inner], max(0, n @ way), atol=1e-9)
 
 
+def test_two_parts_shade_by_the_sum_of_their_lengths():
+    """A ray leaves one plateau through its top, and cuts the corner of a higher one (figure 2b)."""
+    x, thin = np.array([0, 4, 4, 6, 6, 8, 8, 12.0]), 1e-9 * np.array([0, 0, 1, 0, 1, 0, 1, 0])
+    z = np.repeat([[1, 1, 0, 0, 3, 3, 0, 0.0]], 2, axis=0)
+    way, start = (2, 0, 1), [2.0, 0.5, 0.75]
+    r = relief.inside_length(x + thin, [0.0, 1], z, start, direction=way)
+    alone = relief.inside_length(x + thin, [0.0, 1], np.minimum(z, 1), start, direction=way)
+    assert r == pytest.approx(2 * np.hypot(0.5, 0.25), abs=1e-7)
+    assert alone == pytest.approx(np.hypot(0.5, 0.25), abs=1e-7)
+
+
 def test_shallow_depth_goes_to_the_clamped_cosine():
     """A dome occludes nothing: t is the cosine or 0, for a small depth within depth / spacing."""
     for n in (101, 201):
