@@ -234,7 +234,7 @@ def shadows_of_the_default_depth(random):
             for d in (0, height_field.default_depth(field))
         )
         if 0.07 < hard < 0.8:
-            found += [(1.15, soft / hard), (1 / 0.85, hard / soft)]
+            found += [(1.15, soft / hard), (1 / 0.72, hard / soft)]
     return found
 
 

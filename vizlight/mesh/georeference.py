@@ -73,8 +73,8 @@ def in_metres(mesh: DataSetT) -> DataSetT:
     """Return a map in metres east and north of its centre, if it is in degrees.
 
     A degree of latitude has 111,195 m, one of longitude ``cos(latitude)`` of that, for the
-    latitude of the centre: lengths agree with the ellipsoid's to 0.6 % there, and east to west
-    farther north or south to the ratio of the cosines.
+    latitude of the centre: lengths agree with the ellipsoid's to 0.6 % there, up to 88.9 degrees
+    north or south, and east to west farther from the centre to the ratio of the cosines.
 
     Parameters
     ----------

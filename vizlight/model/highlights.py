@@ -435,7 +435,7 @@ def exchange_rate(light_eye_angle: ArrayLike, /, *, k: int = 2, n: int = 3) -> A
     This is 4 cos(beta) for a surface in 3-space, 4 for a curve in the plane and
     ``(4 cos(beta) / (1 + cos(beta)))^2`` for a line in 3-space. For the worst error
     :func:`simple_factor` is the best factor in every codimension, except for a curve in the plane.
-    Relative error at most 1e-12 up to 170 degrees.
+    Relative error at most 1e-11 up to 170 degrees.
     """
     k, n = dimensions(k, n)
     beta = _angles("light_eye_angle", light_eye_angle) / 2

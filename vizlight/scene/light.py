@@ -241,9 +241,10 @@ class Light:
 
         Notes
         -----
-        At distances from half the length on the diffuse light of six lamps is within 1e-5 of the
-        mean over the segment where all of it is above the horizon, and within 0.01 where a part is
-        below. Source: Isoluminance, footnote 1, which names linear lights without a formula.
+        Without attenuation, at distances from half the length on, the diffuse light of six lamps is
+        within 1e-5 of the mean over the segment where all of it is above the horizon, and within
+        0.01 where a part is below. Source: Isoluminance, footnote 1, which names linear lights
+        without a formula.
         """
         count = _check.integer("lamps", lamps, low=1, high=64)
         intensity = _check.number("intensity", intensity, low=0.0, high=_check.LARGEST)

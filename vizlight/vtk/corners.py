@@ -81,6 +81,10 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
     points are off by 1 % of an edge, 1.8 on even grids, and 1.55 and 2.2 on grids sheared by 1 and
     2. Weights by area are exact on planes beside narrow strips, Max's on balls.
 
+    These are the surfaces of the study ``normals``. Of others it was measured once as up to 1.2 of
+    VTK's on ellipsoids 20 times as long as wide, 1.45 on even grids that bend everywhere, 1.05 and
+    1.12 on isosurfaces through even and long voxels, and 4.7 on a steep wave sheared by 2.
+
     Parameters
     ----------
     points : ndarray, shape (N, 3)

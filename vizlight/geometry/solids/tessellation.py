@@ -91,7 +91,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     moving them would flip a triangle. Volume and area converge with the tolerance. The area has no
     bound, since points near a surface do not bound its slope (Schwarz's lantern), and a crease
     between surfaces that nearly touch may lie anywhere near them; for 30 closed forms its relative
-    error was at most 3 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance, Further Work.
+    error was at most 4 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance, Further Work.
     """
     if not isinstance(solid, Solid):
         raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
