@@ -156,8 +156,8 @@ def parametric(
     differences is ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h``, with eps of the type that the
     function returns. For a function that varies over a domain from 0 on like one period of a sine
     this is about 1e-10 of the extent in float64 and 3e-4 in float32. The complex step
-    ``Im f(u + i h) / h`` subtracts nothing, so h may be tiny, and its error is only the rounding of the function itself,
-    a few eps. Differences stay inside the domain: at its
+    ``Im f(u + i h) / h`` subtracts nothing, so h may be tiny, and its error is only the rounding of
+    the function itself, a few eps. Differences stay inside the domain: at its
     ends they are the slope of the parabola through the end and the points h and 2 h from it, with
     an error of ``(h^2/3) |f'''|`` and four times the rounding. Where tangents are dependent, for
     example at the poles of spherical coordinates, the frame has rows of zero and only ambient light
