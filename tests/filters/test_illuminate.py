@@ -452,3 +452,23 @@ def test_normals_that_smear_the_edges_of_a_box_are_told():
         pv.Sphere(),
     ):
         vizlight.illuminate(good, SCENE)
+
+
+@pytest.mark.parametrize("of_cells", [False, True])
+def test_names_of_components_are_tangents(of_cells):
+    grid = pv.ImageData(dimensions=(9, 8, 1))
+    count = grid.n_cells if of_cells else grid.n_points
+    data = grid.cell_data if of_cells else grid.point_data
+    data["u"], data["v"] = np.cos(np.arange(count)), np.sin(np.arange(count) + 0.5)
+    points = grid.cell_data_to_point_data() if of_cells else grid
+    rows = np.column_stack([points["u"], points["v"], np.zeros(grid.n_points)])
+    expected = vizlight.illuminate(grid, SCENE, tangents=rows)["luminance"]
+    for names in (("u", "v"), ["u", "v"], "u,v"):
+        lit = vizlight.illuminate(grid, SCENE, tangents=names)
+        np.testing.assert_array_equal(lit["luminance"], expected)
+        assert vizlight.provenance(lit)["options"]["tangents"] == "u,v"
+        assert vizlight.look(grid, "direction", tangents=names).array == "u,v"
+    with pytest.raises(
+        ValueError, match="tangents: expected names of arrays .* 'q': no such array"
+    ):
+        vizlight.illuminate(grid, SCENE, tangents="u,q")

@@ -68,10 +68,11 @@ def illuminate(
     scene : Scene or str, optional
         Lights, material and view, in the unit of the mesh. Default: ``Scene()``, which has no
         view: the highlight is left out, and its light follows :meth:`vizlight.View.isometric`.
-    tangents : str or array_like, optional
+    tangents : str, names of components or array_like, optional
         Name of a point array of ``k n`` components (k vectors of n, row after row), or its values.
         The vectors may have any length: they are orthonormalised. A cell array is averaged to the
-        points as lines without sign, with a warning.
+        points as lines without sign, with a warning. Names of two or three arrays of one component,
+        as a tuple or as ``"u,v"``, are those of components.
     positions : str, optional
         Name of a point array of n components with the places of the points in n-space. Default:
         the points of the mesh.

@@ -21,7 +21,7 @@ from vizlight.mesh import charts, georeference, globes, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
-from vizlight.shading.options import LightOptions
+from vizlight.shading.options import LightOptions, with_joined_names
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def sorted_out(
         (columns, rows),
         style,
         groups["part"],
-        groups["light"],
+        with_joined_names(groups["light"]),
         groups["eye"],
         groups["picture"],
         scene_maker(scene),

@@ -14,6 +14,7 @@ import numpy as np
 
 from vizlight import _check
 from vizlight.mesh import dates, records
+from vizlight.vtk.arrays import stacked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -360,13 +361,7 @@ def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
     ndarray, shape (N, 3)
         A third component that is missing is 0; where one is missing in the data all are NaN.
     """
-    columns = [np.asarray(mesh.point_data[name]) for name in names]
-    columns += [np.zeros_like(columns[0])] * (3 - len(columns))
-    kind = np.result_type(np.float32, *(column.dtype for column in columns))
-    rows = np.column_stack(columns).astype(kind)
-    # Half a vector is no direction.
-    rows[~np.isfinite(rows).all(axis=1)] = np.nan
-    return rows
+    return stacked([np.asarray(mesh.point_data[name]) for name in names])
 
 
 def only_vectors(mesh: pv.DataSet) -> str | None:

@@ -180,9 +180,22 @@ class LightOptions(ShadingOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check.set_fields(self, bundle=checked_bundle(self.bundle))
+        joined = with_joined_names({"tangents": self.tangents, "line_field": self.line_field})
+        _check.set_fields(self, tangents=joined["tangents"])
         if self.occlusion is not None:
             _check.text("occlusion", self.occlusion, expected="the name of a point array")
         check_sides(self.facing, self.feature_angle)
+
+
+def with_joined_names(options: Keywords) -> Keywords:
+    """Return options in which names of two or three components of tangents are one text."""
+    names: object = options.get("tangents")
+    # Two names of a field of lines are those of a cross field.
+    if options.get("line_field") or not (isinstance(names, list | tuple) and len(names) in (2, 3)):
+        return options
+    if not all(isinstance(name, str) for name in names):
+        return options
+    return options | {"tangents": ",".join(names)}
 
 
 def checked_bundle(value: object) -> bool | Bundle:

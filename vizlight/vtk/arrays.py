@@ -18,7 +18,7 @@ from vizlight.model import line_fields
 from vizlight.vtk.cells import as_numpy, as_vtk, cell_arrays, connectivity, dimensions, places
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Sequence
 
     from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
@@ -162,8 +162,36 @@ def tangents_of(mesh: Dataset, value: object, n: int, *, argument: str = "tangen
         _check.text(argument, value, expected="the name of a point array")
         if is_of_cells(mesh, value):
             return _averaged_tangents(mesh, argument, value, n)
+        if n == 3 and "," in value and not mesh.GetPointData().HasArray(value):
+            return _of_components(mesh, argument, value.split(","))
     array = array_of(mesh, argument, value, sizes=range(n, n * n, n))
     return _checked_tangents(argument, value, array, n)
+
+
+def _of_components(mesh: Dataset, argument: str, names: Sequence[str]) -> Array:
+    """Return the vectors of two or three arrays of one component; of cells their means."""
+    columns: list[AnyArray] = []
+    for name in names:
+        rows = named(mesh.GetPointData(), name)
+        if rows is None and (of_cells := named(mesh.GetCellData(), name)) is not None:
+            rows = at_points(mesh, of_cells)
+        if rows is None or rows.ndim > 1 or rows.dtype.kind not in "iubf":
+            got = "no such array" if rows is None else f"shape {rows.shape}, type {rows.dtype}"
+            expected = "names of arrays of one component, real numbers"
+            raise ValueError(_check.message(argument, expected, f"{name!r}: {got}"))
+        columns.append(rows)
+    if len(columns) not in (2, 3):
+        raise ValueError(_check.message(argument, "two or three components", f"{len(columns)}"))
+    return stacked(columns)
+
+
+def stacked(columns: Sequence[AnyArray]) -> Array:
+    """Return vectors of two or three components; NaN where one of them is not finite."""
+    columns = [*columns, *[np.zeros_like(columns[0])] * (3 - len(columns))]
+    rows = np.column_stack(columns).astype(np.result_type(np.float32, *(c.dtype for c in columns)))
+    # Half a vector is no direction.
+    rows[~np.isfinite(rows).all(axis=1)] = np.nan
+    return rows
 
 
 def is_of_cells(mesh: Dataset, name: str) -> bool:
