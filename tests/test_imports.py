@@ -132,6 +132,8 @@ def test_every_public_name_is_there():
     assert set(vizlight.__all__) <= set(dir(vizlight))
     with pytest.raises(AttributeError, match="no attribute 'illuminated'"):
         vizlight.illuminated  # noqa: B018
+    with pytest.raises(AttributeError, match="'hillshade': take relief_shadow"):
+        vizlight.hillshade  # noqa: B018
 
 
 API = Path(__file__).parents[1] / "gallery" / "pages" / "api.rst"

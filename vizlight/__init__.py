@@ -127,7 +127,8 @@ if not _typing.TYPE_CHECKING:  # a name that is not there is an error to a type 
             return value
         if name in _MODULES:
             return _importlib.import_module(_MODULES[name])
-        raise AttributeError(f"module 'vizlight' has no attribute {name!r}")
+        hint = ": take relief_shadow(mesh, sun=(315, 45), lit=True)" if name == "hillshade" else ""
+        raise AttributeError(f"module 'vizlight' has no attribute {name!r}{hint}")
 
 
 def _join_qt() -> None:

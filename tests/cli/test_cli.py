@@ -165,6 +165,10 @@ def test_help_reads_the_arguments_of_its_command_once(monkeypatch, done):
     assert asked == [("fur",)]
 
 
+def test_hillshade_leads_to_relief(done):
+    assert done("hillshade --help") == done("relief --help")
+
+
 @pytest.mark.parametrize("name", ["x.vtp", "X.VTU", "x.vtk", "x.vti"])
 def test_outputs_by_ending(name, volume, tmp_path, done):
     more = "--no-surface --tangents V" if name == "x.vti" else "--array r --view 0,-1,0 --headlight"

@@ -56,6 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _with_command(words: list[str]) -> list[str]:
     """Return the words of a command; ``vizlight FILE`` is short for ``vizlight light FILE``."""
     first = words[0] if words else ""
+    if first == "hillshade":  # its name elsewhere
+        words = ["relief", *words[1:]]
     if not first.startswith("-") and Path(first).suffix:
         words = ["light", *words]
     options.add_commands(words[0] if words else "")
