@@ -61,6 +61,8 @@ if TYPE_CHECKING:
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and its number of ``Sided.open``.
 KEPT = "vizlight_normals"
+#: Share of sharp edges from which normals that a mesh has smear it, as they do a box.
+SMEARED = 0.25
 #: Share of the spacing between points to which they may be rounded without a warning.
 ROUNDED = 0.05
 #: Number of points from which normals are kept. Normals of smaller meshes are computed for many at
@@ -189,7 +191,8 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: Fe
         split = isinstance(angle, float | int)
         if leaning > MANY_SHARP and not split and _rounding([mesh]) <= ROUNDED:
             sharp = max(sharp, creases(mesh, has_normals=True))
-    if sharp > MANY_SHARP:
+    # A coarse mesh of a smooth shape has sharp edges too, but fewer.
+    if sharp > SMEARED:
         _check.warn(
             f"the mesh has normals that are averaged across its sharp edges, {sharp:.0%} of all, "
             "and faces beside these are shaded as if they were round; clear them: "
