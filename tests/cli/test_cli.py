@@ -135,7 +135,7 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
 @pytest.mark.parametrize("streams", ["2>&-", "<&- >&- 2>&-", ">/dev/full", "| true"])
 def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):
-    pv.Sphere(theta_resolution=4, phi_resolution=4).save(tmp_path / "ball.vtp")
+    pv.Sphere(theta_resolution=16, phi_resolution=16).save(tmp_path / "ball.vtp")
     command = f"{sys.executable} -m vizlight light ball.vtp --specular 0 -o lit.vtp {streams}"
     run = subprocess.run(
         command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False
