@@ -36,11 +36,11 @@ def field(seed=0, **changes):
 def camera():
     """Return a camera that sees a node in the middle of every ninth pixel."""
     middle = np.add(ORIGIN, (STEP * (COUNT - 1) / 2, STEP * (COUNT - 1) / 2, 0))
-    made = pv.Camera()
-    made.parallel_projection, made.parallel_scale = True, COUNT * STEP / 2
-    made.focal_point, made.position, made.up = middle, np.add(middle, (0, 0, 300)), (0, 1, 0)
-    made.clipping_range = 1, 600
-    return made
+    eye = pv.Camera()
+    eye.parallel_projection, eye.parallel_scale = True, COUNT * STEP / 2
+    eye.focal_point, eye.position, eye.up = middle, np.add(middle, (0, 0, 300)), (0, 1, 0)
+    eye.clipping_range = 1, 600
+    return eye
 
 
 def at_nodes(picture):

@@ -468,3 +468,12 @@ def test_names_of_components_are_tangents(of_cells):
         ValueError, match="tangents: expected names of arrays .* 'q': no such array"
     ):
         vizlight.illuminate(grid, SCENE, tangents="u,q")
+
+
+def test_a_component_is_named_once():
+    grid = pv.ImageData(dimensions=(5, 5, 1))
+    grid["u"] = np.cos(np.arange(25.0))
+    with pytest.raises(ValueError, match="tangents: expected different arrays, got 'u'"):
+        vizlight.streamlines(grid, tangents=("u", "u"), spacing=2.0)
+    with pytest.raises(TypeError, match="tangents: expected real numbers"):
+        vizlight.illuminate(grid, SCENE, tangents=("u", "u"))

@@ -14,7 +14,7 @@ from vizlight import _check
 from vizlight.filters import relight
 from vizlight.mesh import blocks, records
 from vizlight.scene.keywords import unknown_option
-from vizlight.shading.options import FeatureAngle, LightOptions, with_joined_names
+from vizlight.shading.options import FeatureAngle, LightOptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -60,7 +60,7 @@ def sorted_out(
             remedy = "pass Scene(material=Material(...))"
             expected = "the material of the scene, or no scene"
             raise ValueError(_check.message(name, expected, f"both ({value})", remedy))
-    light = with_joined_names({name: options[name] for name in options if name in LIGHT})
+    light = {name: value for name, value in options.items() if name in LIGHT}
     drawing = {ALIASES.get(name, name): options[name] for name in options if name not in LIGHT}
     return light, drawing
 

@@ -193,7 +193,7 @@ def with_joined_names(options: Keywords) -> Keywords:
     # Two names of a field of lines are those of a cross field.
     if options.get("line_field") or not (isinstance(names, list | tuple) and len(names) in (2, 3)):
         return options
-    if not all(isinstance(name, str) for name in names):
+    if not all(isinstance(name, str) for name in names) or len({*names}) < len(names):
         return options
     return options | {"tangents": ",".join(names)}
 

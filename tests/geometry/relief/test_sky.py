@@ -211,13 +211,13 @@ def test_rows_of_other_lengths_see_a_field_of_their_own(openness, fast):
     """Each row as if all had its length of a unit of x, as degrees of longitude have."""
     x, y, z = np.arange(16.0), np.arange(14.0), rough(16, 0.6)[:14]
     stretch = np.linspace(0.3, 1.2, len(y))
-    found = sky(x, y, z, error=0.05, stretch=stretch, openness=openness)
-    assert found.error <= 0.05
+    shares = sky(x, y, z, error=0.05, stretch=stretch, openness=openness)
+    assert shares.error <= 0.05
     rows = [2, 7, 12]
     expected = [
         sky(stretch[row] * x, y, z, error=0.02, openness=openness).share[row] for row in rows
     ]
-    assert np.quantile(np.abs(found.share[rows] - expected), 0.95) <= found.error + 0.02
+    assert np.quantile(np.abs(shares.share[rows] - expected), 0.95) <= shares.error + 0.02
 
 
 @FAST
