@@ -125,9 +125,7 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
     faces, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
-    # No area is beyond the largest number, and no direction depends on lengths.
-    corners = corners / (np.abs(corners).max() or 1.0)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, normals = _with_normals(corners)
     areas = np.linalg.norm(normals, axis=1)
     total = normals.sum(axis=0)
     if np.linalg.norm(total) > OPEN * areas.sum() > 0:
@@ -143,6 +141,13 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
     eye = _around(corners @ Y_TO_Z.T, normals @ Y_TO_Z.T, areas, _ways(), values)
     toward = _vector(Y_TO_Z.T @ eye.toward)
     return Viewpoint(toward, (0.0, 1.0, 0.0), False, f"{eye.words}, y up")
+
+
+def _with_normals(corners: Array) -> tuple[Array, Array]:
+    """Return corners of triangles, the farthest at 1, and normals twice as long as the areas."""
+    # No area is beyond the largest number, and no direction depends on lengths.
+    corners = corners / (np.abs(corners).max() or 1.0)
+    return corners, np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def stands_along_y(corners: Array, areas: Array) -> bool:
@@ -172,10 +177,14 @@ def stands_along_y(corners: Array, areas: Array) -> bool:
 def _base(points: Array, middle: Array | None, axis: int, sign: int) -> float:
     """Return the hull of the points at an end of an axis over that of all, seen along the axis.
 
-    0 where a middle is given that is not above it.
+    0 where a middle is given that is not above it, or the hull is too small to stand on.
     """
     heights, flat = sign * points[:, axis], np.delete(points, axis, axis=1)
     low = heights < heights.min() + FOOT * np.ptp(heights)
+    # A hull is at least half of the box around it, and SciPy's hulls take a while to import.
+    most = 2 * np.prod(np.ptp(flat[low], axis=0)) / (np.prod(np.ptp(flat, axis=0)) or 1.0)
+    if middle is not None and most <= STANDS:
+        return 0.0
     try:
         whole, base = scipy.spatial.ConvexHull(flat), scipy.spatial.ConvexHull(flat[low])
     except scipy.spatial.QhullError:
@@ -252,9 +261,7 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     _, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
-    # No area is beyond the largest number, and no direction depends on lengths.
-    corners = corners / (np.abs(corners).max() or 1.0)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, normals = _with_normals(corners)
     ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
     return _around(corners, normals, np.linalg.norm(normals, axis=1), ways)
 
