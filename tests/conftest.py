@@ -1,3 +1,4 @@
+import collections
 import gc
 import os
 import sys
@@ -19,7 +20,20 @@ def pytest_addoption(parser):
     parser.addoption("--skipped", metavar="FILE", help="file of the names of skipped tests")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
+    """Count all but every n-th case of a test that is sampled among the slow ones."""
+    counts = collections.Counter()
+    for item in items:
+        if (mark := item.get_closest_marker("sampled")) is not None:
+            name = item.nodeid.partition("[")[0]
+            if counts[name] % mark.args[0]:
+                item.add_marker(pytest.mark.slow)
+            counts[name] += 1
+    _skip_drawing(items)
+
+
+def _skip_drawing(items):
     """Skip what draws where nothing draws, with the remedy; where CI is set it must draw."""
     drawing = [item for item in items if item.get_closest_marker("opengl")]
     if not drawing or os.environ.get("CI"):

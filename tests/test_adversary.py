@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check
 
 #: Calls of each callable in the suite; `python tests/adversary.py` makes all of them.
-EACH = 4
+EACH = 2
 #: Beginnings of the names of callables that draw or start a process.
 DRAWING = ("draw.", "accessor.Accessor.plot")
 
@@ -26,12 +26,14 @@ def test_no_line_is_left_of_a_callable_that_is_gone():
     assert not known - arguments
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", [name for name in table.PUBLIC if not name.startswith(DRAWING)])
 def test_adversarial_values(name):
     for call in [adversary.calls(name)[0], *adversary.sample(name, EACH, 0)]:
         assert not adversary.judge(call), f"{call.argument}={call.label}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize("name", [name for name in table.PUBLIC if name.startswith(DRAWING)])
 def test_adversarial_values_of_pictures(name):

@@ -74,6 +74,7 @@ def loaded(folder):
         del sys.modules["doubled"]
 
 
+@pytest.mark.slow
 def test_a_kernel_is_kept_until_it_is_damaged_or_its_source_changes(home, monkeypatch):
     """Also by two processes at once; a cache that cannot be written is none."""
     module(home)

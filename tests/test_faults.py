@@ -42,6 +42,7 @@ def small_disk(place, size):
         subprocess.run(["umount", str(place)], check=True)
 
 
+@pytest.mark.slow
 def test_a_disk_that_is_too_small_leaves_the_old_file(ball, tmp_path):
     scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), view=View(direction=(0, 0, 1)))
     lit = files.write_mesh(vizlight.illuminate(pv.read(ball), scene), tmp_path / "whole.vtp")

@@ -196,6 +196,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.opengl
 @pytest.mark.parametrize(("place", "kind", "name"), CASES, ids=lambda x: getattr(x, "__name__", x))
 def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
@@ -280,6 +281,7 @@ def live(scene, then=None):
     return picture.astype(int)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     ("kind", "name"), [(kind, name) for kind in PARTS for name in PARTS[kind] if name != "view"]

@@ -38,6 +38,7 @@ def folder(tmp_path_factory):
     return made
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.filterwarnings("ignore:.*could not be lit")
 @pytest.mark.parametrize("script", sorted(set(OWN)), ids=lambda path: path.stem)

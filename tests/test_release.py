@@ -41,6 +41,7 @@ def wheel(built):
     return zipfile.ZipFile(built[1])
 
 
+@pytest.mark.slow
 def test_a_build_of_the_source_distribution_has_the_same_bytes(built, tmp_path):
     """Built elsewhere, later, from files of another age and other modes, without git."""
     with tarfile.open(built[0]) as archive:

@@ -51,6 +51,7 @@ def picture(mesh, *, live=True, prepare=None, **options):
     return seen[..., :3].astype(int)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("options", EVERYDAY, ids=str)
 def test_keywords_of_pyvista_are_taken(options):
     for mesh in (ball(), ball().cast_to_unstructured_grid()):
@@ -89,6 +90,7 @@ def test_colours_of_cells_are_averaged_where_light_is_at_points():
     assert np.ptp(seen, axis=(0, 1)).max() > 60
 
 
+@pytest.mark.slow
 def test_active_scalars_are_coloured_unless_the_light_is_looked_at():
     mesh = ball()
     mesh.set_active_scalars("height")
@@ -118,6 +120,7 @@ def test_points_alone_and_blocks_without_the_array_are_drawn():
         picture(ball(), scalars="depth")
 
 
+@pytest.mark.slow
 def test_what_pyvista_draws_itself_is_its_picture():
     mesh, options = ball(), {"lighting": False, "color": "red"}
     np.testing.assert_array_equal(picture(mesh, **options), picture(mesh, live=False, **options))

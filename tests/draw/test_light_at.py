@@ -43,6 +43,7 @@ def test_pictures_are_right_between_the_points():
     assert errors[0] < 0.5 * errors[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sky", [False, True])
 def test_faces_lines_and_vertices_have_the_light_of_their_points(sky):
     mesh, options = several_kinds(120)[0], {}

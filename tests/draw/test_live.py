@@ -76,6 +76,7 @@ SCENES = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("light", ["fragments", "points"])
 @pytest.mark.parametrize("lighting", ["light kit", "none"])
 def test_without_a_scene_the_material_is_that_of_the_default_scene(light, lighting):
@@ -99,6 +100,7 @@ LIT = [
 ]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("model", "scene"), LIT)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_within_four_of_the_light_at_points(shape, model, scene, claim):
@@ -122,6 +124,7 @@ def test_colours_of_data_within_four(shape):
 BRIGHT = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("cmap", ["turbo", "coolwarm"])
 def test_colours_of_data_in_bright_light_are_the_same_baked_and_live(cmap, tmp_path):
     """One rule for light on data: tint, both kinds of live light, and pictures."""
@@ -172,6 +175,7 @@ def test_grids_have_their_light_too():
     np.testing.assert_array_equal(a, b)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["surface", "volume", "image", "explicit"])
 def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
     box = pv.ImageData(dimensions=(5, 5, 5))
@@ -202,6 +206,7 @@ def test_creases_are_sharp_and_round_shapes_are_left_whole(kind):
     assert actor.mapper.dataset.n_points == ball.n_points
 
 
+@pytest.mark.slow
 def test_volumes_are_lit_by_the_normals_of_their_surface():
     grid = pv.ImageData(dimensions=(41, 41, 41), origin=(-1, -1, -1), spacing=(0.05,) * 3)
     grid["r"] = np.linalg.norm(grid.points, axis=1)
@@ -214,6 +219,7 @@ def test_volumes_are_lit_by_the_normals_of_their_surface():
         assert np.abs(fragments - of_surface).mean() < 0.1
 
 
+@pytest.mark.slow
 def test_coarse_data_are_as_if_they_were_split():
     """Light in fragments is that at the points of split segments, which share no code with it."""
     coarse, split = [], []

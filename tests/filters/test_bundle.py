@@ -122,6 +122,7 @@ def unmoved():
     return in_one_light(lines(60))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize(("scale", "far"), [(1e-20, 0.0), (1e12, 0.0), (1.0, 1e4)])
 def test_neither_the_unit_nor_the_place_matters(kind, scale, far, unmoved):

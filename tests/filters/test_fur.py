@@ -443,6 +443,7 @@ def test_points_of_the_skin_are_split_at_sharp_edges():
         fur(box, scene, feature_angle="sharp")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("origin", [(0, 0, 0), (4e5, 5e6, 100)])
 @pytest.mark.parametrize("fast", ["0", "1"])
 def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypatch):

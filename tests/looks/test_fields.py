@@ -69,6 +69,7 @@ def test_strokes_are_nearer_where_the_field_turns_faster():
     assert spacings[1] < 0.8 * spacings[0]
 
 
+@pytest.mark.slow
 def test_a_faster_field_is_hues_and_a_faster_one_yet_its_speed_alone():
     look = vizlight.look(sheet(0.9, 300))
     assert "hue tells its course" in look.notes[0]
@@ -92,6 +93,7 @@ def volume(noise):
     return grid
 
 
+@pytest.mark.slow
 def test_a_volume_has_a_floor_where_it_is_seen_from_above():
     grid = pv.ImageData(dimensions=(6, 6, 6))
     grid["v"] = np.column_stack([1 + grid.points[:, 2], 0 * grid.points[:, :2]])
@@ -104,6 +106,7 @@ def test_a_volume_has_a_floor_where_it_is_seen_from_above():
             assert -0.05 < floor.bounds[5] < 0
 
 
+@pytest.mark.slow
 def test_flow_runs_across_the_picture_to_the_right():
     grid = pv.ImageData(dimensions=(9, 9, 9))
     grid["v"] = np.column_stack([0 * grid.points[:, :2], 0 * grid.points[:, 0]])
@@ -113,6 +116,7 @@ def test_flow_runs_across_the_picture_to_the_right():
     assert right[1] > 0.75
 
 
+@pytest.mark.slow
 def test_flow_that_is_asked_for_has_the_colours_of_its_speed_and_its_light_in_files():
     grid = pv.ImageData(dimensions=(6, 6, 6))
     grid["v"] = np.column_stack([1 + grid.points[:, 2], 0 * grid.points[:, :2]])
@@ -135,6 +139,7 @@ def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
     assert short.drawing.lit.run().n_lines > 0
 
 
+@pytest.mark.slow
 def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
     image = pv.ImageData(dimensions=(5, 5, 5))
     x, y, _ = (np.asarray(image.points) - 2).T
@@ -147,6 +152,7 @@ def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
     assert "speed" not in look.summary
 
 
+@pytest.mark.slow
 def test_a_picture_in_doubt_is_read_back_and_not_chosen_where_it_cannot_be_read():
     look = vizlight.look(sheet(1.2, 300))
     assert look.drawing.words == "length of wind in colours"

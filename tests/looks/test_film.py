@@ -83,6 +83,7 @@ def test_a_movie_has_one_picture_for_each_step_of_values(warming: Path, tmp_path
         assert movie.size == SIZE
 
 
+@pytest.mark.slow
 def test_the_script_draws_the_same(warming: Path, tmp_path: Path) -> None:
     pytest.importorskip("imageio")
     look = vizlight.look(warming, size=SIZE)
@@ -102,6 +103,7 @@ def test_a_time_that_was_asked_for_is_no_series(warming: Path, tmp_path: Path) -
         vizlight.look(warming, time=0.5).save(tmp_path / "x.gif")
 
 
+@pytest.mark.slow
 def test_strokes_move_between_the_steps(turning: Path, tmp_path: Path) -> None:
     look = vizlight.look(turning, size=SIZE)
     assert _options(look, tmp_path / "x.mp4")["per_step"] > 1

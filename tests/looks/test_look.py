@@ -126,6 +126,7 @@ def test_a_globe_is_a_closed_ball_with_coasts_and_a_part_of_the_earth_is_none():
         vizlight.look(ball(), globe="yes")
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_the_script_of_a_globe_draws_the_same(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

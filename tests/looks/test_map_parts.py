@@ -126,6 +126,7 @@ def test_the_bar_of_a_wide_map_lies_below_it(mesh, options, lies):
     assert (look.wishes.room[0] == SIZE[0]) == (lies or "key" in options)
 
 
+@pytest.mark.slow
 def test_the_disc_of_a_wide_map_stands_beside_it():
     mesh = chart(90, 40)
     mesh["wind"] = np.full((mesh.n_points, 3), (1.0, 2.0, 0.0))
@@ -189,6 +190,7 @@ def test_a_map_on_which_nothing_moves_has_no_movie(name):
         vizlight.look(chart(60, 40), size=SIZE).steps(name)
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_a_page_has_the_coasts_and_the_frame(tmp_path):
     look = vizlight.look(chart(60, 40), size=SIZE)
@@ -197,6 +199,7 @@ def test_a_page_has_the_coasts_and_the_frame(tmp_path):
     assert with_them > bare + 3000
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_coasts_are_seen_on_dark_colours_and_on_light_ones():
     """Where a coast runs the picture differs by more than a step of grey from a bare one."""
@@ -236,6 +239,7 @@ def test_the_title_says_what_a_value_sums_up_in_time(methods, span, words):
     assert vizlight.look(mesh).drawing.keys[0]["title"].startswith(words)
 
 
+@pytest.mark.slow
 def test_a_relief_of_the_whole_earth_is_bent_once_it_is_lit(tmp_path):
     earth = chart(348, 168, west=-174.0, south=-84.0, name="elevation")
     earth = earth.cast_to_rectilinear_grid()

@@ -33,6 +33,7 @@ def test_slices_are_named_so(monkeypatch):
     assert "no isosurface stands out" in look.summary
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_a_rough_isosurface_that_cannot_be_read_gives_way_to_slices(monkeypatch):
     monkeypatch.setattr(volumes.levels, "GOOD", 0.0)

@@ -30,6 +30,7 @@ def dots(a, b):
     return np.einsum("ij,ij->i", np.asarray(a, float), np.asarray(b, float))
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_what_is_seen_of_an_open_surface_is_lit(isosurface, random):
     """At most 1 in 100 of the pixels has the ambient light only; it was half of them."""

@@ -33,6 +33,7 @@ def written(path, step):
     return path
 
 
+@pytest.mark.slow
 def test_levels_on_one_grid_are_read_together(tmp_path):
     mesh = vizlight.read(written(tmp_path / "a.grib", 1.0))
     assert {*mesh.point_data} == {"t2m", "u10", "v10"}

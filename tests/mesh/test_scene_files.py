@@ -119,6 +119,7 @@ def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
         assert shapes.bounds[:2] == pytest.approx(ends, abs=1e-6)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("text", "words"),
     {

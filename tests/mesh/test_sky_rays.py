@@ -74,6 +74,7 @@ def test_a_tube_alone_sees_all():
     assert seen.share.min() > 0.97
 
 
+@pytest.mark.slow
 def test_the_error_holds_and_flat_parts_cost_little():
     ball = pv.ParametricRandomHills(random_seed=3).triangulate()
     points, faces = np.asarray(ball.points, float), ball.regular_faces

@@ -212,6 +212,7 @@ def test_speed_is_ranked_by_lightness():
     assert constant.spearman == 0
 
 
+@pytest.mark.slow
 def test_a_smaller_picture_is_read_worse_and_a_screen_is_a_size():
     how = {"tangents": "v", "exponent": 2}
     small, large = (

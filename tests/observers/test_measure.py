@@ -90,6 +90,7 @@ def test_less_contrast_is_read_worse_until_chance(drawn):
     assert falls_to_chance(bits)
 
 
+@pytest.mark.slow
 def test_more_blur_is_read_worse_until_chance(drawn):
     question, mesh, picture, camera = drawn
     blurred = [gaussian_filter(picture, (s, s, 0)) if s else picture for s in (0, 12, 48, 400)]
@@ -162,6 +163,7 @@ def test_a_map_read_by_the_key_of_another_is_chance():
     assert (found.median, found.largest) == (0.25, 0.5)
 
 
+@pytest.mark.slow
 def test_narrower_lines_are_read_worse_until_chance():
     mesh = straws(40, 8)
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)

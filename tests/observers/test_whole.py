@@ -19,6 +19,7 @@ pytestmark = pytest.mark.opengl
 MATRIX = np.array([[0.8, -0.9, 0, 3], [0.6, 1.2, 0, 1], [0, 0, 1.3, 0], [0, 0, 0, 1]])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("question", "how"),
     [("direction", DIRECTION), ("shape", SHAPE), ("value", {"scene": FLAT, "scalars": "height"})],
@@ -294,6 +295,7 @@ def mapped(plotter, *, scaled=False):
     plotter.renderer.AddActor(actor)
 
 
+@pytest.mark.slow
 def test_glyphs_are_read_alike_whoever_draws_them():
     glyphs = arrows(sheet(9))
 
@@ -335,6 +337,7 @@ def test_a_moved_actor_of_glyphs_is_read_where_it_is(lit):
     assert found.sense.told > 0.7
 
 
+@pytest.mark.slow
 def test_line_integral_convolution_of_vtk_tells_the_course():
     mesh = sheet(40)
 

@@ -170,6 +170,7 @@ def surface(kind):
     return made
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.filterwarnings("ignore:.* of the edges are sharper")  # of the box, as a whole too
 @pytest.mark.parametrize(
     "kind", ["ball", "sheet", "bowl", "nearly closed", "several", "solid", "hollow"]
@@ -188,6 +189,7 @@ def normals(mesh, sign=1):
     return {"normals": "N"}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("kind", ["ball", "sheet", "apart"])
 def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, kind, sign):
@@ -200,6 +202,7 @@ def test_given_normals_in_pieces_have_the_sides_of_the_whole(tmp_path, kind, sig
     assert_alike(tmp_path, whole, labels, View(direction=(0.3, 0.2, sign)), **options)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("axis", ["z", "y", "oblique"])
 def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, axis):
     """Also where it lies in one piece, beside another with a ball."""
@@ -239,6 +242,7 @@ def test_points_at_no_place_are_no_neighbours_of_any(tmp_path, light):
         assert_as_whole(lit, vizlight.illuminate(whole, SCENE))
 
 
+@pytest.mark.slow
 def test_a_sheet_in_slabs_is_lit_as_the_whole(tmp_path):
     """Points of borders count once, also where it is seen from the edge."""
     whole = sheet(0)
@@ -285,6 +289,7 @@ def test_creases_in_pieces_are_lit_as_the_whole(tmp_path, light, angle):
     assert max(abs(found[key] - whole[key]) for key in whole) < 1e-6
 
 
+@pytest.mark.slow
 def test_pieces_that_were_lit_are_lit_again_joined_or_not(balls):
     lit = run(balls)
     again = pieces.light(lit.path, SCENE, out=balls / "again.pvtp", feature_angle=80)
@@ -348,6 +353,7 @@ def sources(image, folder, kind):
     return pieces.Slabs({"s": s, "V": v}, spacing=image.spacing, origin=image.origin)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["vti", "vtr", "vts", "vtkhdf", "array", "memmap", "zarr", "dask"])
 def test_a_grid_is_lit_slab_by_slab(image, tmp_path, light, kind):
     source = sources(image, tmp_path, kind)

@@ -137,6 +137,7 @@ def test_calls_of_a_process_that_is_killed_are_made_again(tmp_path):
     assert list(work(abs, [-1])) == [1], f"after {LOST} losses others start"
 
 
+@pytest.mark.slow
 def test_processes_and_their_threads_have_ended_with_the_object():
     for count in (0, "two"):
         with pytest.raises((ValueError, TypeError), match="count: expected an integer"):
@@ -150,6 +151,7 @@ def test_processes_and_their_threads_have_ended_with_the_object():
     assert not any(one.is_alive() for one in made)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_no_process_listens_and_a_script_needs_no_guard(balls):
     (balls / "script.py").write_text(SCRIPT, encoding="utf-8")
@@ -166,6 +168,7 @@ def test_executors_light_the_same(balls):
             assert same(light(balls, map=work), expected)
 
 
+@pytest.mark.slow
 def test_a_cluster_that_goes_away_is_named_and_nothing_is_left(balls):
     distributed = pytest.importorskip("distributed")
     quiet = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}

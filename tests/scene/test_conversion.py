@@ -70,6 +70,7 @@ def as_vtk(light):
     return made
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     ("lights", "model", "shininess", "parallel"),

@@ -131,6 +131,7 @@ def off_from_vtk(expected, ball, rgb):
     return np.abs(got - expected)[inside].max()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     ("lighting", "model"),
@@ -160,6 +161,7 @@ def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting, model, clai
     claim(off_from_vtk(expected, ball, channels(illuminate(ball, scene, model=model))), 3)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize("lighting", ["light kit", "two lights", "headlight"])
 def test_colours_of_data_times_the_light_are_the_picture_of_vtk(lighting, claim):

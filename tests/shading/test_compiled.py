@@ -42,9 +42,9 @@ def home(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cases():
-    """100 random cases of as many forms, with their light in 50 digits."""
+    """60 random cases of as many forms, with their light in 50 digits."""
     found = []
-    for number in range(10_000, 10_100):
+    for number in range(10_000, 10_060):
         random = np.random.default_rng(number)
         made = differential.case(differential.frame(random), random)
         found.append((made, differential.truth(made)))
@@ -64,9 +64,10 @@ def test_light_is_that_of_the_oracle_within_the_stated_bounds(cases, light):
         ratio, points = differential.compare(made, true, light)
         assert ratio <= 1, made
         counted += points
-    assert counted > 70 * differential.POINTS * 0.8
+    assert counted > 42 * differential.POINTS * 0.8
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("size", [1e-42, 1e-25, 1e15, 1e25, 1e39, 1e120])
 @pytest.mark.parametrize("precision", ["float32", "float64"])
 def test_lamps_out_of_the_range_of_float32_have_the_light_of_the_oracle(size, precision):
@@ -92,6 +93,7 @@ def test_lamps_out_of_the_range_of_float32_have_the_light_of_the_oracle(size, pr
     assert counted > 10 * differential.POINTS * 0.6
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("shininess", [0, 0.3, 1, 2, 5, 7.5])
 def test_a_cylinder_of_low_shininess_has_the_light_of_the_oracle(shininess):
     for number in range(6):
@@ -238,6 +240,7 @@ def test_engine_runs_compiled_code(fast, random):
     np.testing.assert_array_equal(other.luminance, lit.luminance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["phong", "blinn"])
 def test_faces_lines_and_vertices_are_lit_by_compiled_code(model, fast, random):
     points, tangents, normals = cloud(random, 1000)

@@ -22,6 +22,7 @@ COUNT = 120
 KEPT = suite.read(pathlib.Path(__file__).parents[2] / "gallery" / "pages" / "stability.csv")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kernel", suite.KERNELS)
 def test_claims_hold(kernel):
     for dtype in suite.KERNELS[kernel][1]:

@@ -28,6 +28,7 @@ from vizlight import _compiled, render
 from vizlight.model import cylinder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["layered", "along the light"])
 def test_rays_among_tubes_and_the_medium_agree(kind):
     """The means over the points have a random error of about 0.005."""
@@ -156,6 +157,7 @@ def test_gradients_are_those_of_the_functions(random):
     np.testing.assert_allclose(normals.gradient(normals.ellipsoid, points) / 2e-5, exact, atol=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["isosurface", "flow on it", "fibres", "aeroplane", "globe"])
 def test_refinement_takes_a_third_of_the_points(name):
     rows = refinement.measure(name, (0.02, 0.01), (1, 2, 3, 4, 6, 8, 12, 16, 24))
@@ -186,6 +188,7 @@ def test_smaller_cells_hold_the_places(s, factor, random):
     np.testing.assert_allclose(within * factor, np.rint(within * factor), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_shadows_of_hills_and_of_a_hemisphere():
     rows = relief.measure(128, repeats=1)
     assert len(rows) == 1 + _compiled.active()

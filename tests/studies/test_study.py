@@ -62,6 +62,7 @@ def test_the_figure_shows_the_curves_it_is_asked_for(tmp_path):
     assert pv.read(result.draw(tmp_path / "toy.png")).dimensions == (960, 720, 1)
 
 
+@pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     __main__.main([])
     listed = capsys.readouterr().out

@@ -19,6 +19,7 @@ def soup(seed, count=12):
     return mesh.points, mesh.triangles, random.uniform(0, 1, len(mesh.points))
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1), st.integers(1, 30))
 def test_polygons_tile_the_triangles(seed, count):
     points, triangles, values = soup(seed)
@@ -30,6 +31,7 @@ def test_polygons_tile_the_triangles(seed, count):
     np.testing.assert_allclose(tiled, areas(points[triangles]), rtol=1e-9)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1), st.integers(2, 20))
 def test_bands_hold_what_linear_interpolation_says(seed, count):
     points, triangles, values = soup(seed)

@@ -71,6 +71,7 @@ def test_colours_are_within_the_error_and_no_gap_is_left():
     assert np.all(got[away > 40.5] < 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [12.0, 20.0])
 def test_colours_of_three_channels_are_within_the_error(error):
     x, y = grid()

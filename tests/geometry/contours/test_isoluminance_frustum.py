@@ -64,6 +64,7 @@ def test_bands_of_a_far_light(shape, direction, random):
     assert banded.volume(bands) > 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("shape", ["cylinder", "cone up", "cone down", "frustum", "disc"])
 @pytest.mark.parametrize(
     "light",

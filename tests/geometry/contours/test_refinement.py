@@ -1,3 +1,4 @@
+import pytest
 import pyvista as pv
 
 import vizlight
@@ -14,6 +15,7 @@ def test_new_light_brings_new_steps():
     assert vizlight.isoluminance(frustum, scene, levels=8)[0].n_cells < 1000
 
 
+@pytest.mark.slow
 def test_contours_that_coincide_at_a_corner_have_no_cells_between():
     scene = vizlight.Scene(lights=vizlight.Light(position=(0.57, -1.64, -1.61)))
     bands = vizlight.isoluminance(pv.Cylinder(resolution=12).clean(), scene)[0]

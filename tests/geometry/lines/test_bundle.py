@@ -180,6 +180,7 @@ STATED = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", STATED)
 def test_the_mean_share_of_each_case_is_as_right_as_stated(name, seed, claim):
     """Over 8 bundles, beside the random error of their mean."""
@@ -197,6 +198,7 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name, seed, claim):
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [0.5, 0.03])
 @pytest.mark.parametrize("kind", ["isotropic", "layered"])
 def test_ends_of_lines_are_as_right_as_their_inner_points(kind, length):

@@ -88,6 +88,7 @@ def test_a_spiral_is_not_closed():
     assert not any(np.array_equal(piece[0], piece[-1]) for piece in parts(lines))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("missing", [0, np.nan])
 @pytest.mark.parametrize("line_field", [False, True])
 @pytest.mark.filterwarnings("ignore:.*could not be lit:UserWarning")

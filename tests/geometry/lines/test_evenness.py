@@ -62,6 +62,7 @@ def farthest(surface, lines, spacing):
     return best / spacing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SURFACES)
 def test_the_largest_gap_on_a_surface(name, seed, claim):
     make, frequency, number, spacing = SURFACES[name]

@@ -147,6 +147,7 @@ def test_the_curve_visits_all_cells_from_neighbour_to_neighbour(bits):
     assert np.all(steps == 1)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("size", [1e-20, 1.0, 1e6])
 def test_places_are_even_on_shuffled_triangles(size, random, claim):
     """Variance over mean of counts on patches of equal area: 320 thousand triangles of a sphere."""

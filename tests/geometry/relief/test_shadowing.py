@@ -94,6 +94,7 @@ def test_a_light_on_the_surface():
     assert np.all((t >= 0) & (t <= 1))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("depth", [0.0, 0.2])
 @pytest.mark.parametrize("light", [{"direction": sun(25, 70)}, {"position": (4.0, 3.0, 9.0)}])
 def test_rows_of_other_lengths_are_lit_like_a_field_of_their_own(light, depth):

@@ -7,7 +7,8 @@ from vizlight import _compiled, _pool
 from vizlight.geometry.relief import sky as module
 from vizlight.geometry.relief.sky import sky
 
-FAST = pytest.mark.parametrize("fast", ["0", "1"])
+#: NumPy's way takes long.
+FAST = pytest.mark.parametrize("fast", [pytest.param("0", marks=pytest.mark.slow), "1"])
 
 
 @pytest.fixture(autouse=True)
@@ -191,6 +192,7 @@ def test_by_numpy_the_error_holds_too(monkeypatch):
     assert max(missed) < 0.02
 
 
+@pytest.mark.slow
 def test_unequal_spacing_and_the_number_of_threads():
     random = np.random.default_rng(2)
     x, y = (np.cumsum(random.uniform(0.3, 3, n)) for n in (70, 90))
@@ -205,6 +207,7 @@ def test_unequal_spacing_and_the_number_of_threads():
     assert np.quantile(missed, 0.8) <= one.error
 
 
+@pytest.mark.sampled(3)
 @FAST
 @pytest.mark.parametrize("openness", [False, True])
 def test_rows_of_other_lengths_see_a_field_of_their_own(openness, fast):
@@ -298,6 +301,7 @@ def test_bad_fields():
         sky([0.0], x, np.zeros((3, 1)))
 
 
+@pytest.mark.slow
 def test_the_effort_grows_with_what_is_asked():
     z, x = rough(64, 1.0), np.arange(64.0)
     coarse, fine = sky(x, x, z, error=0.03), sky(x, x, z, error=0.0005)

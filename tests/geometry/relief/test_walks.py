@@ -101,6 +101,7 @@ def brute(x, y, z, start, way, *, wall, reach=1e3):
     return total
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("azimuth", [0, 90, 180, 270])
 @pytest.mark.parametrize("kind", ["extend", "wall", "holes"])
 def test_walls_are_part_of_the_solid(kind, azimuth, random):

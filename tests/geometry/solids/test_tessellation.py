@@ -185,6 +185,7 @@ TOUCHING = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", TOUCHING)
 def test_coincident_and_tangent_faces(name):
     solid, volume, area = TOUCHING[name]
@@ -307,6 +308,7 @@ def test_thin_tubes_and_narrow_bores(wall, offset):
     assert shell.volume * shell.scale**3 == pytest.approx(expected, rel=1e-2)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", solid_trees.KINDS)
 @pytest.mark.parametrize("seed", [0, 11])
 def test_random_trees(kind, seed):
@@ -325,6 +327,7 @@ HARD = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", HARD)
 def test_positions_that_flip_triangles_or_move_creases(name):
     found, _ = solid_trees.problems(solid_trees.tree(*HARD[name]), count=20_000)
