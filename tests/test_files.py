@@ -812,8 +812,10 @@ def test_points_that_float32_does_not_resolve_are_noted(tmp_path):
         vizlight.read(tmp_path / "a.vtp")
 
 
-def test_curves_of_obj_are_noted(tmp_path):
+def test_straight_curves_of_obj_are_lines_and_others_are_noted(tmp_path):
     text = "v 0 0 0\nv 1 0 0\nv 0 1 0\ncstype bspline\ndeg 1\ncurv 0 1 1 2\nparm u 0 0 1 1\nend\n"
     (tmp_path / "a.obj").write_text(text)
+    assert vizlight.read(tmp_path / "a.obj").lines.tolist() == [2, 0, 1]
+    (tmp_path / "a.obj").write_text(text.replace("deg 1", "deg 2"))
     with pytest.warns(UserWarning, match="free-form curves and surfaces .* are left out"):
         vizlight.read(tmp_path / "a.obj")

@@ -115,8 +115,6 @@ _HARMLESS = re.compile(
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
-#: Lines of OBJ that VTK skips.
-_FREE_FORM = re.compile(rb"^(curv2?|surf)\s", re.MULTILINE)
 #: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
 #: after which one of these is swept.
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
@@ -299,7 +297,7 @@ def _read(
     _warn_of_unread(path, unread)
     if isinstance(data, pv.MultiBlock):
         notes += _left_out(data, meshes)
-    if path.suffix.lower() == ".obj" and _FREE_FORM.search(path.read_bytes()):
+    if path.suffix.lower() == ".obj" and foreign_files.has_free_form(path):
         notes.append("its free-form curves and surfaces (curv, surf) are left out")
     if path.is_file() and (elsewhere := references.outside(path)):
         notes.append(f"it takes files from outside of its folder: {', '.join(elsewhere)}")

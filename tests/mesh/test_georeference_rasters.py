@@ -138,3 +138,31 @@ def test_a_band_beside_colours_has_its_own_unit(tmp_path):
     mesh = vizlight.read(path)
     assert {"rgb", "heat"} <= set(mesh.point_data)
     assert meaning.of(mesh).arrays == {"heat": {"units": "K"}}
+
+
+def pages(path, values, **options):
+    """Write pages of a TIFF file."""
+    from PIL import Image
+
+    first, *others = map(Image.fromarray, values)
+    first.save(path, save_all=True, append_images=others, **options)
+    return path
+
+
+def test_pages_of_images_are_a_volume(tmp_path, random):
+    values = random.integers(0, 255, (4, 5, 6)).astype(np.uint8)
+    volume = vizlight.read(pages(tmp_path / "cells.tif", values))
+    assert volume.dimensions == (6, 5, 4)
+    # The first page is on top, and the first row of each is its upper edge.
+    np.testing.assert_array_equal(volume["cells"].reshape(4, 5, 6), values[::-1, ::-1], strict=True)
+    words = "ImageJ=1.53\nimages=4\nslices=4\nunit=micron\nspacing=0.5\n"
+    volume = vizlight.read(
+        pages(tmp_path / "scaled.tif", values, description=words, x_resolution=10, y_resolution=10)
+    )
+    assert volume.spacing == pytest.approx((0.1, 0.1, 0.5))
+
+
+def test_pages_of_several_sizes_are_told(tmp_path):
+    path = pages(tmp_path / "a.tif", [np.zeros((4, 5), "u1"), np.zeros((3, 5), "u1")])
+    with pytest.warns(UserWarning, match="the first of 2 pages is read"):
+        assert vizlight.read(path).dimensions == (5, 4, 1)

@@ -197,6 +197,11 @@ def read(
             # A mapping that is written in another way names no coordinates.
             opened = xarray.open_dataset(path, **options)
     with opened as file:
+        if "AMBER" in str(file.attrs.get("Conventions", "")):
+            raise ValueError(
+                "a trajectory of Amber has no bonds: save a state of it as .pdb, by cpptraj or "
+                "MDAnalysis"
+            )
         return of_dataset(file, time, at, nodata, source=str(path))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import re
 import tempfile
 import threading
@@ -23,6 +24,7 @@ from vizlight.mesh import (
     geomview,
     georeference,
     meaning,
+    molecules,
     ply,
     polylines,
     scene_files,
@@ -148,19 +150,32 @@ def _head(path: Path, count: int) -> bytes:
 _TEXTURE = re.compile(rb"(?<=\d)/-?\d+(/?)")
 
 
-def _untextured(path: Path) -> pv.DataSet | None:
-    """Return the mesh of an OBJ file whose faces have texture coordinates that are not in it.
+#: A curve of the first degree, which is a polyline.
+_STRAIGHT = re.compile(rb"(?m)^(cstype\s+bspline\s*\ndeg\s+1\s*\n)curv\s+\S+\s+\S+\s")
+_FREE_FORM = re.compile(rb"(?m)^(curv2?|surf)\s")
 
-    VTK's reader ends the process. None where it has them, or names none.
+
+def has_free_form(path: Path) -> bool:
+    """Return whether an OBJ file has curves and surfaces that are not read."""
+    return _FREE_FORM.search(_STRAIGHT.sub(b"", path.read_bytes())) is not None
+
+
+def _wavefront(path: Path) -> pv.DataSet | None:
+    """Return the mesh of an OBJ file that VTK's reader does not take as it is, else None.
+
+    It leaves out curves of the first degree, and ends the process where faces have texture
+    coordinates that are not in the file.
     """
-    data = path.read_bytes()
-    if re.search(rb"(?m)^[ \t]*vt\s", data) or _TEXTURE.search(data) is None:
+    whole = path.read_bytes()
+    data = _STRAIGHT.sub(rb"\1l ", whole)
+    is_textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
+    if data == whole and (is_textured or _TEXTURE.search(data) is None):
         return None
     # What is left of damaged corners may be such numbers, too.
-    while _TEXTURE.search(data):
+    while not is_textured and _TEXTURE.search(data):
         data = _TEXTURE.sub(rb"\1\1", data)
     with tempfile.TemporaryDirectory() as folder:
-        draft = Path(folder) / "untextured.obj"
+        draft = Path(folder) / "draft.obj"
         draft.write_bytes(data)
         return pv.read(draft, validate=False)
 
@@ -198,7 +213,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
         short_files.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
-    mesh = pv.from_meshio(data)
+    try:
+        mesh = pv.from_meshio(data)
+    except KeyError as error:
+        raise ValueError(f"it has cells {error.args[0]!r}, which VTK has not") from None
     if _SAID.texts:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
@@ -247,11 +265,17 @@ _SCAN = {3: (), 4: ("intensity",), 6: ("color",), 7: ("intensity", "color")}
 
 
 def _scan(path: Path) -> pv.PolyData:
-    """Return the points of a scan: an optional count, and a line for each point.
+    """Return the points of a scan: an optional count, and a line for each point, or a molecule.
 
     VTK's reader loses the first of them, and ends the process where a line has no numbers.
     """
     with path.open(encoding="latin-1") as file:
+        head = [*itertools.islice(file, 3)]
+        if len(head) == 3 and path.suffix.lower() == ".xyz":
+            molecule = molecules.of_xyz([*head, *file], path)
+            if molecule is not None:
+                return molecule
+        file.seek(0)
         first = file.readline().split()
         count = int(first[0]) if len(first) == 1 else None
         if count is None:
@@ -448,7 +472,7 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 #: Readers that need the path alone, by suffix.
 _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = {
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
-    ".las": _lidar, ".laz": _lidar, ".obj": _untextured, ".off": geomview.read_off,
-    ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
+    ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
 }  # fmt: skip

@@ -366,6 +366,8 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # A raster without a place is a grid of pixels.
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         with rasterio.open(path) as file:
+            if (stack := _stack(file, path)) is not None:
+                return stack
             arrays, units = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
             # A picture with a model of its camera has a system, but its pixels have no place.
@@ -406,6 +408,42 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         said.notes.append("taken for degrees by their ranges")
     meaning.attach(grid, said)
     return grid
+
+
+def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
+    """Return the pages of a file of images without a place as a volume, None where it has one.
+
+    The first page is on top, as that of a pile of paper, which mirrors nothing.
+    """
+    import rasterio
+
+    names = file.subdatasets if file.driver == "GTiff" else ()
+    if len(names) < 2 or not file.transform.is_identity or file.crs is not None:
+        return None
+    pages: list[Raw] = []
+    for name in names:
+        with rasterio.open(name) as page:
+            pages.append(_band(page, 0))
+    if {page.shape for page in pages} != {pages[0].shape} or file.count > 1:
+        words = "pages of several sizes or colours are no volume"
+        _check.warn(f"file: '{path}': the first of {len(pages)} pages is read: {words}")
+        return None
+    values = np.stack(pages[::-1])[:, ::-1]
+    tags = file.tags()
+    size = float(tags.get("TIFFTAG_XRESOLUTION", 0))
+    # ImageJ's description has the distance of pages, and the unit in which pixels are counted.
+    said = dict(re.findall(r"(?m)^(unit|spacing)=(.*)$", tags.get("TIFFTAG_IMAGEDESCRIPTION", "")))
+    pixel = 1 / size if "unit" in said and size > 0 else 1.0
+    apart = float(said.get("spacing", pixel))
+    volume = pv.ImageData(dimensions=values.shape[::-1], spacing=(pixel, pixel, apart))
+    volume.point_data[path.name.split(".")[0]] = values.ravel()
+    notes = [f"{len(pages)} pages as a volume, the first on top"]
+    if "spacing" not in said:
+        notes.append("pages are taken to be as far apart as pixels")
+    meaning.attach(
+        volume, meaning.Meaning(axes=["x to the right", "y up the page", "z up"], notes=notes)
+    )
+    return volume
 
 
 def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:

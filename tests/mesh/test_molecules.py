@@ -1,0 +1,57 @@
+"""Molecules: one of several states, with bonds between its own atoms alone."""
+
+import numpy as np
+import pytest
+
+import vizlight
+
+ATOM = "ATOM  {:5d}  CA  GLY A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C  \n"
+WATER = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
+
+
+def written(folder, text, name):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_the_first_of_several_models_is_read(tmp_path):
+    atoms = [ATOM.format(i + 1, i + 1, 1.5 * i, 0, 0) for i in range(4)]
+    one = vizlight.read(written(tmp_path, "".join(atoms) + "END\n", "one.pdb"))
+    models = "".join(f"MODEL     {k}\n{''.join(atoms)}ENDMDL\n" for k in (1, 2, 3))
+    with pytest.warns(UserWarning, match="the first of 3 states of a molecule is read"):
+        first = vizlight.read(written(tmp_path, f"{models}END\n", "three.pdb"))
+    assert first.n_points == one.n_points == 4
+    assert first.n_lines == one.n_lines == 3
+    np.testing.assert_array_equal(first.points, one.points)
+
+
+def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
+    water = vizlight.read(written(tmp_path, WATER, "water.xyz"))
+    assert water["atom_type"].tolist() == [8, 1, 1]
+    assert sorted(map(sorted, water.lines.reshape(-1, 3)[:, 1:].tolist())) == [[0, 1], [0, 2]]
+    assert water.n_verts == 0
+    far = WATER.replace("3", "4", 1) + "Na1 9 9 9\n"
+    with pytest.warns(UserWarning, match="the first of 2 states"):
+        salt = vizlight.read(written(tmp_path, far + far, "salt.xyz"))
+    assert (salt.n_points, salt.n_lines, salt.n_verts) == (4, 2, 1)
+    assert salt["atom_type"][3] == 11
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (WATER.replace("3", "5", 1), "3 of 5 atoms are there"),
+        (WATER.replace("H 0.96", "Qq 0.96"), "line 4 has no element"),
+        (WATER.replace("0.96", "x"), "line 4 has no element"),
+        (WATER.replace("0.96", "nan"), "line 4 has no element"),
+    ],
+)
+def test_damaged_molecules_are_refused(tmp_path, text, words):
+    with pytest.raises(vizlight.files.FileError, match=words):
+        vizlight.read(written(tmp_path, text, "water.xyz"))
+
+
+def test_points_without_elements_stay_a_scan(tmp_path):
+    scan = vizlight.read(written(tmp_path, "0 0 0\n1 0 0\n0 1 0\n", "scan.xyz"))
+    assert (scan.n_points, scan.n_lines) == (3, 0)
