@@ -338,6 +338,7 @@ def test_tracts_whose_header_has_no_size(tmp_path):
         ("1 2\n3 4\n", "2 columns are no places"),
         ("", "1 columns are no places"),
         ("3\n1 2 3\n4 5 6\n", "2 of 3 points are there"),
+        ("2\nwater\nO 0 0 0\nH 1 0 0\n", "atoms by their names: convert it to .pdb"),
     ],
 )
 def test_scans_that_are_no_points(tmp_path, text, reason):
@@ -396,6 +397,19 @@ def test_points_in_lines_of_text(tmp_path):
     (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
     mesh = vizlight.read(tmp_path / "a.xyz")
     assert mesh["color"].tolist() == [[10, 20, 30], [40, 50, 60]]
+
+
+@pytest.mark.filterwarnings("default:.*the last three columns")
+def test_normals_and_colors_of_points_in_lines_of_text(tmp_path):
+    path = tmp_path / "a.xyz"
+    path.write_text("0 0 0 0 0.6 -0.8\n1 2 3 1 0 0\n")
+    mesh = vizlight.read(path)
+    np.testing.assert_allclose(mesh.active_normals, [[0, 0.6, -0.8], [1, 0, 0]], atol=1e-6)
+    path.write_text("0 0 0 0 0.5 1\n1 2 3 1 1 1\n")
+    assert vizlight.read(path)["color"].tolist() == [[0, 128, 255], [255, 255, 255]]
+    path.write_text("0 0 0 0 0.5 -9\n1 2 3 1 1 1\n")
+    with pytest.warns(UserWarning, match="neither colours .* nor normals of length 1"):
+        assert not vizlight.read(path).array_names
 
 
 def test_tracts_say_in_which_frame_they_are():
