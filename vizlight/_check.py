@@ -57,9 +57,15 @@ _OTHERS = {
 
 
 class held:  # noqa: N801 - used as a function
-    """Hold the warnings of a thread until a block ends well; an error comes without them."""
+    """Hold the warnings of a thread until a block ends well; an error comes without them.
+
+    A name in them, such as that of a temporary file, is replaced by another.
+    """
 
     _texts = threading.local()
+
+    def __init__(self, name: str = "", shown: str = "") -> None:
+        self._names = name, shown
 
     def __enter__(self) -> None:
         """Begin to hold; an outer block keeps its warnings."""
@@ -70,7 +76,7 @@ class held:  # noqa: N801 - used as a function
         """Issue the held warnings, if no error came."""
         texts, self._texts.held = self._texts.held, self._outer
         for text in texts if kind is None else ():
-            warn(text)
+            warn(text.replace(*self._names))
 
 
 def warn(text: str, category: type[Warning] = UserWarning) -> None:

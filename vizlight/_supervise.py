@@ -15,6 +15,7 @@ import select
 import shutil
 import signal
 import sys
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -106,6 +107,19 @@ def stage(
             # A stage around this one goes on with the time that it had left.
             signal.setitimer(signal.ITIMER_REAL, left)
         os.write(_channel, b"{}\n")
+
+
+@contextlib.contextmanager
+def folder(path: str | os.PathLike[str], /) -> Iterator[Path]:
+    """Make a temporary folder to read a file by, which goes also where the process is killed.
+
+    Parameters
+    ----------
+    path : path
+        File that is read.
+    """
+    with tempfile.TemporaryDirectory() as made, stage("read", path, temporary=made):
+        yield Path(made)
 
 
 def run(main: Callable[[], int]) -> int:
@@ -283,11 +297,14 @@ def _what_happened(
     if not stages:
         return f"the process was ended by {by.name}{reason}", LACKING
     last = stages[-1]
-    path = f"'{last['path']}'"
+    # A file is read by others, which have temporary names.
+    first = next(step for step in stages if step["doing"] == last["doing"])
+    path = f"'{first['path']}'"
     if last["doing"] == "read":
         why = f"its reader was ended by {by.name}; the file may be damaged"
         if by == signal.SIGALRM:
-            why = f"not read within {last['seconds']:.0f} s; the file may be damaged"
+            seconds = max(step["seconds"] for step in stages)
+            why = f"not read within {seconds:.0f} s; the file may be damaged"
             why += f", {READ_VARIABLE}= allows more time"
         return f"file: expected a file that can be read, got {path} ({why})", BAD_INPUT
     if last["doing"] == "write":

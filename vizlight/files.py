@@ -11,7 +11,6 @@ import os
 import re
 import shutil
 import sys
-import tempfile
 import threading
 import time
 import uuid
@@ -107,11 +106,16 @@ SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 
 
+#: Where an object of VTK is in memory, and what it was asked for.
+_ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when asked by REQUEST.*")
+
+
 #: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
-#: keys of ParaView's and ranges of NaN are metadata, conditions at the boundary of CGNS no cells.
+#: keys of ParaView's and ranges of NaN are metadata, conditions at the boundary of CGNS no cells,
+#: percentages of 3DS parts of materials.
 _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
-    "|glTF extension .* is used in"
+    "|glTF extension .* is used in|Error parsing percentage"
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
@@ -377,12 +381,15 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         raise FileError(f"no points: the dimensions are {size}")
     if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
-    # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines.
-    odd = [key for key in mesh.cell_data if len(mesh.cell_data[key]) != mesh.n_cells]
-    for key in odd:
-        del mesh.cell_data[key]
-    if odd:
-        _check.warn(f"file: arrays without a row for each cell are left out: {odd}")
+    # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines, and
+    # normals that no face names to the points, however many these are.
+    of_points = [(mesh.point_data, mesh.n_points, "point")] if path.suffix.lower() == ".obj" else []
+    for data, count, what in ((mesh.cell_data, mesh.n_cells, "cell"), *of_points):
+        odd = [key for key in data if len(data[key]) != count]
+        for key in odd:
+            del data[key]
+        if odd:
+            _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
         if len(ends) and ((ends[0], ends[-1]) != (0, len(ids)) or np.any(ends[1:] < ends[:-1])):
@@ -476,8 +483,8 @@ _MESHERS = (".mesh", ".meshb", ".msh")
 
 def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:
     """Return the meshes of a packed file, from a temporary file of its contents."""
-    with tempfile.TemporaryDirectory() as folder:
-        inner = Path(folder) / path.stem
+    with _supervise.folder(path) as folder:
+        inner = folder / path.stem
         try:
             with _UNPACK[path.suffix.lower()](path) as packed, inner.open("wb") as file:
                 while block := packed.read(1 << 20):
@@ -487,7 +494,8 @@ def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.D
         except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
             raise _damaged(path, _first_line(error)) from error
         try:
-            return read(inner)
+            with _check.held(str(inner), str(path)):
+                return read(inner)
         except FileError as error:
             # The name of the temporary file says nothing to anyone.
             raise FileError(str(error).replace(str(inner), str(path))) from error
@@ -648,7 +656,7 @@ class _Messages:
         text = text or "words that are no text"
         open_lists, replaced = self._heard.get(threading.get_ident()), self._replaced
         if open_lists:
-            open_lists[-1].append(_first_line(_ORIGIN.sub("", text)))
+            open_lists[-1].append(_first_line(_ADDRESS.sub("", _ORIGIN.sub("", text))))
         elif replaced is not None:
             sys.stderr.write(text)
             replaced[0].InvokeEvent(event, text)

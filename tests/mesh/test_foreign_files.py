@@ -398,6 +398,19 @@ def test_points_in_lines_of_text(tmp_path):
     assert mesh["color"].tolist() == [[10, 20, 30], [40, 50, 60]]
 
 
+@pytest.mark.filterwarnings("default:.*the last three columns")
+def test_normals_and_colors_of_points_in_lines_of_text(tmp_path):
+    path = tmp_path / "a.xyz"
+    path.write_text("0 0 0 0 0.6 -0.8\n1 2 3 1 0 0\n")
+    mesh = vizlight.read(path)
+    np.testing.assert_allclose(mesh.active_normals, [[0, 0.6, -0.8], [1, 0, 0]], atol=1e-6)
+    path.write_text("0 0 0 0 0.5 1\n1 2 3 1 1 1\n")
+    assert vizlight.read(path)["color"].tolist() == [[0, 128, 255], [255, 255, 255]]
+    path.write_text("0 0 0 0 0.5 -9\n1 2 3 1 1 1\n")
+    with pytest.warns(UserWarning, match="neither colours .* nor normals of length 1"):
+        assert not vizlight.read(path).array_names
+
+
 def test_tracts_say_in_which_frame_they_are():
     pytest.importorskip("nibabel")
     mesh = vizlight.read(tract("standard.trk"))

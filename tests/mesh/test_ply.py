@@ -154,3 +154,36 @@ def test_places_and_faces_of_pyvista(tmp_path):
         np.testing.assert_allclose(
             mesh.point_data.active_normals, ball.point_data["Normals"], atol=1e-6
         )
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian"])
+@pytest.mark.filterwarnings("default:.*left out")
+def test_lists_of_vertices_are_left_out(form, tmp_path):
+    head = ["property list uchar uchar marks", "element face 1", LIST]
+    data = text(*(f"{row} 2 7 9" for row in POINTS), "4 0 1 2 3", head=head)
+    if form != "ascii":
+        rows = [struct.pack("<3f3B", *map(int, row.split()), 2, 7, 9) for row in POINTS]
+        data = text(head=head, form=form) + b"".join(rows) + struct.pack("<B4i", 4, 0, 1, 2, 3)
+    with pytest.warns(UserWarning, match="lists that are left out: marks"):
+        mesh = read(tmp_path, data)
+    assert (mesh.n_points, mesh.n_cells, mesh.array_names) == (4, 1, [])
+
+
+@pytest.mark.filterwarnings("default:.*left out")
+def test_more_rows_than_stated(tmp_path):
+    with pytest.warns(UserWarning, match="has 1 lines more than it states, which are left out"):
+        assert read(tmp_path, text(*POINTS, "5 5 5", "a comment")).n_points == 4
+
+
+def test_counts_in_the_billions(tmp_path):
+    """Also of an element without properties."""
+    form = "binary_little_endian"
+    head = ["element face 1000000000000", LIST, "element nothing 1000000000000"]
+    points = np.array([row.split() for row in POINTS], "<f4").tobytes()
+    with pytest.raises(FileError, match="2 of 1000000000000 rows of 'face' are there"):
+        read(
+            tmp_path, text(head=head, form=form) + points + struct.pack("<B3i", 3, 0, 1, 2) + b"\0"
+        )
+    data = text(head=["element nothing 1000000000000"], form=form) + points
+    with pytest.warns(UserWarning, match="left out: nothing"):
+        assert read(tmp_path, data).n_points == 4

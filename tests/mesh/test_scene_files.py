@@ -11,6 +11,14 @@ from vizlight.mesh import scene_files
 TETRAHEDRON = """Shape { geometry IndexedFaceSet {
 coord Coordinate { point [0 0 0, 1 0 0, 0 1 0, 0 0 1] }
 coordIndex [0 2 1 -1, 0 1 3 -1, 1 2 3 -1, 0 3 2 -1] } }"""
+NORMALS, COLORS = "normal Normal { vector [0 0 1, 0 1 0] }", "color Color { color [1 0 0, 0 1 0] }"
+
+
+def with_rows(text):
+    """Return the tetrahedron with more fields."""
+    return TETRAHEDRON.replace("coordIndex", f"{text} coordIndex")
+
+
 EMPTY = (
     """Shape { geometry IndexedLineSet { coord Coordinate { point [] } coordIndex [0 1 -1] } }"""
 )
@@ -138,6 +146,13 @@ def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
         TETRAHEDRON.replace("1 0 0", "1 0"): "Coordinate has no point of three numbers a row",
         TETRAHEDRON.replace("1 2 3", "1 x 3"): "'x' stands after '0 2 1 -1",
         TETRAHEDRON.replace("coordI", "normalI"): "a normalIndex and no coordIndex",
+        TETRAHEDRON.replace("0 2 1", "0 2 4"): "the number 4 of 4 rows of Coordinate",
+        TETRAHEDRON.replace("0 2 1", "0 2 -2"): "the number -2 of 4 rows of Coordinate",
+        with_rows(f"{NORMALS} normalIndex [0 1 2 -1]"): "the number 2 of 2 rows of Normal",
+        with_rows(NORMALS): "the number 3 of 2 rows of Normal",
+        with_rows(f"{NORMALS} normalPerVertex FALSE"): "the number 3 of 2 rows of Normal",
+        with_rows(f"{COLORS} colorPerVertex FALSE colorIndex [0 7]"): "the number 7 of 2 rows of C",
+        with_rows("texCoord TextureCoordinate { point [0 0] }"): "3 of 1 rows of TextureC",
         f"Transform {{ scale 1 2 children [ {TETRAHEDRON} ] }}": "scale has 2 numbers",
     }.items(),
 )
@@ -150,6 +165,30 @@ def test_nodes_of_other_files_are_left_out_with_a_word(tmp_path):
     path = written(tmp_path, f'Inline {{ url "b.wrl" }} {TETRAHEDRON}')
     with pytest.warns(UserWarning, match="nodes of other files are left out: Inline"):
         assert vizlight.read(path).n_cells == 4
+
+
+def test_external_prototypes_are_left_out_with_a_word(tmp_path):
+    declared = 'EXTERNPROTO Hill [ exposedField MFVec2f scale field SFNode a ] [ "urn:a" "b.wrl" ]'
+    used = "Transform { children [ Hill { scale [1 1] } Shape { geometry Hill { } } ] }"
+    path = written(tmp_path, declared, used, TETRAHEDRON)
+    with pytest.warns(UserWarning, match="left out") as said:
+        assert vizlight.read(path).n_cells == 4
+    words = " ".join(str(warning.message) for warning in said)
+    assert "nodes of other files are left out: EXTERNPROTO" in words
+    assert "1 of 2 shapes are left out: no points" in words
+
+
+def test_texts_with_quotation_marks_and_scales_of_textures(tmp_path):
+    info = r'WorldInfo { info [ "by \"a\" # { " ] }'
+    texture = "appearance Appearance { textureTransform TextureTransform { scale 2 2 } } geometry"
+    path = written(tmp_path, info, TETRAHEDRON.replace("geometry", texture))
+    assert vizlight.read(path).n_cells == 4
+
+
+def test_what_vtk_stops_at_is_refused(tmp_path):
+    path = written(tmp_path, TETRAHEDRON, "Viewpoint { position 1 }", TETRAHEDRON)
+    with pytest.raises(vizlight.files.FileError, match="VTK reads 1 of its 2 shapes"):
+        vizlight.read(path)
 
 
 def test_the_first_version_is_refused(tmp_path):

@@ -1,9 +1,12 @@
 """Files that lack a part or contradict their headers are refused before a reader opens them."""
 
 import base64
+import gzip
+import io
 import json
 import re
 import struct
+import zipfile
 import zlib
 
 import numpy as np
@@ -14,7 +17,7 @@ import vizlight
 from vizlight.files import FileError
 from vizlight.mesh import short_files
 
-NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 5 4 3\nencoding: raw\n\n" + bytes(120)
+NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 10 3 2\nencoding: raw\n\n" + bytes(120)
 META = (
     b"ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 5 4 3\nElementSpacing = 1 1 1\n"
     b"ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + bytes(120)
@@ -77,6 +80,38 @@ def gltf(key="asset", **changes):
     return json.dumps(GLTF | {key: part}).encode()
 
 
+VTM = (
+    b'<?xml version="1.0"?><VTKFile type="vtkMultiBlockDataSet" version="1.0">'
+    b'<vtkMultiBlockDataSet><DataSet index="%d" file="%s"/><Block index="1"/>'
+    b'<Block index="2"><DataSet index="%d" file="c.vtp"/><DataSet index="0" file="d.vtp"/></Block>'
+    b"</vtkMultiBlockDataSet></VTKFile>"
+)
+PACKED = gzip.compress(bytes(range(200)))
+HDF = b"\x89HDF\r\n\x1a\n" + bytes(32) + (100).to_bytes(8, "little") + bytes(52)
+
+
+def archive():
+    """Return an archive of one part."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as parts:
+        parts.writestr("header.json", "{}")
+    return file.getvalue()
+
+
+def studio(*corners, count=1):
+    """Return a file of 3DS with three points and a triangle."""
+
+    def chunk(kind, data):
+        return struct.pack("<HI", kind, 6 + len(data)) + data
+
+    points = chunk(0x4110, struct.pack("<H9f", 3, 0, 0, 0, 1, 0, 0, 0, 1, 0))
+    faces = chunk(0x4120, struct.pack("<5H", count, *corners, 7))
+    # A material whose texture states no percentage.
+    material = chunk(0xAFFF, chunk(0xA000, b"m\0") + chunk(0xA200, chunk(0xA300, b"a.b\0")))
+    shape = chunk(0x4000, b"s\0" + chunk(0x4100, points + faces))
+    return chunk(0x4D4D, chunk(0x3D3D, material + shape))
+
+
 AVS = b"3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
 
 
@@ -112,6 +147,8 @@ WHOLE = {
     "a.avs": AVS,
     "a.obj": OBJ,
     "untextured.obj": OBJ.replace(b"vt 0 0\n", b""),
+    "slashes.obj": OBJ.replace(b"/1/1", b"/1/").replace(b"vn 0 0 1\n", b""),
+    "a.3ds": studio(0, 1, 2),
     "three.vtk": cells(3, 0, 1, 2, 3, 1, 2, 3),
     "mixed.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2),
     "binary.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2, text=False),
@@ -119,7 +156,7 @@ WHOLE = {
 WRONG = {
     "no end": ("a.nrrd", NRRD[:40], "header"),
     "dimension": ("a.nrrd", NRRD.replace(b"dimension: 3", b"dimension: 100000"), "3 sizes for"),
-    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 5", b"sizes: 500"), "of 12000 bytes"),
+    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12000 bytes"),
     "twice": ("a.nrrd", NRRD.replace(b"\n\n", b"\ntype: int\n\n"), "a key stands twice"),
     "no data": ("a.nhdr", NRRD[:-121] + b"data file: b.raw\n", "'b.raw' are missing"),
     "no break": ("a.nhdr", NRRD[:-121] + b"data file: b.raw", "last line has no line break"),
@@ -169,10 +206,22 @@ WRONG = {
     ),
     "bracket": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
     "columns": ("a.pdb", ATOM.replace(b"   1  ", b"1" + b"0" * 30), "no numbers in the columns"),
-    "twice said": ("a.case", b"FORMAT\ntype: x\n" + CASE, "the section FORMAT stands twice"),
+    "twice said": ("a.case", CASE[:26] + CASE, "the section FORMAT stands twice"),
     "section": ("a.case", CASE[:52], "no such section as b'VARI'"),
     "variable": ("a.case", CASE.replace(b"per node", b"per \0"), "no such variable as"),
     "missing": ("a.case", CASE.replace(b"a.geo", b"b.geo"), "'b.geo', which is missing"),
+    "type": ("a.case", CASE.replace(b"ght", b"\0\xff"), "no such type as"),
+    "no name": ("a.case", CASE[:-8], "names no file in the line b'scalar per node:"),
+    "long name": ("a.vtm", VTM % (0, b"a" * 300, 1), "File name too long"),
+    "two blocks": ("a.vtm", VTM % (0, b"b.vtp", 0), "two blocks have the index 0"),
+    "sum of all": ("a.mgz", PACKED[:-8] + bytes(4) + PACKED[-4:], "CRC check failed"),
+    "cut sum": ("a.nii.gz", PACKED[:-8], "ended before the end-of-stream marker"),
+    "sum of a part": ("a.trx", archive().replace(b"{}", b"{ "), "the check sum of 'header.json'"),
+    "no archive": ("a.trx", archive()[:-9], "File is not a zip file"),
+    "no group": ("a.hdf", HDF, "it has no group VTKHDF"),
+    "corner": ("a.3ds", studio(0, 1, 9), "a triangle has the point 9 of 3"),
+    "rows": ("a.3ds", studio(0, 1, 2, count=99), "99 rows are not within 8 bytes"),
+    "chunk": ("a.3ds", studio(0, 1, 2)[:-1], "a part of .* bytes is not within"),
     "part": ("a.case", CASE, "the part b'7', which the geometry has not"),
 }
 
@@ -258,10 +307,33 @@ def test_damaged_pieces_of_grids(tmp_path):
 
 
 @pytest.mark.filterwarnings("default:.*may be cut")
-def test_a_file_of_atoms_that_ends_within_a_line(tmp_path):
-    (tmp_path / "a.pdb").write_bytes(ATOM + ATOM.replace(b"0.500", b"0.900")[:62])
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("a.pdb", ATOM + ATOM.replace(b"0.500", b"0.900")[:62]), ("a.vtk", FIELD[:-1])],
+)
+def test_a_file_that_ends_within_a_line(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
     with pytest.warns(UserWarning, match="may be cut in its last line"):
-        vizlight.read(tmp_path / "a.pdb")
+        vizlight.read(tmp_path / name)
+
+
+@pytest.mark.filterwarnings("default:.*left out")
+def test_normals_that_no_face_names(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"/1/1", b"//"))
+    with pytest.warns(UserWarning, match=r"each point are left out: \['Normals'\]"):
+        assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
+@pytest.mark.filterwarnings("default:.*first axis")
+def test_an_axis_that_vtk_takes_for_components(tmp_path):
+    """The number of rows is 9 at most, whatever the header says of its kind."""
+    for sizes, dimensions in ((b"10 3 2", (10, 3, 2)), (b"6 5 2", (5, 2, 1))):
+        (tmp_path / "a.nrrd").write_bytes(NRRD.replace(b"10 3 2", sizes))
+        if sizes[:2] == b"10":
+            assert vizlight.read(tmp_path / "a.nrrd").dimensions == dimensions
+            continue
+        with pytest.warns(UserWarning, match="its first axis of 6 numbers as components"):
+            assert vizlight.read(tmp_path / "a.nrrd").dimensions == dimensions
 
 
 def test_places_beyond_the_largest(tmp_path):

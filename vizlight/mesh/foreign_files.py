@@ -5,18 +5,16 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import re
-import tempfile
 import threading
 import warnings
 import zipfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
-from vizlight import _check
+from vizlight import _check, _supervise
 from vizlight.mesh import (
     abaqus,
     brains,
@@ -34,6 +32,7 @@ from vizlight.mesh import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
     from vizlight._types import Array, Foreign, Indices, Raw
 
@@ -148,6 +147,9 @@ def _head(path: Path, count: int) -> bytes:
 
 #: Number of a texture coordinate in a corner of a face, before that of its normal.
 _TEXTURE = re.compile(rb"(?<=\d)/-?\d+(/?)")
+#: Lines of faces and lines, and slashes at the end of a corner.
+_CORNERS = re.compile(rb"(?m)^[ \t]*[fl][ \t].*")
+_SLASHES = re.compile(rb"(?<=\d)/+(?=[ \t\r\n]|\Z)")
 
 
 #: A curve of the first degree, which is a polyline.
@@ -163,19 +165,21 @@ def has_free_form(path: Path) -> bool:
 def _wavefront(path: Path) -> pv.DataSet | None:
     """Return the mesh of an OBJ file that VTK's reader does not take as it is, else None.
 
-    It leaves out curves of the first degree, and ends the process where faces have texture
-    coordinates that are not in the file.
+    It leaves out curves of the first degree, ends the process at texture coordinates that are
+    missing, and stops at a slash without a number.
     """
     whole = path.read_bytes()
     data = _STRAIGHT.sub(rb"\1l ", whole)
-    is_textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
-    if data == whole and (is_textured or _TEXTURE.search(data) is None):
+    if _SLASHES.search(data):
+        data = _CORNERS.sub(lambda line: _SLASHES.sub(b"", line[0]), data)
+    textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
+    if data == whole and (textured or _TEXTURE.search(data) is None):
         return None
     # What is left of damaged corners may be such numbers, too.
-    while not is_textured and _TEXTURE.search(data):
+    while not textured and _TEXTURE.search(data):
         data = _TEXTURE.sub(rb"\1\1", data)
-    with tempfile.TemporaryDirectory() as folder:
-        draft = Path(folder) / "draft.obj"
+    with _supervise.folder(path) as folder:
+        draft = folder / "draft.obj"
         draft.write_bytes(data)
         return pv.read(draft, validate=False)
 
@@ -260,8 +264,10 @@ class _Console:
         _SAID.texts = [*getattr(_SAID, "texts", ()), plain]
 
 
-#: Columns of a line of a scan: place, intensity, colour.
-_SCAN = {3: (), 4: ("intensity",), 6: ("color",), 7: ("intensity", "color")}
+#: Columns of a line of a scan: place, intensity, colour or normal.
+_SCAN = (3, 4, 6, 7)
+#: Largest difference from 1 of the length of a normal.
+_UNIT = 0.02
 
 
 def _scan(path: Path) -> pv.PolyData:
@@ -288,9 +294,29 @@ def _scan(path: Path) -> pv.PolyData:
     if count is not None and len(rows) != count:
         raise ValueError(f"{len(rows)} of {count} points are there")
     mesh = pv.PolyData(rows[:, :3].copy())
-    for name in _SCAN[rows.shape[1]]:
-        mesh.point_data[name] = rows[:, -3:].astype(np.uint8) if name == "color" else rows[:, 3]
+    if rows.shape[1] in (4, 7):
+        mesh.point_data["intensity"] = rows[:, 3]
+    if rows.shape[1] > 4:
+        _attach_three(mesh, rows[:, -3:], path)
     return mesh
+
+
+def _attach_three(mesh: pv.PolyData, rows: Array, path: Path) -> None:
+    """Attach the last three numbers of points, which are colours or normals by their values."""
+    lengths = np.linalg.norm(rows, axis=1)
+    if np.all((rows >= 0) & (rows <= 255) & (rows == np.rint(rows))):
+        mesh.point_data["color"] = rows.astype(np.uint8)
+    elif np.all((np.abs(lengths - 1) < _UNIT) | (lengths == 0)):
+        values: Foreign = rows.astype(np.float32)
+        mesh.point_data.set_array(values, "Normals")
+        mesh.point_data.active_normals_name = "Normals"
+    elif np.all((rows >= 0) & (rows <= 1)):
+        mesh.point_data["color"] = np.rint(255 * rows).astype(np.uint8)
+    else:
+        _check.warn(
+            f"file: '{path}': the last three columns are left out: they are neither colours from "
+            "0 to 255 or from 0 to 1, nor normals of length 1"
+        )
 
 
 def _lidar(path: Path) -> pv.PolyData:
@@ -382,8 +408,8 @@ def _tracts_of_trx(path: Path) -> pv.PolyData:
         return _of_trx(trx_file_memmap.load(str(path)))
     except Exception as error:
         # The lines may be whole where data beside them are not: they are read alone from a copy.
-        with tempfile.TemporaryDirectory() as folder:
-            bare, left = Path(folder) / "bare.trx", []
+        with _supervise.folder(path) as folder:
+            bare, left = folder / "bare.trx", []
             with zipfile.ZipFile(path) as whole, zipfile.ZipFile(bare, "w") as part:
                 for name in whole.namelist():
                     if name.partition("/")[0] in _SIDE:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,10 +14,11 @@ from vtkmodules.vtkDomainsChemistry import (
     vtkSimpleBondPerceiver,
 )
 
-from vizlight import _check
+from vizlight import _check, _supervise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
 #: End of the first of several models of a PDB file, and the start of each.
 _END, _MODEL = re.compile(rb"^ENDMDL", re.MULTILINE), re.compile(rb"^MODEL ", re.MULTILINE)
@@ -42,8 +41,8 @@ def of_pdb(path: Path) -> pv.PolyData | None:
     end = _END.search(data)
     if count < 2 or end is None:
         return None
-    with tempfile.TemporaryDirectory() as folder:
-        draft = Path(folder) / "first.pdb"
+    with _supervise.folder(path) as folder:
+        draft = folder / "first.pdb"
         draft.write_bytes(data[: end.end()] + b"\n")
         mesh = pv.read(draft, validate=False)
     _warn_of_states(path, count)

@@ -29,6 +29,8 @@ _TYPES = {
 }  # fmt: skip
 #: Data begin right after the line break; white space there may already be numbers.
 _HEAD = re.compile(rb"(?:ply|PLY)\s.*?^end_header[ \t]*\r?\n", re.DOTALL | re.MULTILINE)
+#: Begin of a row.
+_NUMBER = re.compile(rb"\s*[-+.]?\d")
 #: Arrays of several numbers of a vertex or a face, by the names that programs give these.
 _TOGETHER = (
     ("RGBA", ("red", "green", "blue", "alpha")),
@@ -55,6 +57,10 @@ class _Element:
     columns: dict[str, Raw] = field(default_factory=dict)
     #: Number of numbers of each list.
     sizes: dict[str, Indices] = field(default_factory=dict)
+
+    def single(self) -> dict[str, Raw]:
+        """Return the properties that have one number in each row."""
+        return {name: rows for name, rows in self.columns.items() if name not in self.lengths}
 
     def lacks(self, there: int) -> ValueError:
         """Return the error of an element that is not whole."""
@@ -129,9 +135,11 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
                 raise _short(len(short), len(element.kinds))
             for i, (name, kind) in enumerate(element.kinds.items()):
                 element.columns[name] = _numbers([row[i] for row in rows], kind)
-    # More lines are comments of other programs.
     if first == len(lines) and lines:
         short_files.warn_of_last_line(path, data)
+    # Other lines are comments of other programs.
+    elif (more := sum(_NUMBER.match(line) is not None for line in lines[first:])) > 0:
+        _check.warn(f"file: '{path}' has {more} lines more than it states, which are left out")
 
 
 def _short(there: int, expected: int) -> ValueError:
@@ -178,6 +186,8 @@ def _numbers(words: list[bytes], kind: str) -> Raw:
 
 def _read_bytes(data: bytes, at: int, element: _Element, order: str) -> int:
     """Read the rows of an element, and return where the next one begins."""
+    if not element.kinds:
+        return at
     # Most files have lists of one length: that of the first row is tried for all.
     starts, sizes, _ = _walk(data, at, element, order, min(element.count, 1))
     longest = {name: int(every[0]) if len(every) else 0 for name, every in sizes.items()}
@@ -195,7 +205,8 @@ def _read_bytes(data: bytes, at: int, element: _Element, order: str) -> int:
             for name, size in longest.items():
                 element.sizes[name] = np.full(element.count, size, dtype=np.intp)
             return at + element.count * row.itemsize
-    starts, sizes, end = _walk(data, at, element, order, element.count)
+    # A row has a byte at least: a damaged count may be in the billions.
+    starts, sizes, end = _walk(data, at, element, order, min(element.count, len(data) - at + 1))
     whole = np.frombuffer(data, np.uint8)
     for name, kind in element.kinds.items():
         counts = sizes.get(name, np.ones(element.count, dtype=np.intp))
@@ -240,7 +251,8 @@ def _walk(
 
 def _mesh(elements: dict[str, _Element], path: Path) -> pv.PolyData:
     """Return the mesh of elements."""
-    vertices = elements.pop("vertex", _Element("vertex", 0)).columns
+    vertex = elements.pop("vertex", _Element("vertex", 0))
+    vertices = vertex.single()
     if not {*"xyz"} <= vertices.keys():
         raise ValueError("no vertices with x, y and z")
     double = any(vertices[axis].dtype.itemsize > 4 for axis in "xyz")
@@ -256,17 +268,17 @@ def _mesh(elements: dict[str, _Element], path: Path) -> pv.PolyData:
         used.add("texcoord")
     mesh.SetPolys(_cells(ids, sizes))
     edges, strips = elements.pop("edge", None), elements.pop("tristrips", None)
-    if edges is not None and {"vertex1", "vertex2"} <= edges.columns.keys():
-        pairs = np.column_stack([edges.columns[f"vertex{i}"] for i in (1, 2)]).astype(np.intp)
+    if edges is not None and {"vertex1", "vertex2"} <= (ends := edges.single()).keys():
+        pairs = np.column_stack([ends[f"vertex{i}"] for i in (1, 2)]).astype(np.intp)
         mesh.SetLines(_cells(pairs.ravel(), np.full(len(pairs), 2)))
     if strips is not None:
         mesh.SetStrips(_cells(*_strips(*_lists(strips, ("vertex_indices", "vertex_index"))[:2])))
     if mesh.n_cells == face.count:
-        _attach(mesh.cell_data, {k: v for k, v in face.columns.items() if k not in face.sizes})
+        _attach(mesh.cell_data, face.single())
     if not mesh.n_cells:
         mesh.SetVerts(_cells(np.arange(len(points)), np.ones(len(points), dtype=np.intp)))
     left = [name for name in elements if name not in _BESIDE and elements[name].count]
-    left += [name for name in face.sizes if name not in used]
+    left += [name for name in (*vertex.lengths, *face.sizes) if name not in used]
     if left:
         _check.warn(f"file: '{path}' has elements and lists that are left out: {', '.join(left)}")
     return mesh

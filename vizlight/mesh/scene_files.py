@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import itertools
 import re
-import tempfile
 import threading
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check
+from vizlight import _check, _supervise
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from vizlight._types import Array, Foreign, Raw
 
@@ -70,13 +69,13 @@ def read(path: Path) -> pv.MultiBlock:
     """
     from vtkmodules.vtkIOImport import vtk3DSImporter
 
-    with _LOCK, tempfile.TemporaryDirectory() as folder:
+    with _LOCK, _supervise.folder(path) as folder:
         if path.suffix.lower() == ".3ds":
             importer: Foreign = vtk3DSImporter()
             importer.SetFileName(str(path))
             every = _imported(importer)
         else:
-            every = _of_vrml(path, Path(folder) / "scene.wrl")
+            every = _of_vrml(path, folder / "scene.wrl")
     shapes = pv.MultiBlock(
         [
             # Normals are turned as normals, which a scale of unequal factors leaves upright.
@@ -101,8 +100,10 @@ def _of_vrml(path: Path, draft: Path) -> list[tuple[pv.PolyData | None, Array]]:
     text = path.read_bytes().decode("latin-1")
     if text.startswith("#VRML V1"):
         raise ValueError("it is VRML 1, which VTK does not read: save it as VRML 2, .glb or .obj")
-    tokens = _written_out(text)
-    if external := sorted({"EXTERNPROTO", "Inline"}.intersection(tokens)):
+    # VTK takes a quotation mark within a text for its end, and no text is a part of a mesh.
+    words = _TOKENS.findall(_GAP.sub(lambda gap: '"" ' if gap[1] else " ", text))
+    tokens = _written_out(words)
+    if external := sorted({"EXTERNPROTO", "Inline"}.intersection(words)):
         names = ", ".join(external)
         _check.warn(f"file: '{path}': nodes of other files are left out: {names}")
     nodes = list(_nodes(tokens))
@@ -117,6 +118,9 @@ def _of_vrml(path: Path, draft: Path) -> list[tuple[pv.PolyData | None, Array]]:
         results.append(_imported(importer))
         del importer
     shapes, *ends = results
+    # VTK's parser prints what it does not understand, and leaves out what follows.
+    if len(shapes) != (stated := draft.read_text("latin-1").split().count("Shape")):
+        raise ValueError(f"VTK reads {len(shapes)} of its {stated} shapes")
     for i, (_, matrix) in enumerate(shapes):
         for axis, others in enumerate(ends):
             matrix[:3, axis] = others[i][1][:3, 3] - matrix[:3, 3]
@@ -183,7 +187,11 @@ def _instances(words: list[str], prototypes: dict[str, _Prototype]) -> Iterator[
     while i < len(words):
         name, begin = words[i], i
         i += 1
-        if name == "PROTO":
+        if name == "EXTERNPROTO":
+            # After its declaration stands where it is: a group of nothing is in its place.
+            i = _closing(words, _closing(words, begin))
+            prototypes = prototypes | {words[begin + 1]: _Prototype({}, ["Group", "{", "}"])}
+        elif name == "PROTO":
             interface, end = _closing(words, begin), _closing(words, _closing(words, begin))
             declared = _parted(words[begin + 3 : interface - 1], _ACCESS)
             prototypes = prototypes | {
@@ -263,7 +271,7 @@ def _filled(body: list[str], values: Mapping[str, list[str]]) -> Iterator[str]:
             i += 1
 
 
-def _written_out(text: str) -> list[str]:
+def _written_out(every: list[str]) -> list[str]:
     """Return the tokens of a scene with its nodes in all places where they are used.
 
     VTK leaves out the transforms of a node that is used again, and keeps names from file to file.
@@ -272,7 +280,6 @@ def _written_out(text: str) -> list[str]:
     names: dict[str, list[str]] = {}
     # Brackets that are open: the name of what they hold, and where it begins.
     stack: list[tuple[str, int]] = []
-    every = _TOKENS.findall(_GAP.sub(r"\1 ", text))
     named, words = ("", 0), _instances(every, {})
     for word in words:
         if word == "DEF":
@@ -333,22 +340,65 @@ def _nodes(tokens: Sequence[str]) -> Iterator[_Node]:
                 raise ValueError(f"{before} has no {_TRIPLES[before]} of three numbers a row")
         elif word in _OPENING:
             closed = stack.pop()
-            inside = tokens[closed.begin : i] if closed.name == "IndexedFaceSet" else ()
-            if "normalIndex" in inside and "coordIndex" not in inside:
-                raise ValueError("IndexedFaceSet has a normalIndex and no coordIndex")
+            if closed.name in ("IndexedFaceSet", "IndexedLineSet"):
+                _check_indices(closed.name, tokens[closed.begin : i])
             if closed.name in ("Shape", "Transform", *_GROUPS):
                 yield closed._replace(end=i)
             if stack and len(stack[-1].children) == 1:
                 stack[-1].children.append(i)
         elif stack and tokens[stack[-1].begin + 1] == "[" and _mixed(tokens[i - 1], word):
             raise ValueError(f"{word[:20]!r} stands after {tokens[i - 1][:20]!r} in a list")
-        elif stack and word in _FIELDS:
+        elif stack and word in _FIELDS and stack[-1].name == "Transform":
             values = tokens[i + 1].split()
             if len(values) != len(_FIELDS[word]):
                 raise ValueError(f"{word} has {len(values)} numbers")
             stack[-1].fields[word] = i, [float(value) for value in values]
         elif stack and word in _CHILDREN:
             stack[-1].children[:] = [i]
+
+
+#: Nodes with the rows that the corners of a shape have, the field of these rows, and the fields
+#: of their numbers and of what they belong to.
+_ROWS = (
+    ("Coordinate", "point", "coordIndex", ""),
+    ("TextureCoordinate", "point", "texCoordIndex", ""),
+    ("Normal", "vector", "normalIndex", "normalPerVertex"),
+    ("Color", "color", "colorIndex", "colorPerVertex"),
+)
+
+
+def _check_indices(name: str, inside: Sequence[str]) -> None:
+    """Raise ValueError for a shape whose corners have numbers of rows that are not there.
+
+    VTK takes others in their place. Source: ISO/IEC 14772-1, 6.23.
+    """
+    if "normalIndex" in inside and "coordIndex" not in inside:
+        raise ValueError(f"{name} has a normalIndex and no coordIndex")
+    corners = _listed(inside, "coordIndex")
+    for node, field, index, belongs in _ROWS:
+        if node not in inside:
+            continue
+        begin = inside.index(node)
+        width = 2 if node == "TextureCoordinate" else 3
+        count = len(_listed(inside[begin : begin + 7], field)) // width
+        numbers = _listed(inside, index)
+        if not count and (node == "Coordinate" or not len(numbers)):
+            continue  # it is left out with a word, or has none of these rows
+        whole = belongs not in inside or inside[inside.index(belongs) + 1] != "FALSE"
+        if not len(numbers):
+            # Each corner has the number of its point, and each face its own.
+            numbers = corners if whole else np.arange(float(np.count_nonzero(corners == -1)))
+        if len(numbers) and not -1 <= numbers.min() <= numbers.max() < count:
+            wrong = numbers.max() if numbers.min() >= -1 else numbers.min()
+            raise ValueError(f"{name} has the number {wrong:g} of {count} rows of {node}")
+
+
+def _listed(tokens: Sequence[str], field: str) -> Array:
+    """Return the numbers of a field, none without it."""
+    if field not in tokens:
+        return np.empty(0)
+    words = "".join(tokens[tokens.index(field) + 1 : tokens.index(field) + 3]).strip("[]").split()
+    return np.array(words, dtype=np.float64)
 
 
 def _mixed(before: str, word: str) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import graphlib
+import gzip
 import itertools
 import json
 import math
@@ -15,6 +16,7 @@ import mmap
 import os
 import re
 import struct
+import zipfile
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -49,6 +51,10 @@ _PACKED = 8000
 _INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 
 
+#: Errors of a header that is damaged; a name in it may be none that the system takes.
+_UNREADABLE = (AttributeError, LookupError, OSError, TypeError, ValueError, struct.error)
+
+
 def missing_part(path: Path, /) -> str:
     """Return the part that a file lacks of the size or the end that it states.
 
@@ -68,13 +74,13 @@ def missing_part(path: Path, /) -> str:
     with path.open("rb") as file:
         try:
             lacking = lacks(file)
-        except (AttributeError, LookupError, TypeError, ValueError, struct.error) as error:
+            if not lacking and path.suffix.lower() in _INDICES:
+                pieces = [piece for piece in references.named(path) if piece != path]
+                parts = ((at.name, missing_part(at)) for at in pieces if at.is_file())
+                lacking = next((f"'{name}': {reason}" for name, reason in parts if reason), "")
+        except _UNREADABLE as error:
             return f"its header cannot be read: {error}"
-    if lacking or path.suffix.lower() not in _INDICES:
-        return lacking
-    pieces = (piece for piece in references.named(path) if piece.is_file() and piece != path)
-    parts = ((piece.name, missing_part(piece)) for piece in pieces)
-    return next((f"'{name}': {lacking}" for name, lacking in parts if lacking), "")
+    return lacking
 
 
 def warn_of_last_line(path: Path, data: bytes) -> None:
@@ -145,6 +151,97 @@ _CLASSIC, _LARGE, _HDF = (b"CDF\x01", b"CDF\x02"), b"CDF\x05", b"\x89HDF\r\n\x1a
 _HDF_END = {0: 40, 1: 44, 2: 28, 3: 28}
 
 
+def _blocks(file: BinaryIO) -> str:
+    """Look for numbers of blocks that stand twice: VTK keeps the last one."""
+    if lacks := _xml(file):
+        return lacks
+    file.seek(0)
+    numbers = [set[bytes]()]
+    for end, words, alone in _TAG.findall(file.read()):
+        if end:
+            numbers.pop()
+            continue
+        for number in _INDEX.findall(words):
+            if number in numbers[-1]:
+                return f"two blocks have the index {number.decode()}"
+            numbers[-1].add(number)
+        if not alone:
+            numbers.append(set())
+    return ""
+
+
+#: Tags of XML, and the numbers of blocks in them.
+_TAG = re.compile(rb"<(/?)\w+((?:\s[^<>]*?)?)(/?)>")
+_INDEX = re.compile(rb'\sindex="\s*(\d+)')
+
+
+def _gzip(file: BinaryIO) -> str:
+    """Unpack a file to its end, where its check sum stands: readers stop before that."""
+    if file.read(2) != b"\x1f\x8b":
+        return ""  # its reader says so
+    file.seek(0)
+    try:
+        with gzip.open(file) as packed:
+            while packed.read(1 << 20):
+                pass
+    except (EOFError, OSError, zlib.error) as error:
+        return str(error)
+    return ""
+
+
+def _zip(file: BinaryIO) -> str:
+    """Compare the check sums of the parts of an archive."""
+    try:
+        with zipfile.ZipFile(file) as parts:
+            bad = parts.testzip()
+    except zipfile.BadZipFile as error:
+        return str(error)
+    return f"the check sum of {bad!r} is not that of its data" if bad else ""
+
+
+def _vtkhdf(file: BinaryIO) -> str:
+    if lacks := _netcdf(file):
+        return lacks
+    with _mapped(file) as data:
+        return "" if data.find(b"VTKHDF") >= 0 else "it has no group VTKHDF, which VTK reads"
+
+
+#: Kinds of chunks of 3DS that hold others, and the one that holds them after its name.
+_HOLDERS, _NAMED = (0x4D4D, 0x3D3D, 0x4100), 0x4000
+#: Those of points and of triangles, which have numbers of points, and the bytes of a row.
+_POINTS, _TRIANGLES = 0x4110, 0x4120
+_ROW = {_POINTS: 12, _TRIANGLES: 8}
+
+
+def _3ds(file: BinaryIO) -> str:
+    """Follow the chunks, each of which states its size, and compare points with triangles."""
+    data, points = file.read(), 0
+    ends, place = [len(data)], 0
+    while ends:
+        if place + 6 > ends[-1]:
+            place = ends.pop()
+            continue
+        kind, size = struct.unpack_from("<HI", data, place)
+        end, inner = place + size, place + 6
+        if not 6 <= size <= ends[-1] - place:
+            return f"a part of {size} bytes is not within {ends[-1] - place}"
+        if kind in _ROW:
+            (count,) = struct.unpack_from("<H", data, inner)
+            if _ROW[kind] * count > end - inner - 2:
+                return f"{count} rows are not within {end - inner - 2} bytes"
+            points = count if kind == _POINTS else points
+            if kind == _TRIANGLES:
+                corners = np.frombuffer(data, "<u2", 4 * count, inner + 2).reshape(-1, 4)[:, :3]
+                if corners.max(initial=0) >= max(points, 1):
+                    return f"a triangle has the point {corners.max()} of {points}"
+        if kind in _HOLDERS or kind == _NAMED:
+            ends.append(end)
+            place = data.index(b"\0", inner) + 1 if kind == _NAMED else inner
+        else:
+            place = end
+    return ""
+
+
 def _netcdf(file: BinaryIO) -> str:
     """Map each variable of a netCDF 3 file; the library of netCDF reads missing data as 0."""
     head = file.read(64)
@@ -201,6 +298,7 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         # The third line says whether numbers are text; binary files are not looked at.
         if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
             return ""
+        warn_of_last_line(path, block[2])
         # Lines of keywords begin with a letter, as does "nan", which is a number.
         count = sum(
             len(words)
@@ -319,7 +417,16 @@ def _nrrd(file: BinaryIO) -> str:
     if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
         return ""
     is_raw = fields["encoding"].lower() == "raw"
+    kind = fields.get("kinds", "").partition(" ")[0]
+    if len(sizes) == 3 and sizes[0] <= _FEW and kind in ("", "domain", "space"):
+        _check.warn(
+            f"file: '{file.name}': VTK reads its first axis of {sizes[0]} numbers as components"
+        )
     return _data(file, sizes, fields["type"], other, is_raw)
+
+
+#: Most rows of the first axis of an image of NRRD that VTK takes for components.
+_FEW = 9
 
 
 def _meta(file: BinaryIO) -> str:
@@ -432,7 +539,8 @@ _SECTIONS = (
 )  # fmt: skip
 
 
-#: Kinds of variables of EnSight.
+#: Formats of EnSight, and kinds of its variables.
+_TYPES = [[b"ensight"], [b"ensight", b"gold"]]
 _KIND = re.compile(
     rb"(?i)\s*(constant\s+per\s+case(\s+file)?"
     rb"|(complex\s+)?(scalar|vector|tensor(\s+a?symm?)?)\s+per\s+(measured\s+)?(node|element))\s*"
@@ -455,7 +563,13 @@ def _ensight(file: BinaryIO) -> str:
             return f"no such section as {line[:40]!r}"
         elif section == b"VARIABLE" and colon and not _KIND.fullmatch(head):
             return f"no such variable as {line[:40]!r}"
-        elif words and section in (b"GEOMETRY", b"VARIABLE"):
+        elif (
+            section == b"FORMAT" and head.strip() == b"type" and rest.lower().split() not in _TYPES
+        ):
+            return f"no such type as {rest[:40]!r}"
+        elif colon and not words and section in (b"GEOMETRY", b"VARIABLE"):
+            return f"it names no file in the line {line[:40]!r}"
+        elif section in (b"GEOMETRY", b"VARIABLE") and words:
             # Stars stand for the digits of a step; numbers without a file, and pairs of files.
             if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
                 continue
@@ -719,7 +833,9 @@ def _grib(file: BinaryIO) -> str:
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
-    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp,
+    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".3ds": _3ds, ".trx": _zip,
+    ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
+    **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
     **dict.fromkeys((".glb", ".gltf"), _gltf),
     **dict.fromkeys((".avs", ".inp"), _avs),
     **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
@@ -727,9 +843,9 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".mha", ".mhd"), _meta),
     **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),
     **dict.fromkeys((".dat", ".tec"), _tecplot),
-    **dict.fromkeys((*_INDICES, ".vtp", ".vtu"), _xml),
+    **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), _xml),
     **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
     **dict.fromkeys(
-        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii", ".vtkhdf", ".hdf"), _netcdf
+        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii"), _netcdf
     ),
 }  # fmt: skip
