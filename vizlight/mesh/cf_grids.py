@@ -364,10 +364,20 @@ class _Reader:
         elif self.listed is not None:
             mesh = self._points(self.listed, single, nodata, source)
         else:
-            reasons = "; ".join(self.said.notes)
+            reasons = "; ".join([*self.said.notes, *self._without_places()])
             lacking = "no variable on a grid of two or three axes"
             raise ValueError(f"{lacking} ({reasons})" if reasons else lacking)
         return mesh
+
+    def _without_places(self) -> list[str]:
+        """Return words for values in a list whose places may be those of a mesh in another file."""
+        dims = [dim for dim in self.letters if re.fullmatch(_LISTS, dim, re.IGNORECASE)]
+        return [
+            f"{name!r} are values along {dim!r} without places: if another file has their mesh, "
+            "read xarray.merge([mesh, values])"
+            for dim in dims
+            for name, _ in itertools.islice(self._of_lists({dim}), 1)
+        ][:1]
 
     def _on_axes(
         self,
@@ -570,6 +580,12 @@ class _Reader:
             data[name] = of_mesh(self._heights(name, values, variable.attrs, flat=True))
         unit, axes = of_axes
         self.said.axes = [axes]
+        every = {str(name): one.attrs for name, one in self.file.data_vars.items()}
+        on_edges = {
+            name for name, attributes in every.items() if attributes.get("location") == "edge"
+        }
+        if left := sorted(on_edges - self.tables):
+            self.said.notes.append(f"left out, on edges: {', '.join(left)}")
         self._say(source, words)
         if unit:
             mesh.field_data[georeference.UNIT] = [unit]
