@@ -342,6 +342,42 @@ def test_the_places_of_a_face_go_before_names_of_its_rows_and_columns():
         np.testing.assert_array_equal(mesh["t"], data["t"][1][face].ravel())
 
 
+def of_sphere(places):
+    """Return directions of longitudes and latitudes in degrees, and their east and north."""
+    lon, lat = np.radians(places[..., 0]), np.radians(places[..., 1])
+    up = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    east = np.stack([-np.sin(lon), np.cos(lon), 0 * lon], axis=-1)
+    return up, east, np.cross(up, east)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("count", [12, 13])
+def test_winds_on_the_face_of_a_cube_around_a_pole(count, side):
+    """Solid rotation is rotation at every point: at a node at the pole, and in a cell around it."""
+    axis = np.tan(np.linspace(-np.pi / 4, np.pi / 4, count))
+    x, y = np.meshgrid(axis, axis)
+    lon, lat = np.degrees(np.arctan2(y, x)) + 5, side * np.degrees(np.arctan2(1, np.hypot(x, y)))
+    up, east, north = of_sphere(np.stack([lon, lat], axis=-1))
+    about = np.array([0.3, -0.5, 0.8])
+    wind = np.cross(about, up)
+    row = np.gradient(up, axis=1, edge_order=2)
+    row /= np.linalg.norm(row, axis=-1, keepdims=True)
+    ways = {"eastward": east, "northward": north, "x": row, "y": np.cross(up, row)}
+    data = {
+        key[0]: (("nj", "ni"), (wind * way).sum(axis=-1), {"standard_name": f"{key}_wind"})
+        for key, way in ways.items()
+    }
+    data |= {"lon": (("nj", "ni"), lon % 360, {}), "lat": (("nj", "ni"), lat, {})}
+    mesh = vizlight.read(xr.Dataset(data))
+    up, east, north = of_sphere(np.asarray(mesh.points))
+    right = np.cross(about, up)
+    for u, v in ((mesh["e"], mesh["n"]), np.transpose(mesh["x,y"])[:2]):
+        drawn = u[:, np.newaxis] * east + v[:, np.newaxis] * north
+        off = np.linalg.norm(drawn - right, axis=1)
+        assert off.max() < 0.03
+        assert np.median(off) < 1e-3
+
+
 @pytest.mark.parametrize(
     ("text", "units", "unit"),
     [

@@ -17,6 +17,7 @@ from vizlight.geometry.relief import height_field
 from vizlight.mesh import (
     dates,
     georeference,
+    globes,
     grib_groups,
     listed,
     meaning,
@@ -1075,9 +1076,13 @@ def _straight(lon: Array, lat: Array) -> tuple[Array, Array] | None:
 
 def _angle(lon: Array, lat: Array) -> Array:
     """Return the angle in radians from east to the rows of a grid, shape (ny, nx)."""
-    rows = np.unwrap(np.nan_to_num(lon), period=360.0, axis=1)
-    east = np.gradient(rows, axis=1) * np.cos(np.radians(np.nan_to_num(lat)))
-    return np.asarray(np.arctan2(np.gradient(np.nan_to_num(lat), axis=1), east))
+    # Steps on the sphere have a direction near the poles too.
+    axes = globes.directions(np.column_stack([lon.ravel(), lat.ravel()])).reshape(*lon.shape, 3, 3)
+    steps = np.diff(axes[..., 2, :], axis=1)
+    steps = np.pad(steps, ((0, 0), (1, 1), (0, 0)), mode="reflect", reflect_type="odd")
+    along = np.nan_to_num(steps[:, 1:]) + np.nan_to_num(steps[:, :-1])
+    east, north = np.einsum("...ij,...j->i...", axes[..., :2, :], along)
+    return np.asarray(np.arctan2(north, east))
 
 
 def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
