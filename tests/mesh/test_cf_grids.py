@@ -213,6 +213,10 @@ def test_a_rotated_pole_is_where_proj_says():
     mesh = grid(data, axes_of(rlon=x, rlat=y))
     expected = [[-5.095065, 32.625073, 0], [18, 50.75, 0], [73.397696, 61.152862, 0]]
     np.testing.assert_allclose(np.asarray(mesh.points)[[0, 4, 8]], expected, atol=1e-5)
+    # Places that are all missing are none.
+    full = {name: (("rlat", "rlon"), np.full((3, 3), 9.97e36)) for name in ("lon", "lat")}
+    mesh = grid(data | full, axes_of(rlon=x, rlat=y))
+    np.testing.assert_allclose(np.asarray(mesh.points)[[0, 4, 8]], expected, atol=1e-5)
 
 
 def test_members_and_times_without_since():

@@ -806,7 +806,8 @@ class _Reader:
                 found.setdefault(letter, np.degrees(rows) if scale else rows.astype(np.float64))
         # Degrees along the axes may be names of rows and columns, unless no point has its own.
         in_degrees = kinds == ["degrees", "degrees"]
-        if len(found) == 2 and not (in_degrees and np.isnan([*found.values()]).any()):
+        lacking = in_degrees and np.isnan([*found.values()]).any()
+        if len(found) == 2 and not lacking and _on_earth(found["x"], found["y"]).any():
             return (found["x"], found["y"]), kinds != ["length", "length"]
         if kinds == ["rotated", "rotated"]:
             return self._unrotated(dims), True
@@ -1140,7 +1141,7 @@ def _with_dates(variable: Foreign) -> Foreign:
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:
     """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
-    missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
+    missing = ~_on_earth(lon, lat)
     # So do those of models where they compute nothing, far from where their neighbours are.
     empty = (lon == 0) & (lat == 0)
     if 1 < empty.sum() < empty.size:
@@ -1167,6 +1168,11 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     grid.dimensions = (shape[2], shape[1], shape[0])
     grid.points = points.reshape(-1, 3)
     return grid, ~missing
+
+
+def _on_earth(lon: Array, lat: Array) -> Bools:
+    """Return whether numbers are a longitude and a latitude, not what fills their place."""
+    return np.isfinite(lon) & np.isfinite(lat) & (np.abs(lat) <= 90) & (np.abs(lon) <= 720)
 
 
 def _between(lon: Array, lat: Array) -> Bools:
