@@ -221,14 +221,14 @@ def test_a_rotated_pole_is_where_proj_says():
 
 def test_members_and_times_without_since():
     values = np.arange(6.0).reshape(2, 3, 1, 1) * np.ones((1, 1, 4, 5))
-    coords = axes_of(timestep=([10.0, 20.0],), number=([7, 8, 9],))
-    data = {"t": (("timestep", "number", "y", "x"), values)}
+    coords = axes_of(forecast_hour=([10.0, 20.0],), number=([7, 8, 9],))
+    data = {"t": (("forecast_hour", "number", "y", "x"), values)}
     assert grid(data, coords)["t"][0] == 3
     mesh = grid(data, coords, time=10, at={"number": 9})
     assert mesh["t"][0] == 2
     assert mesh.field_data["TimeSteps"].tolist() == [10, 20]
     assert "number 9" in meaning.line(mesh)
-    with pytest.raises(ValueError, match="at: no axis 'member', but timestep, number"):
+    with pytest.raises(ValueError, match="at: no axis 'member', but forecast_hour, number"):
         grid(data, coords, at={"member": 1})
 
 

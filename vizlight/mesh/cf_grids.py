@@ -75,7 +75,7 @@ _NAMES = {
     "z": r"z|z[_\d].*|k|nz|.*lev.*|depth.*|.*depth|dept[htuvw]|gdep.*|s_(rho|w)|h(ei)?ght.*"
     r"|.*height|alt.*|elevation|pres(sure)?.*|isobaric.*|plev.*|bottom_top.*|sigma.*|hybrid.*"
     r"|lv_.*|vertical.*",
-    "t": r"t|.*time.*|date|dates?|days?|months?|years?|hours?|t\d+|step|tstep",
+    "t": r"t|.*time.*|(.*_)?(date|day|month|year|hour)s?|t\d+|step|tstep",
 }
 #: Names of lengths along x and y of the nodes of a mesh.
 _NODES = r"(.*_)?[xy](_?(nodes?|vert\w*|coord\w*))?"
