@@ -17,7 +17,7 @@ terrain = vizlight.load_example("jacksboro_fault.vti")
 hours = np.array([7.0, 9.0, 12.0, 15.0, 17.0])
 day = vizlight.relief_day(
     terrain,
-    latitude=np.radians(36.6),
+    latitude=36.6,
     day=285,
     hours=hours,
     depth=60,

@@ -204,7 +204,7 @@ FILTERS = {
     "plot": {"off_screen": True, "window_size": (60, 40)},
     "project": {"mesh": torus, "scene": SCENE4},
     "provenance": {"mesh": lit},
-    "relief_day": {"mesh": hills, "latitude": 0.8, "day": 100.0, "hours": [10.0, 12.0]},
+    "relief_day": {"mesh": hills, "latitude": 46.0, "day": 100.0, "hours": [10.0, 12.0]},
     "relief_shadow": HILLY,
     "satin": SATIN,
     "streamlines": {"mesh": flow, "tangents": "V"},

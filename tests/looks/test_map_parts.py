@@ -46,10 +46,31 @@ def paths(look):
         (chart(60, 40, name="elevation"), {}, ["graticule", *ISOLINES, "frame"]),
         (chart(9000, 8000, unit="metre"), {}, [*ISOLINES, "frame"]),
         (chart(60, 40), {"view": "iso"}, ["coasts"]),
+        (chart(60, 40), {"map_parts": ()}, []),
+        (chart(60, 40), {"map_parts": "isolines"}, ISOLINES),
+        (
+            chart(14, 8, west=-5),
+            {"map_parts": ["coasts", "frame"]},
+            ["graticule", "coasts", "frame"],
+        ),
+        (chart(60, 40, name="elevation"), {"map_parts": "coasts"}, ["coasts"]),
     ],
 )
 def test_maps_have_what_suits_them(mesh, options, parts):
     assert paths(vizlight.look(mesh, size=SIZE, **options))[1:] == parts
+
+
+def test_parts_of_a_map_by_name():
+    rough = chart(60, 40)
+    rough["warmth"] = np.random.default_rng(3).uniform(size=rough.n_points)
+    assert paths(vizlight.look(rough, size=SIZE, map_parts="none"))[1:] == []
+    assert "[]" in paths(vizlight.look(rough, size=SIZE, map_parts="isolines"))
+    globe = vizlight.look(chart(360, 180, -180, -90), size=SIZE, globe=True, map_parts=())
+    assert [layer.mesh.name for layer in globe.drawing.layers] == ["ball", "ball"]
+    notes = vizlight.look(pv.Sphere(), size=SIZE, map_parts="coasts,frame").drawing.notes
+    assert notes[-1] == "not drawn on these data: coasts, frame"
+    with pytest.raises(ValueError, match="map_parts: expected names of coasts, frame, isolines"):
+        vizlight.look(rough, map_parts="coast")
 
 
 def test_a_globe_of_a_smooth_field_has_isolines_on_the_ball():

@@ -213,18 +213,22 @@ def test_a_rotated_pole_is_where_proj_says():
     mesh = grid(data, axes_of(rlon=x, rlat=y))
     expected = [[-5.095065, 32.625073, 0], [18, 50.75, 0], [73.397696, 61.152862, 0]]
     np.testing.assert_allclose(np.asarray(mesh.points)[[0, 4, 8]], expected, atol=1e-5)
+    # Places that are all missing are none.
+    full = {name: (("rlat", "rlon"), np.full((3, 3), 9.97e36)) for name in ("lon", "lat")}
+    mesh = grid(data | full, axes_of(rlon=x, rlat=y))
+    np.testing.assert_allclose(np.asarray(mesh.points)[[0, 4, 8]], expected, atol=1e-5)
 
 
 def test_members_and_times_without_since():
     values = np.arange(6.0).reshape(2, 3, 1, 1) * np.ones((1, 1, 4, 5))
-    coords = axes_of(timestep=([10.0, 20.0],), number=([7, 8, 9],))
-    data = {"t": (("timestep", "number", "y", "x"), values)}
+    coords = axes_of(forecast_hour=([10.0, 20.0],), number=([7, 8, 9],))
+    data = {"t": (("forecast_hour", "number", "y", "x"), values)}
     assert grid(data, coords)["t"][0] == 3
     mesh = grid(data, coords, time=10, at={"number": 9})
     assert mesh["t"][0] == 2
     assert mesh.field_data["TimeSteps"].tolist() == [10, 20]
     assert "number 9" in meaning.line(mesh)
-    with pytest.raises(ValueError, match="at: no axis 'member', but timestep, number"):
+    with pytest.raises(ValueError, match="at: no axis 'member', but forecast_hour, number"):
         grid(data, coords, at={"member": 1})
 
 
@@ -340,6 +344,42 @@ def test_the_places_of_a_face_go_before_names_of_its_rows_and_columns():
         mesh = grid(data, coords, at={"face": face})
         np.testing.assert_allclose(mesh.points[:, 1], lats[face].ravel(), atol=1e-6)
         np.testing.assert_array_equal(mesh["t"], data["t"][1][face].ravel())
+
+
+def of_sphere(places):
+    """Return directions of longitudes and latitudes in degrees, and their east and north."""
+    lon, lat = np.radians(places[..., 0]), np.radians(places[..., 1])
+    up = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    east = np.stack([-np.sin(lon), np.cos(lon), 0 * lon], axis=-1)
+    return up, east, np.cross(up, east)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("count", [12, 13])
+def test_winds_on_the_face_of_a_cube_around_a_pole(count, side):
+    """Solid rotation is rotation at every point: at a node at the pole, and in a cell around it."""
+    axis = np.tan(np.linspace(-np.pi / 4, np.pi / 4, count))
+    x, y = np.meshgrid(axis, axis)
+    lon, lat = np.degrees(np.arctan2(y, x)) + 5, side * np.degrees(np.arctan2(1, np.hypot(x, y)))
+    up, east, north = of_sphere(np.stack([lon, lat], axis=-1))
+    about = np.array([0.3, -0.5, 0.8])
+    wind = np.cross(about, up)
+    row = np.gradient(up, axis=1, edge_order=2)
+    row /= np.linalg.norm(row, axis=-1, keepdims=True)
+    ways = {"eastward": east, "northward": north, "x": row, "y": np.cross(up, row)}
+    data = {
+        key[0]: (("nj", "ni"), (wind * way).sum(axis=-1), {"standard_name": f"{key}_wind"})
+        for key, way in ways.items()
+    }
+    data |= {"lon": (("nj", "ni"), lon % 360, {}), "lat": (("nj", "ni"), lat, {})}
+    mesh = vizlight.read(xr.Dataset(data))
+    up, east, north = of_sphere(np.asarray(mesh.points))
+    right = np.cross(about, up)
+    for u, v in ((mesh["e"], mesh["n"]), np.transpose(mesh["x,y"])[:2]):
+        drawn = u[:, np.newaxis] * east + v[:, np.newaxis] * north
+        off = np.linalg.norm(drawn - right, axis=1)
+        assert off.max() < 0.03
+        assert np.median(off) < 1e-3
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,9 @@ def test_components_become_vectors():
         meaning.with_named(mesh, "u,w")
 
 
-@pytest.mark.parametrize("value", [-9999, -32768, 32767, -3.4028235e38, 9.96921e36, -999, 1e20])
+@pytest.mark.parametrize(
+    "value", [-9999, -32768, 32767, -3.4028235e38, 9.96921e36, -999, 1e20, -9.99e8]
+)
 def test_one_value_far_outside_and_repeated_is_missing(value):
     values = np.random.default_rng(0).normal(100, 30, 1000).astype(np.float32)
     values[:60] = value

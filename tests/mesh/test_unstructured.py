@@ -163,3 +163,31 @@ def test_a_mesh_of_esmf():
     assert mesh.bounds[:4] == pytest.approx((-180, 180, -90, 90))
     whole = np.bincount(np.asarray(mesh["elementArea"], dtype=int), minlength=len(FACES))
     assert whole.min() == 1
+
+
+def test_rivers_beside_the_land(tmp_path):
+    path = written(tmp_path, TABLES["from 0"], topology=UGRID)
+    with xr.open_dataset(path) as file:
+        land = file.load()
+    ends = {"cf_role": "edge_node_connectivity"}
+    role = {"cf_role": "mesh_topology", "node_coordinates": "rx ry"}
+    rivers = {
+        "channels": ((), 0, role | {"topology_dimension": 1, "edge_node_connectivity": "ends"}),
+        "rx": ("bank", [0.0, 1, 2], {"units": "degrees_east"}),
+        "ry": ("bank", [0.0, 0, 0], {"units": "degrees_north"}),
+        "ends": (("river", "two"), [[0, 1], [1, 2]], ends),
+        "flow": ("river", [1.0, 2], {"location": "edge"}),
+    }
+    mesh = vizlight.read(xr.Dataset(rivers).merge(land))
+    np.testing.assert_array_equal(mesh["rain"], vizlight.read(path)["rain"])
+    assert "left out, on edges: flow" in mesh.field_data["meaning"][0]
+
+
+def test_values_without_their_mesh(tmp_path):
+    path = written(tmp_path, TABLES["from 0"], topology=UGRID)
+    with xr.open_dataset(path) as file:
+        mesh, values = file.drop_vars(["warmth", "rain"]), file[["rain"]].load()
+        with pytest.raises(ValueError, match="'rain' are values along 'face' without places"):
+            vizlight.read(values)
+        whole = vizlight.read(xr.merge([mesh, values]))
+    np.testing.assert_array_equal(whole["rain"], vizlight.read(path)["rain"])

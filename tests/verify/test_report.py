@@ -129,7 +129,7 @@ def test_every_shadow_of_every_light(name, monkeypatch):
 
 def test_a_day_is_told_whole():
     with vizlight.report() as told:
-        day = vizlight.relief_day(terrain(), latitude=0.8, day=172, hours=[9, 12, 15], depth=0.5)
+        day = vizlight.relief_day(terrain(), latitude=46, day=172, hours=[9, 12, 15], depth=0.5)
     assert told.points == day.n_points
     assert told.bytes == day["t"].nbytes + day["t_mean"].nbytes
     assert told.error < 4e-3

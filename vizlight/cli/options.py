@@ -225,6 +225,8 @@ class Output:
         Colour behind the mesh. Default: that of the style.
     line_width
         Width of lines in pixels.
+    map_parts
+        Parts of a map: coasts,frame,isolines or none. Default: by the data.
     backend
         Library that draws. Default: egl.
     report
@@ -241,6 +243,7 @@ class Output:
     style: Literal["paper", "dark"] = "paper"
     background: str | None = None
     line_width: float = 1.0
+    map_parts: str | None = None
     backend: Backend | None = None
     report: Flag = False
     progress: Flag = False

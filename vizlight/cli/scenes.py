@@ -52,6 +52,7 @@ def wishes_of(
     ValueError
         If a value does not fit, or two options do not go together.
     """
+    from vizlight.looks import map_parts
     from vizlight.looks.wishes import Wishes
 
     lights, eye, out = common.lights, common.eye, common.out
@@ -64,6 +65,7 @@ def wishes_of(
         backend=out.backend,
         key=None if lights.key else False,
         progress=out.progress or None,
+        map_parts=None if out.map_parts is None else map_parts.named(out.map_parts),
     )
     array = None
     if color is not None:

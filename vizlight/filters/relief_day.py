@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,7 +57,7 @@ def relief_day(
     mesh
         As for :func:`relief_shadow`; x is east, y north.
     latitude : float, optional
-        Latitude in radians, north positive.
+        Latitude in degrees, north positive.
     day : float, optional
         Day of the year, 1 for the first of January.
     hours : float or array_like, shape (H,), optional
@@ -83,6 +84,11 @@ def relief_day(
     ------
     TypeError, ValueError
         As :func:`relief_shadow` and :func:`vizlight.geometry.relief.sun.directions`.
+
+    Warns
+    -----
+    UserWarning
+        If the latitude is within 1.6 degrees of the equator, but not 0: it may be in radians.
     """
     options = locals()
     if isinstance(mesh, pv.MultiBlock):
@@ -153,7 +159,10 @@ def _directions(
             expected = "both, or directions="
             raise ValueError(_check.message("latitude, day", expected, (latitude, day)))
         name, value = "hours", np.arange(4.0, 21.0) if hours is None else hours
-        toward: Array = np.atleast_2d(sky.directions(latitude, day, value))
+        angle = math.radians(_check.number("latitude", latitude, low=-90.0, high=90.0))
+        if 0 < abs(latitude) <= math.pi / 2:
+            _check.warn(f"latitude: {latitude:g} is taken for degrees, not radians")
+        toward: Array = np.atleast_2d(sky.directions(angle, day, value))
     elif latitude is not None or day is not None or hours is not None:
         expected = "directions alone, or latitude, day and hours"
         raise ValueError(_check.message("directions", expected, "both"))

@@ -279,7 +279,8 @@ def relief_shadow(
     each point is lit in the frame of its own row, as if the parallels were straight and the earth
     flat: with heights so large that a third of the map is in shadow, t is off by 0.004 in the mean
     on a map of 1 degree, 0.008 on one of 10, and 0.03 on one of 60 or 150, beside straight rays
-    through the ground of a sphere.
+    through the ground of a sphere. The highlight and the attenuation of a lamp near the map, with
+    ``lit``, take metres along x of the middle row.
     Source: cos-theta, section 3, which prints ``t = r/d`` once; it is d/r.
 
     Examples

@@ -375,6 +375,7 @@ def look(
         ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
         ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
         as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
+        ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for none),
         ``up``, ``parallel``, ``zoom``, ``backend``.
 
     Returns

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named
     from vizlight.looks.wishes import Wishes
 
+#: Parts that ``map_parts`` names.
+PARTS = ("coasts", "frame", "isolines")
 #: Room that a frame takes at the left and below its map, in heights of letters: that of 60°N, and
 #: of a line of words; and that of a bar below them.
 ROOM, BAR = (3.2, 1.5), 1.6
@@ -47,6 +49,22 @@ CHART = "vizlight.cartography.chart"
 GLOBE = "vizlight.cartography.globe"
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
+
+
+def named(parts: object) -> tuple[str, ...]:
+    """Return the names of parts of a map: of a sequence, or of a text such as "coasts,frame".
+
+    Raises
+    ------
+    ValueError
+        If they are none of :data:`PARTS`, nor "none" alone.
+    """
+    names = parts.split(",") if isinstance(parts, str) else parts
+    names = () if parts == "none" else names
+    if not isinstance(names, list | tuple) or not all(name in PARTS for name in names):
+        expected = f"names of {', '.join(PARTS)}, or 'none'"
+        raise ValueError(_check.message("map_parts", expected, repr(parts)))
+    return tuple(names)
 
 
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
@@ -89,6 +107,7 @@ def isolines(
     coasts: Step | None,
     *,
     sparse: float = SPARSE,
+    always: bool = False,
 ) -> tuple[Step, list[float], float] | None:
     """Return the step that makes the isolines of a map, their levels as written, and their unit.
 
@@ -108,6 +127,8 @@ def isolines(
         Step of lines of which the numbers keep clear.
     sparse : float
         Least distance between lines, in heights of their letters.
+    always : bool, default: False
+        Whether a field that is not smooth gets lines too, as few as there can be.
     """
     if mesh.run().n_points > MOST_POINTS:
         return None
@@ -123,7 +144,7 @@ def isolines(
     smooth = itertools.takewhile(
         lambda levels: iso.are_smooth(mesh.run(), pieces, levels, size, sparse=sparse), choices
     )
-    shown = next(reversed([*smooth]), None)
+    shown = next(reversed([*smooth]), choices[0] if always and pieces else None)
     if shown is None:
         return None
     words = ticks.numerals_of([*shown.values()])
@@ -193,12 +214,15 @@ def ball() -> Step:
     return Step("ball", "pyvista.Icosphere", radius=BELOW_BALL, nsub=5)
 
 
-def coasts(mesh: Step) -> Step | None:
-    """Return the step that makes the coasts of a map in degrees, None where they show nothing."""
+def coasts(mesh: Step, *, least: float = COASTS) -> Step | None:
+    """Return the step that makes the coasts of a map in degrees, None where they show nothing.
+
+    ``least`` is the extent in degrees of a map that gets them.
+    """
     degrees = max(mesh.run().bounds_size[:2])
     if not georeference.has_degrees(mesh.run()):
         degrees *= (meaning.metres(georeference.unit_of(mesh.run())) or 0.0) / georeference.METRES
-    if degrees < COASTS:
+    if degrees < least:
         return None
     step = Step("coasts", "vizlight.cartography.coasts", mesh)
     return step if step.run().n_cells else None

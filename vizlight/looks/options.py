@@ -14,6 +14,7 @@ from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw import render
 from vizlight.filters.streamlines import vectors_by_default
+from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
@@ -37,7 +38,8 @@ PART = (
 )  # fmt: skip
 EYE = ("up", "parallel", "zoom")
 PICTURE = (
-    "background", "line_width", "cmap", "clim", "scalars", "key", "backend", "progress",
+    "background", "line_width", "cmap", "clim", "scalars", "key", "map_parts", "backend",
+    "progress",
 )  # fmt: skip
 
 
@@ -65,6 +67,8 @@ def sorted_out(
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
     scene = options.pop("scene", None)
     _check.boolean("globe", options.get("globe", False))
+    if options.get("map_parts") is not None:
+        options["map_parts"] = map_parts.named(options["map_parts"])
     for name, value in options.items():
         group = next(
             (

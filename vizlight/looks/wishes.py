@@ -125,7 +125,8 @@ class Wishes:
     eye : mapping
         Options of the camera: up, parallel, zoom.
     picture : mapping
-        Options of the picture: background, line_width, cmap, clim, scalars, key, backend.
+        Options of the picture: background, line_width, cmap, clim, scalars, key, map_parts,
+        backend.
     make_scene : callable, optional
         Function that returns the step of the scene.
     surface : bool
@@ -161,6 +162,11 @@ class Wishes:
         """Colour behind the data."""
         color = self.picture.get("background")
         return STYLES[self.style] if color is None else color
+
+    def draws(self, map_part: str) -> bool | None:
+        """Return whether a part of a map was asked for, None where the data choose."""
+        asked: Foreign = self.picture.get("map_parts")
+        return None if asked is None else map_part in asked
 
     def scene(self, question: str, camera: Step) -> Step:
         """Return the step that makes the scene of a question, or the one that was given."""

@@ -17,6 +17,7 @@ from vizlight.geometry.relief import height_field
 from vizlight.mesh import (
     dates,
     georeference,
+    globes,
     grib_groups,
     listed,
     meaning,
@@ -74,7 +75,7 @@ _NAMES = {
     "z": r"z|z[_\d].*|k|nz|.*lev.*|depth.*|.*depth|dept[htuvw]|gdep.*|s_(rho|w)|h(ei)?ght.*"
     r"|.*height|alt.*|elevation|pres(sure)?.*|isobaric.*|plev.*|bottom_top.*|sigma.*|hybrid.*"
     r"|lv_.*|vertical.*",
-    "t": r"t|.*time.*|date|dates?|days?|months?|years?|hours?|t\d+|step|tstep",
+    "t": r"t|.*time.*|(.*_)?(date|day|month|year|hour)s?|t\d+|step|tstep",
 }
 #: Names of lengths along x and y of the nodes of a mesh.
 _NODES = r"(.*_)?[xy](_?(nodes?|vert\w*|coord\w*))?"
@@ -369,10 +370,20 @@ class _Reader:
         elif self.listed is not None:
             mesh = self._points(self.listed, single, nodata, source)
         else:
-            reasons = "; ".join(self.said.notes)
+            reasons = "; ".join([*self.said.notes, *self._without_places()])
             lacking = "no variable on a grid of two or three axes"
             raise ValueError(f"{lacking} ({reasons})" if reasons else lacking)
         return mesh
+
+    def _without_places(self) -> list[str]:
+        """Return words for values in a list whose places may be those of a mesh in another file."""
+        dims = [dim for dim in self.letters if re.fullmatch(_LISTS, dim, re.IGNORECASE)]
+        return [
+            f"{name!r} are values along {dim!r} without places: if another file has their mesh, "
+            "read xarray.merge([mesh, values])"
+            for dim in dims
+            for name, _ in itertools.islice(self._of_lists({dim}), 1)
+        ][:1]
 
     def _on_axes(
         self,
@@ -575,6 +586,12 @@ class _Reader:
             data[name] = of_mesh(self._heights(name, values, variable.attrs, flat=True))
         unit, axes = of_axes
         self.said.axes = [axes]
+        every = {str(name): one.attrs for name, one in self.file.data_vars.items()}
+        on_edges = {
+            name for name, attributes in every.items() if attributes.get("location") == "edge"
+        }
+        if left := sorted(on_edges - self.tables):
+            self.said.notes.append(f"left out, on edges: {', '.join(left)}")
         self._say(source, words)
         if unit:
             mesh.field_data[georeference.UNIT] = [unit]
@@ -794,7 +811,8 @@ class _Reader:
                 found.setdefault(letter, np.degrees(rows) if scale else rows.astype(np.float64))
         # Degrees along the axes may be names of rows and columns, unless no point has its own.
         in_degrees = kinds == ["degrees", "degrees"]
-        if len(found) == 2 and not (in_degrees and np.isnan([*found.values()]).any()):
+        lacking = in_degrees and np.isnan([*found.values()]).any()
+        if len(found) == 2 and not lacking and _on_earth(found["x"], found["y"]).any():
             return (found["x"], found["y"]), kinds != ["length", "length"]
         if kinds == ["rotated", "rotated"]:
             return self._unrotated(dims), True
@@ -1064,9 +1082,13 @@ def _straight(lon: Array, lat: Array) -> tuple[Array, Array] | None:
 
 def _angle(lon: Array, lat: Array) -> Array:
     """Return the angle in radians from east to the rows of a grid, shape (ny, nx)."""
-    rows = np.unwrap(np.nan_to_num(lon), period=360.0, axis=1)
-    east = np.gradient(rows, axis=1) * np.cos(np.radians(np.nan_to_num(lat)))
-    return np.asarray(np.arctan2(np.gradient(np.nan_to_num(lat), axis=1), east))
+    # Steps on the sphere have a direction near the poles too.
+    axes = globes.directions(np.column_stack([lon.ravel(), lat.ravel()])).reshape(*lon.shape, 3, 3)
+    steps = np.diff(axes[..., 2, :], axis=1)
+    steps = np.pad(steps, ((0, 0), (1, 1), (0, 0)), mode="reflect", reflect_type="odd")
+    along = np.nan_to_num(steps[:, 1:]) + np.nan_to_num(steps[:, :-1])
+    east, north = np.einsum("...ij,...j->i...", axes[..., :2, :], along)
+    return np.asarray(np.arctan2(north, east))
 
 
 def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
@@ -1124,7 +1146,7 @@ def _with_dates(variable: Foreign) -> Foreign:
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:
     """Return a grid with a place for each node, and a mask of the nodes that have one."""
     lon, lat = places
-    missing = ~np.isfinite(lon) | ~np.isfinite(lat) | (np.abs(lat) > 90) | (np.abs(lon) > 720)
+    missing = ~_on_earth(lon, lat)
     # So do those of models where they compute nothing, far from where their neighbours are.
     empty = (lon == 0) & (lat == 0)
     if 1 < empty.sum() < empty.size:
@@ -1151,6 +1173,11 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     grid.dimensions = (shape[2], shape[1], shape[0])
     grid.points = points.reshape(-1, 3)
     return grid, ~missing
+
+
+def _on_earth(lon: Array, lat: Array) -> Bools:
+    """Return whether numbers are a longitude and a latitude, not what fills their place."""
+    return np.isfinite(lon) & np.isfinite(lat) & (np.abs(lat) <= 90) & (np.abs(lon) <= 720)
 
 
 def _between(lon: Array, lat: Array) -> Bools:

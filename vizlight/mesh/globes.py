@@ -76,13 +76,13 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
         name = ",".join(names)
         if name not in flat.array_names and names[0] in flat.point_data:
             flat.point_data[name] = meaning.vectors(flat, names)
-    axes = _axes(np.asarray(flat.points, dtype=np.float64))
+    axes = directions(np.asarray(flat.points, dtype=np.float64))
     turned = flat.copy(deep=False)
     turned.points = axes[:, 2].copy()
     for name, rows in flat.point_data.items():
         if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
             turned.point_data[name] = _turned(np.asarray(rows), axes)
-    middles = _axes(np.asarray(flat.cell_centers().points, dtype=np.float64))
+    middles = directions(np.asarray(flat.cell_centers().points, dtype=np.float64))
     for name, rows in flat.cell_data.items():
         if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
             turned.cell_data[name] = _turned(np.asarray(rows), middles)
@@ -105,8 +105,19 @@ def is_globe(mesh: pv.DataSet) -> bool:
     return bool(np.allclose(np.linalg.norm(sample, axis=1), 1, atol=1e-3))
 
 
-def _axes(places: Array) -> Array:
-    """Return the directions east, north and up at places in degrees, shape (N, 3, 3)."""
+def directions(places: Array) -> Array:
+    """Return the directions east, north and up at places.
+
+    Parameters
+    ----------
+    places : ndarray, shape (N, 2 or more)
+        Longitude and latitude in degrees.
+
+    Returns
+    -------
+    ndarray, shape (N, 3, 3)
+        Unit vectors: east, north and up are ``[:, 0]``, ``[:, 1]`` and ``[:, 2]``.
+    """
     east, north = np.radians(places[:, 0]), np.radians(places[:, 1])
     zero = np.zeros_like(east)
     sin, cos, high, low = np.sin(east), np.cos(east), np.sin(north), np.cos(north)

@@ -565,7 +565,8 @@ def _seems_missing(value: float) -> bool:
     """Return whether a number is one of those that stand for none."""
     if value in _LIMITS or abs(value) >= _HUGE:
         return True
-    digits = f"{abs(value):.6g}".replace(".", "")
+    # Of -9.99e8, too, and of none below 1.
+    digits = f"{abs(value):.6g}".partition("e+")[0].replace(".", "")
     # 99 may be a number of percents.
     return len(digits) > (1 if value < 0 else 2) and set(digits) == {"9"}
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, globes, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import AnyArray, Array, Bools, Indices
+    from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 
 __all__ = ["Faces", "of_grid", "plain", "unrolled"]
 
@@ -240,9 +240,14 @@ def _at_pole(x: Array, y: Array, corners: Indices, at_pole: Bools) -> _Ring:
     lon = np.unwrap(x[np.append(corners, corners[0])], period=360.0)
     if abs(lon[-1] - lon[0]) < 180:
         return _Ring(nodes, shares, lon[:-1], lat)
-    turned = np.append(np.arange(len(lat)), [0, 0, 0])
-    lat = np.append(lat, [lat[0], pole, pole])
-    return _Ring(nodes[turned], shares[turned], np.append(lon, [lon[-1], lon[0]]), lat)
+    # The pole lies between two corners that are opposite each other.
+    turned = np.append(np.arange(len(lat)), 0)
+    far = 90 - np.abs(lat[[0, len(lat) // 2]])
+    across = np.tile(corners[[0, len(lat) // 2]], (2, 1))
+    nodes = np.concatenate([nodes[turned], across])
+    shares = np.concatenate([shares[turned], np.full(2, far[0] / far.sum())])
+    lat = np.concatenate([lat[turned], [pole, pole]])
+    return _Ring(nodes, shares, np.append(lon, [lon[-1], lon[0]]), lat)
 
 
 def _over_pole(lon: Array, after: Array) -> Bools:
@@ -276,6 +281,9 @@ def _cut(ring: _Ring, side: float) -> _Ring:
             share = off[a] / (off[a] - off[b])
             lat = (1 - share) * ring.lat[a] + share * ring.lat[b]
             nodes = np.array([[ring.nodes[a, 0], ring.nodes[b, 0]]])
+            if np.array_equal(ring.nodes[a], ring.nodes[b]):
+                # Both are the pole.
+                nodes, share = ring.nodes[a : a + 1], ring.shares[a]
             parts.append(_Ring(nodes, np.array([share]), np.array([180.0]), np.array([lat])))
     return _Ring.joined(parts)
 
@@ -312,9 +320,38 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
         rows = np.asarray(grid.point_data[name]).reshape(nz, ny * nx, -1)
         flat = np.concatenate([faces.at_points(layer) for layer in rows])
         mesh.point_data[name] = flat[:, 0] if flat.shape[1] == 1 else flat
+    at = np.column_stack([x[0], y[0]])
+    for group in meaning.components(grid):
+        # Those along the rows of the grid, which stand turned beside them, are of no meridian.
+        name = ",".join(group)
+        names = [name] if name in grid.point_data else [*group]
+        rows = np.column_stack([grid.point_data[part] for part in names]).reshape(nz, ny * nx, -1)
+        turned = np.concatenate([_from_meridians(faces, at, layer) for layer in rows])
+        columns = [turned] if name in names else turned.T
+        for part, column in zip(names, columns, strict=True):
+            mesh.point_data[part] = column.astype(grid.point_data[part].dtype)
     for name in grid.field_data:
         mesh.field_data[name] = grid.field_data[name]
     return mesh, (len(quads) - len(kept)) * max(nz - 1, 1)
+
+
+def _from_meridians(faces: Faces, at: Array, rows: Raw) -> Array:
+    """Return vectors at the points of faces by those of the nodes, east, north and perhaps up.
+
+    At a point between nodes, and at a pole, these directions are others than at the nodes.
+
+    Parameters
+    ----------
+    faces : Faces
+    at : ndarray, shape (N, 2)
+        Longitude and latitude of each node in degrees.
+    rows : ndarray, shape (N, 2) or (N, 3)
+        Vectors of the nodes.
+    """
+    count = rows.shape[1]
+    in_space = np.einsum("ij,ijk->ik", rows.astype(np.float64), globes.directions(at)[:, :count])
+    onto = globes.directions(faces.places)[:, :count]
+    return np.asarray(np.einsum("ik,ijk->ij", faces.at_points(in_space), onto))
 
 
 def _between(faces: Faces, levels: Array) -> pv.UnstructuredGrid:

@@ -1,4 +1,8 @@
-"""Meshes of netCDF files: nodes and a table of the nodes of each face, by UGRID or by custom."""
+"""Meshes of netCDF files: nodes and a table of the nodes of each face, by UGRID or by custom.
+
+VTK's reader of UGRID is not used: tables of floating-point numbers, which xarray writes, can end
+the process, faces of more than four nodes become triangles, and packed values stay packed.
+"""
 
 from __future__ import annotations
 
@@ -91,10 +95,19 @@ def topology(
     ValueError
         If UGRID names a mesh that has no faces of nodes, or parts of it are missing.
     """
-    for name, variable in file.variables.items():
-        if variable.attrs.get("cf_role") == "mesh_topology":
-            return _of_ugrid(file, str(name), letter_of)
-    return _guessed(file, letter_of)
+    meshes = [
+        str(name)
+        for name, variable in file.variables.items()
+        if variable.attrs.get("cf_role") == "mesh_topology"
+    ]
+    # A network of rivers may stand beside the mesh of the land.
+    named = sorted(meshes, key=lambda name: "face_node_connectivity" not in _attributes(file, name))
+    return _of_ugrid(file, named[0], letter_of) if named else _guessed(file, letter_of)
+
+
+def _attributes(file: Foreign, name: str) -> dict[str, Foreign]:
+    """Return all attributes of a variable: xarray keeps names of coordinates apart from others."""
+    return {**file[name].encoding, **file[name].attrs}
 
 
 def _of_ugrid(
@@ -103,8 +116,7 @@ def _of_ugrid(
     letter_of: Callable[[str, Mapping[str, Foreign]], str],
 ) -> Topology:
     """Return the mesh that a variable of UGRID describes."""
-    # xarray takes the names of coordinates out of the attributes of what has them.
-    attributes = file[name].encoding | file[name].attrs
+    attributes = _attributes(file, name)
     table = attributes.get("face_node_connectivity", "")
     places = str(attributes.get("node_coordinates", "")).split()
     if not table or len(places) < 2:
@@ -194,8 +206,8 @@ def tables(file: Foreign) -> set[str]:
     file : xarray.Dataset
     """
     names = set()
-    for name, variable in file.variables.items():
-        attributes = variable.encoding | variable.attrs
+    for name in file.variables:
+        attributes = _attributes(file, name)
         role = str(attributes.get("cf_role", ""))
         if role.endswith(("connectivity", "mesh_topology")):
             names.add(str(name))

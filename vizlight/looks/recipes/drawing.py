@@ -293,9 +293,14 @@ class Case:
         return eye_of(mesh.run(), self.contents, shown)
 
     @cached_property
-    def frame(self) -> Step | None:
+    def map_frame(self) -> Step | None:
         """Step that makes the frame of a map, None for other data and for a map seen at a slant."""
         return map_parts.frame(self.data, self.wishes, self._up) if self._is_above else None
+
+    @property
+    def frame(self) -> Step | None:
+        """Step of the frame that is drawn: that of the map, unless it is left out."""
+        return None if self.wishes.draws("frame") is False else self.map_frame
 
     @property
     def _is_above(self) -> bool:

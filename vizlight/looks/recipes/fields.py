@@ -299,7 +299,7 @@ def flow(case: Case) -> Drawing:
             f"lines shorter than {least}, four times their distance, are left out: {left_out}"
         ]
     layers = [lines]
-    if case.frame is None:
+    if case.map_frame is None:
         layers += [*_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 

@@ -47,11 +47,16 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     # What cannot be picked is no data, neither to a reader nor to the meter.
     beside: Keywords = {"scene": even_light(drawing.camera), "pickable": False}
     ink = ink_on(pv.Color(drawing.background or case.wishes.background))
-    coasts = map_parts.coasts(case.data) if _has_coasts(case) else None
-    drawing = _with_isolines(case, _with_classes(case, drawing), beside, coasts)
+    asked = case.wishes.draws("coasts")
+    # Coasts that are asked for are drawn on a small map too.
+    least = {"least": 0.0} if asked else {}
+    coasts = map_parts.coasts(case.data, **least) if _has_coasts(case, asked=asked) else None
+    plain = _with_classes(case, drawing)
+    drawing = _with_isolines(case, plain, beside, coasts)
+    drawn = {"frame": case.frame, "isolines": len(drawing.layers) > len(plain.layers)}
     layers = list(drawing.layers)
     if case.on_globe:
-        coasts = map_parts.shore()
+        coasts = None if asked is False else map_parts.shore()
         layers.append(Layer(map_parts.ball(), {**beside, "color": BALL}))
     if coasts is not None:
         lines: Keywords = {"color": ink, "line_width": case.width, "halo": BAND}
@@ -65,7 +70,10 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
         layers.insert(1, Layer(graticule, {**beside, "color": GRATICULE, **thin}))
     if case.frame is not None:
         layers.append(Layer(case.frame, {**beside, "color": ink}))
-    return replace(drawing, layers=layers)
+    drawn["coasts"] = coasts
+    lacking = [name for name in map_parts.PARTS if case.wishes.draws(name) and not drawn[name]]
+    notes = [f"not drawn on these data: {', '.join(lacking)}"] if lacking else []
+    return replace(drawing, layers=layers, notes=[*drawing.notes, *notes])
 
 
 def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step | None) -> Drawing:
@@ -81,12 +89,14 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     has_ground = isinstance(table, Step) and GROUND in table.keywords.values()
     if has_ground or getattr(table, "log_scale", False):
         return drawing
-    if flat is None or not (case.frame or case.on_globe):
+    asked = case.wishes.draws("isolines")
+    if flat is None or not (case.map_frame or case.on_globe) or asked is False:
         return drawing
     is_relief = case.question == "relief" and case.wishes.light.get("lit", True)
     if not is_relief and (case.question != "none" or array.role != "values"):
         return drawing
-    size = case.frame.keywords["letters"] if case.frame else map_parts.degrees(case.wishes)
+    frame = case.map_frame
+    size = frame.keywords["letters"] if frame else map_parts.degrees(case.wishes)
     assert isinstance(size, float)
     clim = case.wishes.colors.get("clim")
     ends = clim or range_of(case.data.run(), array.name)
@@ -94,7 +104,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
     smooth = None if is_relief else map_parts.smoothed(flat, array)
     ground = flat if smooth is None else smooth
-    contoured = map_parts.isolines(ground, array, ends, size, coasts, **sparse)
+    contoured = map_parts.isolines(ground, array, ends, size, coasts, always=bool(asked), **sparse)
     if contoured is None:
         return drawing
     lines, levels, factor = contoured
@@ -131,7 +141,9 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     """Return the drawing of vectors on a map with their lengths in classes of colours."""
     first, *others = drawing.layers
     cmap, clim = first.keywords.get("cmap"), first.keywords.get("clim")
-    is_field = case.frame is not None and case.array is not None and case.array.role == "vectors"
+    is_field = (
+        case.map_frame is not None and case.array is not None and case.array.role == "vectors"
+    )
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
     low, high = clim
@@ -173,14 +185,15 @@ def _every(title: str, levels: Sequence[float]) -> str:
     return f"; lines every {step} {unit}".rstrip()
 
 
-def _has_coasts(case: Case) -> bool:
+def _has_coasts(case: Case, *, asked: bool | None) -> bool:
     """Return whether the data are a flat map of the earth that shows no coast of its own: heights.
 
-    Its projection, if it is not in degrees, is known.
+    Its projection, if it is not in degrees, is known. ``asked`` is whether coasts are asked for,
+    on heights too, None where the data choose.
     """
-    heights = case.array is not None and case.array.role == "heights"
+    heights = not asked and case.array is not None and case.array.role == "heights"
     is_sheet = case.contents.flat_axis == 2 and case.wishes.frame is None
     mesh = case.contents.mesh
-    if not is_sheet or heights or not georeference.on_earth(mesh):
+    if asked is False or not is_sheet or heights or not georeference.on_earth(mesh):
         return False
     return georeference.has_degrees(mesh) or charts.sheet(mesh) is not None
