@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import gc
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -70,6 +71,10 @@ class Command:
         them is reported, and the others are still done. A file whose steps are taken one by one
         counts as several.
         """
+        if not gc.isenabled():
+            # What was loaded stays, and is not looked through again.
+            gc.freeze()
+            gc.enable()
         out = self.out
         named = out.output or ()
         joined = len(paths) > 1 and bool(named) and not any(path.is_dir() for path in named)

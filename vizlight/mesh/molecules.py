@@ -8,11 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkMolecule
-from vtkmodules.vtkDomainsChemistry import (
-    vtkMoleculeToLinesFilter,
-    vtkPeriodicTable,
-    vtkSimpleBondPerceiver,
-)
 
 from vizlight import _check, _supervise
 
@@ -75,6 +70,13 @@ def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
     third = words[2] if len(words) > 2 else []
     if len(words[0]) != 1 or not words[0][0].isdigit() or not third or not _ATOM.match(third[0]):
         return None
+    # Few files need what takes 10 ms to load.
+    from vtkmodules.vtkDomainsChemistry import (
+        vtkMoleculeToLinesFilter,
+        vtkPeriodicTable,
+        vtkSimpleBondPerceiver,
+    )
+
     count = int(words[0][0])
     atoms = words[2 : 2 + count]
     if len(atoms) < count:
