@@ -116,7 +116,7 @@ def scene_maker(scene: object) -> SceneMaker | None:
 def cut(mesh: Step, wishes: Wishes) -> Step:
     """Return the steps that raise, clip and choose cells of a mesh, after it was read."""
     part = wishes.part
-    if part.get("warp") is not None:
+    if part.get("warp") is not None and not part.get("globe"):
         factor, note = wishes.heightened(mesh.run(), part["warp"])
         mesh = Step("raised", "files.warped", mesh, part["warp"], factor)
         mesh.note = note
