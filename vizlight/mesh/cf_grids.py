@@ -520,7 +520,11 @@ class _Reader:
             of.nodes: (mesh.point_data, faces.at_points),
             of.faces: (mesh.cell_data, lambda rows: rows[whole][faces.faces]),
         }
-        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        if degrees:
+            nodes = [np.ravel(self.file[name].values) * scale for name in (of.x, of.y)]
+            unrolled.turn_vectors(mesh, faces, np.column_stack(nodes))
+        return mesh
 
     def _cells(
         self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
@@ -630,7 +634,7 @@ class _Reader:
         heights, words = _up(str(along.name), along.attrs, ticks, "")
         sea = meaning.is_of_sea(words, float(heights.max()))
         index = int(heights.argmax() if sea else heights.argmin())
-        if (note := f"{dim} {ticks[index]:g}") not in self.said.notes:
+        if (note := f"{dim} {ticks[index] + 0.0:g}") not in self.said.notes:
             self.said.notes.append(note)
         return index
 
