@@ -126,6 +126,14 @@ def test_a_globe_is_a_closed_ball_with_coasts_and_a_part_of_the_earth_is_none():
         vizlight.look(ball(), globe="yes")
 
 
+def test_a_globe_with_heights_is_raised():
+    _, look = globe(exaggeration=1e6)
+    size = np.linalg.norm(np.asarray(look.mesh.points, dtype=float), axis=1)
+    assert size == pytest.approx(1 + 1e6 * np.asarray(look.mesh["warmth"]) / 6_371_008.8, abs=1e-4)
+    _, look = globe(warp="warmth")
+    assert "heights are taken 200000 times; exaggeration=1 takes them as they are" in look.notes
+
+
 @pytest.mark.slow
 @pytest.mark.opengl
 def test_the_script_of_a_globe_draws_the_same(tmp_path, monkeypatch):

@@ -484,6 +484,7 @@ def test_the_lowest_layer_of_the_air_and_the_highest_of_the_sea_are_shown():
               "lon": ("lon", [0.0, 1, 2, 3], {"units": "degrees_east"})}  # fmt: skip
     for axis, which, expected in (
         (("level", [200.0, 500, 850], {"units": "millibars"}), "lowest", values[2]),
+        (("hybrid", [1.0, 2, 3], {"positive": "down"}), "lowest", values[2]),
         (("depth", [5.0, 100, 400], {"units": "m", "positive": "down"}), "highest", values[0]),
     ):
         data = xr.Dataset({"t": ((axis[0], "lat", "lon"), values)}, {axis[0]: axis} | places)

@@ -82,6 +82,16 @@ def test_winds_are_tangent_and_turn_about_the_axis():
     assert wind == pytest.approx(7 * np.cross((0, 0, 1), points), abs=1e-4)
 
 
+def test_heights_raise_the_ball():
+    flat = earth()
+    flat["ground"] = 1e4 * np.sin(np.radians(np.asarray(flat.points)[:, 1]))
+    ball = globe(flat, heights="ground", exaggeration=20)
+    size = np.linalg.norm(np.asarray(ball.points, dtype=float), axis=1)
+    assert size == pytest.approx(1 + 20 * np.asarray(ball["ground"]) / 6_371_008.8, abs=1e-6)
+    with pytest.raises(ValueError, match=r"heights: expected a point array .*, got 'u,v'"):
+        globe(flat, heights="u,v")
+
+
 def test_lines_follow_the_ball():
     shore = globe(coasts((-180.0, 180.0, -90.0, 90.0)))
     points = np.asarray(shore.points, dtype=float)

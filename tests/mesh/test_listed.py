@@ -130,3 +130,38 @@ def test_levels_of_a_list_are_no_rows():
     mesh = vizlight.read(xr.Dataset({"t": (("level", "values"), np.stack([LAT, LON]))}, places))
     assert mesh.n_points == len(LON)
     np.testing.assert_array_equal(mesh["t"], LAT)
+
+
+def of_cube(count):
+    """Return longitudes and latitudes of count x count nodes on each of the faces of a cube."""
+    x, y = np.meshgrid(*[np.tan(np.linspace(-np.pi / 4, np.pi / 4, count))] * 2)
+    one = np.ones_like(x)
+    faces = [(one, x, y), (-x, one, y), (-one, -x, y), (x, -one, y), (-y, x, one), (y, x, -one)]
+    lon = np.degrees([np.arctan2(face[1], face[0]) for face in faces]) % 360
+    return lon, np.degrees([np.arctan2(face[2], np.hypot(*face[:2])) for face in faces])
+
+
+def test_all_faces_of_a_cube_are_one_surface():
+    nodes = dict(zip(("lon", "lat"), of_cube(7), strict=True))
+    numbers = np.arange(54.0).reshape(6, 3, 3)
+    dims, around = ("nf", "Ydim", "Xdim"), ("nf", "YCdim", "XCdim")
+    data = xr.Dataset(
+        {"t": (("lev", *dims), np.stack([numbers, numbers + 100]))}
+        | {f"{name}s": (dims, rows[:, 1::2, 1::2]) for name, rows in nodes.items()}
+        | {f"corner_{name}s": (around, rows[:, ::2, ::2]) for name, rows in nodes.items()},
+        {"lev": ("lev", [500.0, 1000], {"units": "hPa"})},
+    )
+    mesh = vizlight.read(data)
+    assert mesh.area == pytest.approx(360 * 180)
+    assert "lev 1000" in meaning.line(mesh)
+    numbers = np.asarray(mesh["t"]).astype(int) - 100
+    assert {*numbers} == {*range(54)}
+    whole = np.bincount(numbers) == 1
+    places = np.asarray(mesh.cell_centers().points)[whole[numbers]]
+    middles = np.column_stack([rows[:, 1::2, 1::2].ravel() for rows in nodes.values()])
+    at = middles[numbers[whole[numbers]]]
+    off = np.abs((places[:, :2] - at + 180) % 360 - 180)
+    assert np.median(off) < 0.5
+    assert off.max() < 10
+    face = vizlight.read(data, at={"nf": 4, "lev": 1})
+    np.testing.assert_array_equal(np.unique(face["t"]), 136 + np.arange(9))

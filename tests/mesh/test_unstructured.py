@@ -165,6 +165,25 @@ def test_a_mesh_of_esmf():
     assert whole.min() == 1
 
 
+def test_winds_at_the_nodes_of_a_mesh_turn_with_the_meridians():
+    """Solid rotation is rotation at each point, at the poles and where faces are cut too."""
+    about = np.array([0.3, -0.5, 0.8])
+
+    def east_and_north(lon, lat):
+        lon, lat = np.radians(lon), np.radians(lat)
+        up = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+        east = np.stack([-np.sin(lon), np.cos(lon), 0 * lon], axis=-1)
+        wind = np.cross(about, up)
+        return (wind * east).sum(axis=-1), (wind * np.cross(up, east)).sum(axis=-1)
+
+    u, v = east_and_north(LON, LAT)
+    places = {"lon": ("node", LON, {"units": "degrees"}), "lat": ("node", LAT)}
+    wind = {"u": ("node", u), "v": ("node", v)}
+    mesh = vizlight.read(xr.Dataset({**wind, **places, "faces": (("face", "three"), FACES)}))
+    right = east_and_north(*np.asarray(mesh.points, dtype=float).T[:2])
+    assert np.abs(np.stack([mesh["u"], mesh["v"]]) - right).max() < 0.02
+
+
 def test_rivers_beside_the_land(tmp_path):
     path = written(tmp_path, TABLES["from 0"], topology=UGRID)
     with xr.open_dataset(path) as file:

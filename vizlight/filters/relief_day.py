@@ -88,7 +88,7 @@ def relief_day(
     Warns
     -----
     UserWarning
-        If the latitude is within 1.6 degrees of the equator, but not 0: it may be in radians.
+        If the latitude may be in radians: it is beside the equator, at no more than pi/2.
     """
     options = locals()
     if isinstance(mesh, pv.MultiBlock):

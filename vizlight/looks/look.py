@@ -372,11 +372,12 @@ def look(
     **options
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
         ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``contour``, ``level``,
-        ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball). The light:
-        ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the question, such
-        as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
-        ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for none),
-        ``up``, ``parallel``, ``zoom``, ``backend``.
+        ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball, a raised one with
+        ``warp`` or ``exaggeration``). The light: ``scene``, and options of
+        :func:`vizlight.illuminate` or of the filter of the question, such as ``tangents``. The
+        picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``map_parts`` (those
+        that are drawn of "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``,
+        ``zoom``, ``backend``.
 
     Returns
     -------
@@ -556,6 +557,7 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     notes += [step.note] if step.note else []
     if part.get("globe"):
         step = wishes.globe(step)
+        notes += [step.note] if step.note else []
     if part.get("slice") is not None:
         # Planes that cut a map are in the coordinates of its file, so they come before metres.
         step = wishes.section(step)

@@ -116,7 +116,7 @@ def scene_maker(scene: object) -> SceneMaker | None:
 def cut(mesh: Step, wishes: Wishes) -> Step:
     """Return the steps that raise, clip and choose cells of a mesh, after it was read."""
     part = wishes.part
-    if part.get("warp") is not None:
+    if part.get("warp") is not None and not part.get("globe"):
         factor, note = wishes.heightened(mesh.run(), part["warp"])
         mesh = Step("raised", "files.warped", mesh, part["warp"], factor)
         mesh.note = note
@@ -141,7 +141,7 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
         return mesh
     count = files.layers(grid)
     words = meaning.of(grid).axes
-    sea = grid.bounds[5] <= 0 and "pressure" not in " ".join(words[2:])
+    sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
     order = range(count - 1, -1, -1) if sea else range(count)
     for at in order:
         taken = Step("layer", "files.layer_of", mesh, at)

@@ -15,7 +15,7 @@ from vizlight.draw.keywords import LIGHT
 from vizlight.draw.margins import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
-from vizlight.mesh import georeference, meaning, records
+from vizlight.mesh import georeference, height_grids, meaning, projections, records
 from vizlight.scene.material import Material
 from vizlight.scene.presets import PRESETS
 
@@ -314,7 +314,16 @@ class Wishes:
             got = "no map in degrees" if wide is None else f"one of {wide:.4g} degrees"
             expected = f"a map of the whole earth, of at least {GLOBAL:g} degrees of longitude,"
             raise ValueError(message("globe", f"{expected} for a globe", got, "leave out globe"))
-        return Step("ball", "vizlight.cartography.globe", mesh)
+        heights = self.part.get("warp")
+        if heights is None and self.part.get("exaggeration") is not None:
+            heights = height_grids.heights_name(flat)
+        if heights is None:
+            return Step("ball", "vizlight.cartography.globe", mesh)
+        factor, note = self.heightened(flat, heights, side=2 * projections.RADIUS)
+        keywords = {"heights": heights, "exaggeration": factor}
+        ball = Step("ball", "vizlight.cartography.globe", mesh, **keywords)
+        ball.note = note
+        return ball
 
     def section(self, mesh: Step) -> Step:
         """Return the step that takes the section by a plane."""
@@ -323,14 +332,16 @@ class Wishes:
         step.asked = ("slice", f"{normal}, {origin}")
         return step
 
-    def heightened(self, mesh: pv.DataSet, heights: str) -> tuple[float, str]:
+    def heightened(
+        self, mesh: pv.DataSet, heights: str, *, side: float | None = None
+    ) -> tuple[float, str]:
         """Return the factor with which heights can be seen, and the words that say so."""
         explicit = self.part.get("exaggeration")
         if explicit is not None:
             return float(explicit), ""
         if heights not in records.averaged(mesh, heights).point_data:
             return 1.0, ""
-        factor = georeference.exaggeration(mesh, heights)
+        factor = georeference.exaggeration(mesh, heights, side=side)
         words = f"heights are taken {factor:g} times; exaggeration=1 takes them as they are"
         return factor, words if factor != 1 else ""
 

@@ -346,6 +346,7 @@ class _Reader:
         self, time: object, at: dict[str, object], nodata: float | None, source: str
     ) -> pv.DataSet:
         """Return the grid; see :func:`of_dataset`."""
+        self._join_faces(at)
         ticking, step, single = self._step(time)
         notes = [*self.said.notes]
         single |= self._chosen(at)
@@ -357,6 +358,14 @@ class _Reader:
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
         is_step = (len(ticking) > 1 or self.said.time) and not of_track
         return series.marked(mesh, ticking, step) if is_step else mesh
+
+    def _join_faces(self, at: Mapping[str, object]) -> None:
+        """Put the cells on the faces of a cube in one list, if none of the faces is chosen."""
+        named = {dim for dim, letter in self.letters.items() if letter[0]}
+        file = listed.joined(self.file, _node_letter, {*named, *at})
+        if file is not self.file:
+            self.file, self.listed = file, listed.listed(file, _node_letter)
+            self.letters = {str(dim): self._letter(str(dim)) for dim in file.sizes}
 
     def _mesh(self, single: dict[str, int], nodata: float | None, source: str) -> pv.DataSet:
         """Return the grid of some indices along axes."""
@@ -511,7 +520,11 @@ class _Reader:
             of.nodes: (mesh.point_data, faces.at_points),
             of.faces: (mesh.cell_data, lambda rows: rows[whole][faces.faces]),
         }
-        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        if degrees:
+            nodes = [np.ravel(self.file[name].values) * scale for name in (of.x, of.y)]
+            unrolled.turn_vectors(mesh, faces, np.column_stack(nodes))
+        return mesh
 
     def _cells(
         self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
@@ -574,8 +587,7 @@ class _Reader:
         for name, variable in self._of_lists({*rows_of}):
             dims: list[str] = [str(dim) for dim in variable.dims]
             (along,) = {*dims} & {*rows_of}
-            others = {dim: single.get(dim, 0) for dim in dims if dim != along}
-            self._note_first([dim for dim in others if dim not in single])
+            others = {dim: self._index(dim, single) for dim in dims if dim != along}
             self.said.add_array(name, variable.attrs)
             values = _within(np.asarray(variable.isel(others).values), variable.attrs)
             values, missing = meaning.without_missing(name, values, nodata)
@@ -609,6 +621,22 @@ class _Reader:
             numbers = variable.dtype.kind in "biuf" and not _ASIDE.fullmatch(name)
             if one and numbers and name not in aside and not _node_letter(name, variable.attrs):
                 yield name, variable
+
+    def _index(self, dim: str, single: Mapping[str, int]) -> int:
+        """Return the index along a dimension: a chosen one, that of the ground, or the first."""
+        along = self._coordinate(dim)
+        if dim in single:
+            return single[dim]
+        if self.letters[dim][0] != "z" or along is None or along.dtype.kind not in "iuf":
+            self._note_first([dim])
+            return 0
+        ticks: Array = np.array(along.values, dtype=np.float64)
+        heights, words = _up(str(along.name), along.attrs, ticks, "")
+        sea = meaning.is_of_sea(words, float(heights.max()))
+        index = int(heights.argmax() if sea else heights.argmin())
+        if (note := f"{dim} {ticks[index] + 0.0:g}") not in self.said.notes:
+            self.said.notes.append(note)
+        return index
 
     def _note_first(self, dims: Sequence[str]) -> None:
         """Note that the first value along some axes is taken."""

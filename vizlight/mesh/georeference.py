@@ -273,7 +273,7 @@ def in_degrees(mesh: DataSetT, /) -> DataSetT:
     return named
 
 
-def exaggeration(mesh: pv.DataSet, heights: str) -> float:
+def exaggeration(mesh: pv.DataSet, heights: str, *, side: float | None = None) -> float:
     """Return the factor of heights with which the relief of a map can be seen.
 
     It is 1 where they range over a twentieth of the side of the map to half of it; else the 1, 2
@@ -285,7 +285,11 @@ def exaggeration(mesh: pv.DataSet, heights: str) -> float:
         Mesh whose points the heights raise; one in degrees is taken in metres.
     heights : str
         Name of a point array of one component.
+    side : float, optional
+        Length beside which the heights are seen. Default: the side of the map.
     """
+    if side is not None:
+        return _factor(_spread(mesh, heights), side)
     sides = sorted(in_metres(mesh).bounds_size)
     # The two longer sides are those of the map. One row of points has no area.
     return _factor(_spread(mesh, heights), math.sqrt(sides[1] * sides[2]) or sides[2])

@@ -10,7 +10,7 @@ import pyvista as pv
 import scipy
 
 from vizlight import _check
-from vizlight.mesh import georeference, meaning, polylines
+from vizlight.mesh import georeference, meaning, polylines, projections, records
 from vizlight.vtk.cells import connectivity, dimensions
 
 if TYPE_CHECKING:
@@ -28,7 +28,9 @@ NEAR_POLE = 15.0
 WHOLE, SLIGHT = 60.0, 1e-3
 
 
-def globe(mesh: pv.DataSet, /) -> pv.PolyData:
+def globe(
+    mesh: pv.DataSet, /, *, heights: str | None = None, exaggeration: float = 1.0
+) -> pv.PolyData:
     """Return a flat map in degrees on the unit sphere: x toward 0 degrees east, z toward north.
 
     Columns that begin anew after 360 degrees are one; a map that ends one step before that is
@@ -40,6 +42,11 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
     ----------
     mesh : pyvista.DataSet
         Flat map, whose field array ``unit`` says ``degree``.
+    heights : str, optional
+        Name of a point array of heights in metres, by which points are farther from the centre;
+        none where they are missing. Default: all are on the sphere.
+    exaggeration : float, default: 1.0
+        Factor of the heights.
 
     Returns
     -------
@@ -87,9 +94,17 @@ def globe(mesh: pv.DataSet, /) -> pv.PolyData:
         if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
             turned.cell_data[name] = _turned(np.asarray(rows), middles)
     ball = _whole(turned) if lines is None else turned
+    if heights is not None:
+        ball.points = _raised(ball, heights, _check.number("exaggeration", exaggeration))
     ball.field_data.pop(georeference.UNIT, None)
     ball.field_data[GLOBE] = [1.0]
     return ball
+
+
+def _raised(ball: pv.PolyData, name: str, factor: float) -> Array:
+    """Return the points of a ball farther from its centre by heights in metres, times a factor."""
+    rows = np.nan_to_num(records.scalars_of(ball, "heights", name))
+    return np.asarray(ball.points) * (1 + factor * rows / projections.RADIUS)[:, np.newaxis]
 
 
 def is_globe(mesh: pv.DataSet) -> bool:

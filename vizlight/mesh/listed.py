@@ -12,12 +12,14 @@ import pyvista as pv
 from vizlight.mesh import unrolled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["Listed", "cells", "listed", "points", "seem_radians", "with_turned_rows"]
+__all__ = ["Listed", "cells", "joined", "listed", "points", "seem_radians", "with_turned_rows"]
 
+#: Dimensions of cells of several faces, and of their corners.
+CELLS = ("cell", "corner")
 #: Decimals of corners that are one, in degrees or in metres.
 _SAME = 6
 
@@ -71,6 +73,54 @@ def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
             bounds = bounds if all(bounds) else ["", ""]
             lists.append((bool(bounds[0]), max(sizes), Listed(dim, pair["x"], pair["y"], *bounds)))
     return max(lists, key=lambda entry: entry[:2])[2] if lists else None
+
+
+def joined(
+    file: Foreign,
+    letter_of: Callable[[str, Mapping[str, Foreign]], str],
+    chosen: Collection[str],
+) -> Foreign:
+    """Return a dataset with the cells on all faces of a cube in one list, with their corners.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+        Dataset; one without places of the corners on several faces is returned as it is.
+    letter_of : callable
+        As for :func:`listed`.
+    chosen : collection of str
+        Dimensions that are no faces, or of which one is chosen.
+    """
+    pairs: dict[tuple[str, ...], dict[str, str]] = {}
+    for key, variable in file.variables.items():
+        letter = letter_of(str(key), variable.attrs) if variable.ndim == 3 else ""
+        if letter and variable.dtype.kind == "f" and variable.dims[0] not in chosen:
+            pairs.setdefault(variable.dims, {})[letter] = str(key)
+    for dims, middles in pairs.items():
+        for around, corners in pairs.items():
+            more = [file.sizes[a] - file.sizes[b] for a, b in zip(around, dims, strict=True)]
+            if more == [0, 1, 1] and len(middles) == len(corners) == 2:
+                return _in_list(file, dims, {middles[key]: corners[key] for key in middles})
+    return file
+
+
+def _in_list(file: Foreign, dims: tuple[str, ...], corners: Mapping[str, str]) -> Foreign:
+    """Return a dataset with all that has some dimensions along one, in place of these.
+
+    ``corners`` has the name of the places of corners for each of the middles of cells.
+    """
+    cell, corner = CELLS
+    variables = {
+        name: variable.stack({cell: dims}) if {*dims} <= {*variable.dims} else variable
+        for name, variable in file.variables.items()
+        if {*dims} <= {*variable.dims} or not {*dims} & {*variable.dims}
+    }
+    for middle, name in corners.items():
+        at = file[name].values
+        around = [at[:, :-1, :-1], at[:, :-1, 1:], at[:, 1:, 1:], at[:, 1:, :-1]]
+        variables[name] = ((cell, corner), np.stack(around, axis=-1).reshape(-1, 4))
+        variables[middle].attrs["bounds"] = name
+    return type(file)(variables, attrs=file.attrs)
 
 
 def _bounds(file: Foreign, name: str) -> str:

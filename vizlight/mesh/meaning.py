@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "line", "metres", "of",
-    "only_vectors", "say", "speed", "usual_unit", "vectors", "ways", "with_named",
+    "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "is_of_sea", "line",
+    "metres", "of", "only_vectors", "say", "speed", "usual_unit", "vectors", "ways", "with_named",
     "without_missing",
 ]  # fmt: skip
 
@@ -536,6 +536,21 @@ def written(unit: str) -> str:
     if len(known) < len(factors) or not above or len(below) > 1:
         return unit
     return " ".join(above) + "".join(f"/{name}" for name in below)
+
+
+def is_of_sea(words: str, top: float) -> bool:
+    """Return whether heights are those in a sea, of which the highest is at its surface.
+
+    Parameters
+    ----------
+    words : str
+        Words of the axis of heights, of a :class:`Meaning`.
+    top : float
+        Largest height.
+    """
+    # Levels of a model of the air count down from its top, and are no lengths.
+    levels = "counts down" in words and not re.search(" in m |depth", words)
+    return top <= 0 and "pressure" not in words and not levels
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

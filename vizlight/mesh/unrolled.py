@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 
-__all__ = ["Faces", "of_grid", "plain", "unrolled"]
+__all__ = ["Faces", "of_grid", "plain", "turn_vectors", "unrolled"]
 
 #: Distance of a node from a pole, in degrees, below which it has no longitude of its own.
 AT_POLE = 1e-4
@@ -320,19 +320,36 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
         rows = np.asarray(grid.point_data[name]).reshape(nz, ny * nx, -1)
         flat = np.concatenate([faces.at_points(layer) for layer in rows])
         mesh.point_data[name] = flat[:, 0] if flat.shape[1] == 1 else flat
-    at = np.column_stack([x[0], y[0]])
-    for group in meaning.components(grid):
-        # Those along the rows of the grid, which stand turned beside them, are of no meridian.
-        name = ",".join(group)
-        names = [name] if name in grid.point_data else [*group]
-        rows = np.column_stack([grid.point_data[part] for part in names]).reshape(nz, ny * nx, -1)
-        turned = np.concatenate([_from_meridians(faces, at, layer) for layer in rows])
-        columns = [turned] if name in names else turned.T
-        for part, column in zip(names, columns, strict=True):
-            mesh.point_data[part] = column.astype(grid.point_data[part].dtype)
     for name in grid.field_data:
         mesh.field_data[name] = grid.field_data[name]
+    turn_vectors(mesh, faces, np.column_stack([x[0], y[0]]))
     return mesh, (len(quads) - len(kept)) * max(nz - 1, 1)
+
+
+def turn_vectors(mesh: pv.DataSet, faces: Faces, at: Array) -> None:
+    """Turn the vectors of a mesh of faces at a pole, and where faces are cut, to its meridians.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh on the points of the faces, of each level those of all nodes first, with vectors that
+        point east, north and perhaps up at the nodes.
+    faces : Faces
+    at : ndarray, shape (N, 2)
+        Longitude and latitude of each node in degrees.
+    """
+    for group in meaning.components(mesh):
+        # Those along the rows of the grid, which stand turned beside them, are of no meridian.
+        name = ",".join(group)
+        names = [name] if name in mesh.point_data else [*group]
+        if names[0] not in mesh.point_data:
+            continue
+        rows = np.column_stack([mesh.point_data[part] for part in names])
+        levels = rows.reshape(-1, len(faces.places), rows.shape[1])[:, : len(at)]
+        turned = np.concatenate([_from_meridians(faces, at, level) for level in levels])
+        columns = [turned] if name in names else turned.T
+        for part, column in zip(names, columns, strict=True):
+            mesh.point_data[part] = column.astype(mesh.point_data[part].dtype)
 
 
 def _from_meridians(faces: Faces, at: Array, rows: Raw) -> Array:
