@@ -133,7 +133,7 @@ def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
     assert noisy.drawing.words == "streamlines of V in the colours of their speed"
     lines = noisy.drawing.lit.run()
     assert lines.field_data["left_out"][0] > 5
-    assert noisy.notes[-1].endswith(f"are left out: {lines.field_data['left_out'][0]}")
+    assert noisy.notes[-1].endswith(f"left out: {lines.field_data['left_out'][0]}")
     short = vizlight.look(volume(-9), "flow", seeds=20, max_length=1.0)
     assert not any("left out" in note for note in short.notes)
     assert short.drawing.lit.run().n_lines > 0

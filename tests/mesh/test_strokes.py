@@ -34,6 +34,19 @@ def test_short_lines_are_left_out():
     assert strokes.without_short(lines(), 9.0).n_lines == 0
 
 
+def test_slow_lines_that_turn_on_the_spot_are_left_out_as_noise():
+    """A circle of a radius of 1 turns by half a turn over a length of pi."""
+    angles = np.linspace(0, 6, 200)
+    circle = pv.MultipleLines(np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]))
+    both = circle.append_polydata(circle.translate((5, 0, 0)))
+    speed = np.where(both.points[:, 0] > 2, 1.0, 5e-3)
+    assert strokes.without_short(both, 1.1 * np.pi).n_lines == 2
+    assert strokes.without_short(both, 0.9 * np.pi, speed).n_lines == 2
+    kept = strokes.without_short(both, 1.1 * np.pi, speed)
+    assert (kept.n_lines, kept.bounds.x_min > 2) == (1, True)
+    assert strokes.without_short(both, 1.1 * np.pi, 4 * speed + 0.1).n_lines == 2
+
+
 @pytest.mark.parametrize("arrow", [strokes.FLAT, strokes.TUBE, None])
 def test_strokes_are_equally_long_and_thin_where_they_come_from(arrow):
     cut = strokes.cut(lines(), 1.0, "t", arrow)

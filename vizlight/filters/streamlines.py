@@ -179,8 +179,9 @@ def streamlines(
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
     min_length : float, optional
-        Least length of a line, in the unit of the mesh: shorter ones, as in a field that is noise,
-        are left out, and the field array ``left_out`` is their number. Default: none is.
+        Least length of a line, in the unit of the mesh: shorter ones are left out, and those that
+        are noise, in the mean slower than a hundredth of the fastest and turned by more than half
+        a turn over this length. The field array ``left_out`` is their number. Default: none is.
     max_length : float, optional
         Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
         box. A line ends after 1,200 cell lengths in any case.
@@ -314,7 +315,7 @@ def _as_strokes(
     """Return lines with ages and speeds, without short ones, and cut as the options say."""
     if options.min_length is not None:
         count = lines.n_lines
-        lines = strokes.without_short(lines, options.min_length)
+        lines = strokes.without_short(lines, options.min_length, _speed(lines, options))
         if not lines.n_lines:
             expected = f"a length that one of the {count} lines has"
             raise ValueError(_check.message("min_length", expected, options.min_length))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,6 +31,8 @@ BARE, FADE = 0.25, 0.5
 PHASE, PASSING, GROWN, WIDTH = "phase", "passing", "grown", "width"
 #: Turns by which strokes of one line are ahead of those of the line before it.
 GOLDEN = 0.6180339887
+#: Mean speed, as a share of the largest, below which a line that turns much is noise.
+SLOW = 1e-2
 #: Share of the median speed below which vectors move a stroke no slower, as at the end of a line.
 SLOWEST = 1e-3
 
@@ -138,10 +141,40 @@ def _run_through(mesh: pv.PolyData, segments: LineSegments, turned: Bools) -> Ar
     return lengths
 
 
-def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
-    """Return the lines of a mesh that have a length or more."""
+def without_short(mesh: pv.PolyData, least: float, speed: Array | None = None) -> pv.PolyData:
+    """Return the lines of a mesh that have a length or more, and are no noise.
+
+    Noise is what is slower than a hundredth of the fastest, in the mean of a line, and turns by
+    more than half a turn over the least length.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines.
+    least : float
+        Least length of a line.
+    speed : ndarray, shape (n_points,), optional
+        Lengths of the vectors. None: no line is noise.
+    """
     segments = segments_of(mesh)
-    return _rebuilt(mesh, segments, (segments.totals() >= least)[segments.lines], segments.lines)
+    totals = segments.totals()
+    kept = totals >= least
+    if speed is not None and len(totals):
+        counts = np.bincount(segments.lines)
+        means = np.bincount(segments.lines, speed[segments.starts]) / counts
+        turns = _turns(mesh, segments)
+        kept &= (means >= SLOW * speed.max()) | (turns * least <= math.pi * totals)
+    return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
+
+
+def _turns(mesh: pv.PolyData, segments: LineSegments) -> Array:
+    """Return the sum of the angles between the segments of each line, in radians."""
+    points = np.asarray(mesh.points, dtype=np.float64)
+    ways, _ = kernels.unit((points[segments.ends] - points[segments.starts]).T)
+    same = segments.lines[1:] == segments.lines[:-1]
+    angles = np.arccos(np.clip(kernels.dot(ways[:, 1:], ways[:, :-1]), -1, 1))
+    sums = np.bincount(segments.lines[1:][same], angles[same], len(segments.totals()))
+    return sums.astype(np.float64, copy=False)
 
 
 def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) -> pv.PolyData:

@@ -65,7 +65,7 @@ SPEED = "vizlight.speed"
 #: first are left out than are kept, as in thin vessels.
 SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
 #: Length of strokes in a volume, and length below which streamlines are left out, in these
-#: distances: many are cut short where the field is noise.
+#: distances: many are cut short, or turn on the spot, where the field is noise.
 LONG_IN_VOLUME, SHORTEST = 5.0, 4
 #: Largest width of those without a sense, and the halo of all.
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.15
@@ -296,7 +296,8 @@ def flow(case: Case) -> Drawing:
     if left_out := _left_out(lit):
         least = f"{lit.keywords['min_length']:g}"
         notes += [
-            f"lines shorter than {least}, four times their distance, are left out: {left_out}"
+            f"lines shorter than {least}, four times their distance, or slow and tangled are left "
+            f"out: {left_out}"
         ]
     layers = [lines]
     if case.map_frame is None:
