@@ -19,6 +19,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from vizlight import _words
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
@@ -256,7 +258,7 @@ def _wait(child: int, reader: int) -> int:
         if step["temporary"]:
             shutil.rmtree(step["temporary"], ignore_errors=True)
     text, code = _what_happened(signal.Signals(os.WTERMSIG(status)), stages, ended_by)
-    sys.stderr.write(f"vizlight: {text}\n")
+    sys.stderr.write(f"vizlight: {_words.printable(text)}\n")
     return code
 
 

@@ -36,6 +36,19 @@ def describe(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+def printable(text: str, /) -> str:
+    """Return a text in which what a terminal or an editor acts on is written by its number.
+
+    Names of files may hold control characters and marks that turn the direction of writing. Line
+    breaks stay.
+    """
+    if text.replace("\n", "").isprintable():
+        return text
+    return "".join(
+        char if char == "\n" or char.isprintable() else ascii(char)[1:-1] for char in text
+    )
+
+
 def _is_array(value: object) -> bool:
     """Return whether a value is an array; none exists before NumPy is loaded."""
     numpy = sys.modules.get("numpy")

@@ -219,6 +219,7 @@ def bands(
     """
     import pyvista as pv
 
+    logarithmic = _check.boolean("logarithmic", logarithmic)
     low, high = _check.limits("limits", limits)
     if not low < high:
         raise ValueError(_check.message("limits", f"a number above {low:g} at the end", high))

@@ -36,6 +36,21 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
     assert not out.exists()
 
 
+def test_names_with_control_characters_are_written_by_their_numbers(tmp_path, capfd):
+    """They would move the cursor of a terminal, or turn the direction of writing."""
+    name = "\x1b[31m\u202egnp\x7f\u200b"
+    shown = r"\x1b[31m\u202egnp\x7f\u200b"
+    assert cli.main(["light", f"{name}.vtp"]) == 2
+    assert capfd.readouterr().err.endswith(f"got '{shown}.vtp' (no such file)\n")
+    ball = tmp_path / f"{name}.vtp"
+    pv.Icosphere(nsub=2).save(ball)
+    assert cli.main(["light", str(ball), "-o", str(tmp_path / f"{name}o.vtp"), "--script"]) == 0
+    script = capfd.readouterr().out
+    assert script.replace("\n", "").isprintable()
+    exec(script, {})
+    assert (tmp_path / f"{name}o.vtp").is_file()
+
+
 @pytest.mark.opengl
 def test_light_writes_mesh_and_picture(volume, tmp_path, done):
     words = "--contour r --level 4 --tangents V --conditioned --components --light -1,-2,3"

@@ -31,6 +31,18 @@ def test_the_second_side_is_turned_and_stands_beside_the_first(sizes, step):
     np.testing.assert_array_equal(mesh["way"][0], (1, 2, 3))
 
 
+def test_colors_of_bytes_are_no_vectors():
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh["rgb"] = np.full((mesh.n_points, 3), (250, 10, 20), np.uint8)
+    mesh.cell_data["rgb"] = np.full((mesh.n_cells, 3), (1, 2, 3), np.uint8)
+    turned = both_sides(mesh, (0, -1, 0), names=("front", "back"))["back"]
+    for rows, expected in (
+        (turned.point_data["rgb"], (250, 10, 20)), (turned.cell_data["rgb"], (1, 2, 3))
+    ):  # fmt: skip
+        assert rows.dtype == np.uint8
+        np.testing.assert_array_equal(rows[0], expected)
+
+
 def test_what_has_no_sides_is_refused():
     with pytest.raises(TypeError, match="surface: expected a surface"):
         both_sides(pv.ImageData(), (0, -1, 0), names=("a", "b"))

@@ -186,6 +186,11 @@ WRONG = {
     "point": ("a.obj", OBJ.replace(b"3/1/1", b"8/1/1"), "the point 8 of 3"),
     "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
     "axes": ("a.gii", b'<DataArray Dimensionality="10000000" />', "an array of 10000000 axes"),
+    "arrays": (
+        "a.gii",
+        b'<GIFTI NumberOfDataArrays="2"><DataArray Dimensionality="1"/></GIFTI>',
+        "1 of 2 arrays are there",
+    ),
     "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
     "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),
     "message": ("a.grib", GRIB1 + GRIB2[:-9], "message 2 does not end where its length of 40"),

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from vizlight import _words
 from vizlight._supervise import LACKING
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def say(text: str) -> None:
 
     Work goes on where nobody reads it: a closed stream, a pipe that was closed, a full disk.
     """
-    _put(sys.stdout, f"{text}\n")
+    _put(sys.stdout, f"{_words.printable(text)}\n")
 
 
 def _put(stream: TextIO | None, text: str) -> None:
@@ -61,7 +62,7 @@ def _option(match: re.Match[str]) -> str:
 
 def complain(text: object) -> None:
     """Write a line to standard error."""
-    _put(sys.stderr, f"vizlight: {text}\n")
+    _put(sys.stderr, f"vizlight: {_words.printable(str(text))}\n")
 
 
 def draw(write: Callable[[], Path], kind: str = "picture") -> int:

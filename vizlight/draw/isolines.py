@@ -121,7 +121,13 @@ def isolines(
         expected = f"a height of at least {SMALLEST * mesh.length:g}"
         raise ValueError(_check.message("letters", expected, f"{letters:g}"))
     values = _check.coordinates("levels", levels).ravel()
-    texts = [f"{level:.6g}" for level in values] if words is None else list(words)
+    if words is not None:
+        _check.iterable("words", words, "a text for each level")
+    texts = (
+        [f"{level:.6g}" for level in values]
+        if words is None
+        else [_check.text("words", word) for word in words]
+    )
     if len(texts) != len(values):
         expected = f"a word for each of the {len(values)} levels"
         raise ValueError(_check.message("words", expected, len(texts)))

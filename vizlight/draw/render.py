@@ -209,11 +209,11 @@ def make_plotter(
         If nothing can be drawn, an array is missing, or an option does not fit.
     """
     shown = _check_panels(panels, scalars)
-    _check_options(camera, cmap, clim, anti_aliasing)
+    clim = _check_options(camera, cmap, clim, anti_aliasing)
     _check.text("bar", bar, expected="a title")
     _check.choice("light", light, get_args(PictureLight))
     # A colour map of the light, or other limits, shows the numbers: no light in fragments then.
-    plain = cmap == "gray" and tuple(clim) == (0.0, 1.0) and not bar
+    plain = cmap == "gray" and clim == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
@@ -324,8 +324,10 @@ def _check_panels(
     return shown
 
 
-def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: object) -> None:
-    """Check options that are passed on to PyVista: its messages do not name them."""
+def _check_options(
+    camera: object, cmap: str, clim: object, anti_aliasing: object
+) -> tuple[float, float]:
+    """Check options that are passed on to PyVista, whose messages do not name them; return clim."""
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     low, high = _check.limits("clim", clim)
@@ -337,6 +339,7 @@ def _check_options(camera: object, cmap: str, clim: object, anti_aliasing: objec
         got = _check.describe(cmap)
         raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
     _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
+    return low, high
 
 
 def save_png(

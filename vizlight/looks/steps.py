@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import vizlight
+from vizlight import _words
 from vizlight._words import message
 
 if TYPE_CHECKING:
@@ -200,7 +201,7 @@ def _text(value: object, indent: int = 0, taken: int = 0) -> str:
         return _joined(ends[0], [("", part) for part in value], ends[1], indent, taken, comma=comma)
     if isinstance(value, str | Path):
         # Double quotes, as formatters of Python write.
-        return json.dumps(str(value), ensure_ascii=False)
+        return _words.printable(json.dumps(str(value), ensure_ascii=False))
     return repr(value)
 
 

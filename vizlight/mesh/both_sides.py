@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,9 +72,19 @@ def both_sides(
     if not isinstance(names, list | tuple) or len(names) != 2:
         raise ValueError(_check.message("names", "two names", _check.describe(names)))
     words = [_check.text("names", name) for name in names]
-    turned = surface.rotate_vector(
-        _vector(upward), 180, point=surface.center, transform_all_input_vectors=True
-    )
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Integer points, vector")
+        # Of a copy, since PyVista changes such arrays of the mesh itself.
+        turned = surface.copy(deep=False).rotate_vector(
+            _vector(upward), 180, point=surface.center, transform_all_input_vectors=True
+        )
+    # Whole numbers are colours and labels, which PyVista takes for vectors if there are three.
+    for data, other in (
+        (surface.point_data, turned.point_data), (surface.cell_data, turned.cell_data)
+    ):  # fmt: skip
+        for name in data:
+            if data[name].dtype.kind != "f":
+                other.set_array(data[name], name)
     right = np.cross(upward, back)
     bounds = np.reshape(surface.bounds, (3, 2))
     wide, tall = (float(np.abs(way) @ np.ptp(bounds, axis=1)) for way in (right, upward))

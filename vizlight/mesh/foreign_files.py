@@ -181,7 +181,10 @@ def _wavefront(path: Path) -> pv.DataSet | None:
     with _supervise.folder(path) as folder:
         draft = folder / "draft.obj"
         draft.write_bytes(data)
-        return pv.read(draft, validate=False)
+        with warnings.catch_warnings():
+            # What is wrong is told by an error, with the name of the file.
+            warnings.filterwarnings("ignore", "The VTK reader")
+            return pv.read(draft, validate=False)
 
 
 def _of_meshio(path: Path) -> pv.DataSet:

@@ -593,7 +593,11 @@ def _parts(path: Path) -> set[bytes] | None:
 
 def _gifti(file: BinaryIO) -> str:
     """Check the numbers of axes, to which nibabel counts."""
-    numbers = re.findall(rb'Dimensionality="([^"]*)"', file.read())
+    data = file.read()
+    stated = re.search(rb'NumberOfDataArrays="(\d+)"', data)
+    if stated and int(stated[1]) != (there := data.count(b"<DataArray")):
+        return f"{there} of {int(stated[1])} arrays are there"
+    numbers = re.findall(rb'Dimensionality="([^"]*)"', data)
     wrong = [number.decode("latin-1") for number in numbers if number not in _AXES]
     return f"an array of {wrong[0]} axes" if wrong else ""
 
