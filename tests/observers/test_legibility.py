@@ -13,6 +13,8 @@ from sheets import sheet
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw.cameras import camera_on
+from vizlight.observers.whole import moved
+from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl
 
@@ -172,6 +174,15 @@ def test_any_picture_is_read_by_its_key(tmp_path):
     assert vizlight.legibility(mesh, picture=other, **how).value.bits < 0.5 * value.bits
     both = vizlight.legibility(mesh, picture=picture, **(how | {"key": [HEAD, how["key"]]}))
     assert both.shape is not None
+
+
+def test_a_mesh_that_an_actor_has_moved_keeps_vectors_of_whole_numbers():
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh["v"] = np.ones((mesh.n_points, 3), np.uint8)
+    mesh.set_active_vectors("v")
+    placed, _ = moved(mesh, LightOptions(), np.diag([1.0, 2, 1, 1]))
+    assert mesh["v"].dtype == np.uint8
+    np.testing.assert_allclose(placed.bounds_size[1], 2 * mesh.bounds_size[1], rtol=1e-6)
 
 
 def test_a_whole_plotter_is_read():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -214,7 +215,12 @@ def moved(
     if np.array_equal(matrix, np.eye(4)):
         return mesh, options
     linear = matrix[:3, :3]
-    placed = mesh.transform(matrix, transform_all_input_vectors=False, inplace=False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Integer points, vector")
+        # Of a copy: PyVista makes active vectors of whole numbers in the mesh itself float32.
+        placed = mesh.copy(deep=False).transform(
+            matrix, transform_all_input_vectors=False, inplace=False
+        )
     turned: Keywords = {}
     for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
         array = getattr(options, name)
