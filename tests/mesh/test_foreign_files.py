@@ -370,6 +370,9 @@ def test_a_neuron_has_branches_radii_and_types(tmp_path):
     assert [cell.point_ids for cell in mesh.cell] == [[0, 1, 2], [0, 3]]
     assert mesh["radius"].tolist() == [5, 1, 1, 2]
     assert mesh["type"].dtype == np.int32
+    path.write_text("\n".join([*rows[:4], "5 2 0 1 0 2 9"]))
+    with pytest.warns(UserWarning, match="1 points follow others that are not there"):
+        assert vizlight.read(path).n_points == 4
     path.write_text("1 2 3\n")
     with pytest.raises(files.FileError, match="3 columns, not the 7 of a neuron"):
         vizlight.read(path)
@@ -441,11 +444,3 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
     assert np.isnan(heights[-1, :4]).all()
     np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
     assert str(mesh.field_data["unit"][0]) == "metre"
-
-
-def test_a_mesh_of_tetgen_without_numbers_is_refused(tmp_path):
-    pytest.importorskip("meshio")
-    for name in ("a.node", "a.ele"):
-        (tmp_path / name).write_text("# written by a program\n\n")
-    with pytest.raises(ValueError, match=r"'a.node' has no numbers"):
-        vizlight.read(tmp_path / "a.ele")

@@ -28,6 +28,7 @@ from vizlight.mesh import (
     scene_files,
     short_files,
     su2,
+    tetgen,
 )
 
 if TYPE_CHECKING:
@@ -53,8 +54,8 @@ PACKAGES = {
     cf_grids.GRIB, ("cfgrib", "")
 ) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
     (
-        ".avs", ".bdf", ".ele", ".f3grid", ".fem", ".mdpa", ".mesh",
-        ".meshb", ".msh", ".nas", ".node", ".post", ".tec", ".ugrid", ".vol",
+        ".avs", ".bdf", ".f3grid", ".fem", ".mdpa", ".mesh", ".meshb",
+        ".msh", ".nas", ".post", ".tec", ".ugrid", ".vol",
         ".wkt", ".xmf",
     ),
     ("meshio", "formats"),
@@ -197,8 +198,6 @@ def _of_meshio(path: Path) -> pv.DataSet:
 
     # The class is replaced for the whole process: meshio makes a console for each message.
     meshio._common.Console, _SAID.texts = _Console, []
-    if path.suffix.lower() in _TETGEN:
-        _refuse_comments(path)
     kinds = meshio.extension_to_filetypes[path.suffix.lower()]
     for kind in kinds:
         reader = getattr(meshio, kind)
@@ -237,18 +236,6 @@ def _drop_short(data: Foreign) -> None:
         if (count := sum(map(len, rows))) != n_cells:
             del data.cell_data[name]
             _check.warn(f"file: {name!r} has {count} rows for {n_cells} cells, and is left out")
-
-
-#: Ends of names of the two files of a mesh of TetGen.
-_TETGEN = (".node", ".ele")
-
-
-def _refuse_comments(path: Path) -> None:
-    """Raise ValueError for a mesh of TetGen without numbers, in which meshio seeks without end."""
-    for part in map(path.with_suffix, _TETGEN):
-        lines = map(str.strip, part.read_text(encoding="latin-1").splitlines())
-        if not any(line and not line.startswith("#") for line in lines):
-            raise ValueError(f"'{part.name}' has no numbers")
 
 
 #: Messages of meshio, by thread.
@@ -348,6 +335,8 @@ def _neuron(path: Path) -> pv.PolyData:
         raise ValueError(f"{rows.shape[1]} columns, not the 7 of a neuron")
     row_of = {number: row for row, number in enumerate(rows[:, 0].tolist())}
     parents = [row_of.get(number, -1) for number in rows[:, 6].tolist()]
+    if lost := np.count_nonzero((np.array(parents) < 0) & (rows[:, 6] >= 0)):
+        _check.warn(f"file: '{path}': {lost} points follow others that are not there")
     children: dict[int, list[int]] = {}
     for row, parent in enumerate(parents):
         if parent not in (-1, row):
@@ -504,4 +493,5 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
     ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
+    **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip
