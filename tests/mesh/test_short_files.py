@@ -173,6 +173,12 @@ WRONG = {
     "nodes": ("a.dat", TECPLOT.replace(b"N=3", b"N=300"), "of 903 numbers"),
     "negative": ("a.tec", TECPLOT.replace(b"E=1", b"E=-5"), "negative"),
     "no zone": ("a.dat", TECPLOT[:9], "no VARIABLES and ZONE"),
+    "order": (
+        "a.mdpa",
+        b"End Nodes\nBegin Elements T\nEnd Elements\nBegin Nodes\n",
+        "do not end as they begin",
+    ),
+    "infinity": ("a.gltf", gltf("accessors").replace(b"[0, 0, 0]", b"[0, 0, 1e999]"), "1e999"),
     "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "do not end as they begin"),
     "short": ("a.vtk", FIELD.replace(b"a 1 4", b"a 3 4"), "4 of 12 numbers"),
     "word": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 \xb5 3 4\n"), "words stand among"),

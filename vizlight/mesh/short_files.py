@@ -525,11 +525,13 @@ _CORNERS_OF_OBJ = ((b"v", "point"), (b"vt", "texture coordinate"), (b"vn", "norm
 
 def _mdpa(file: BinaryIO) -> str:
     """Compare the ends of blocks with their begins; meshio goes on past the end of the file."""
-    blocks: dict[bytes, list[bytes]] = {b"Begin": [], b"End": []}
+    blocks, wrong = list[bytes](), "its blocks do not end as they begin"
     for word, name in re.findall(rb"(?m)^[ \t]*(Begin|End)[ \t]+(\w+)", file.read()):
-        blocks[word].append(name)
-    differ = sorted(blocks[b"Begin"]) != sorted(blocks[b"End"])
-    return "its blocks do not end as they begin" if differ else ""
+        if word == b"Begin":
+            blocks.append(name)
+        elif not blocks or blocks.pop() != name:
+            return wrong
+    return wrong if blocks else ""
 
 
 #: Words of an EnSight case that stand alone in a line.
@@ -639,7 +641,7 @@ def _gltf(file: BinaryIO) -> str:
         text = file.read(length)
     else:
         text = head + file.read()
-    scene = json.loads(text)
+    scene = json.loads(text, parse_float=_finite, parse_constant=_finite)
     lists = {key: part for key, part in scene.items() if isinstance(part, list)}
     nodes = lists.get("nodes", [])
     for key, name in (("mesh", "meshes"), ("children", "nodes"), ("skin", "skins")):
@@ -682,6 +684,13 @@ def _buffers(folder: Path, lists: dict[str, list[Keywords]]) -> str:
             if end > view["byteLength"]:
                 return f"an array ends at {end} of {view['byteLength']} bytes of its view"
     return ""
+
+
+def _finite(word: str) -> float:
+    """Return a number of glTF, of which VTK ends the process where it is too large."""
+    if not math.isfinite(number := float(word)):
+        raise ValueError(f"it has the number {word}")
+    return number
 
 
 def _whole(part: Keywords, key: str, default: int | None = None) -> int:
