@@ -328,6 +328,27 @@ def test_a_file_that_ends_within_a_line(tmp_path, name, content):
         vizlight.read(tmp_path / name)
 
 
+def test_colors_of_the_points_of_obj(tmp_path):
+    """Also where points are repeated, as each corner has a normal of its own."""
+    colored = OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0").replace(b"v 1 0 0", b"v 1 0 0 0 1 0.5")
+    colored = colored.replace(b"v 0 1 0", b"v 0 1 0 0 0 1")
+    more = b"vn 0 1 0\nf 2/1/2 1/1/2 3/1/2\n"
+    for content, count in ((colored, 3), (colored + more, 6)):
+        (tmp_path / "a.obj").write_bytes(content)
+        mesh = vizlight.read(tmp_path / "a.obj")
+        assert mesh.n_points == count
+        expected = {(0, 0): [255, 0, 0], (1, 0): [0, 255, 128], (0, 1): [0, 0, 255]}
+        for (x, y, _), color in zip(mesh.points.tolist(), mesh["color"].tolist(), strict=True):
+            assert color == expected[x, y]
+
+
+@pytest.mark.filterwarnings("default:.*left out")
+def test_colors_of_some_points_of_obj(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0"))
+    with pytest.warns(UserWarning, match="colours of some points alone, which are left out"):
+        assert "color" not in vizlight.read(tmp_path / "a.obj").point_data
+
+
 @pytest.mark.filterwarnings("default:.*left out")
 def test_normals_that_no_face_names(tmp_path):
     (tmp_path / "a.obj").write_bytes(OBJ.replace(b"/1/1", b"//"))

@@ -30,6 +30,7 @@ from vizlight.mesh import (
     su2,
     tetgen,
 )
+from vizlight.vtk.topology import place_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -166,15 +167,17 @@ def has_free_form(path: Path) -> bool:
 def _wavefront(path: Path) -> pv.DataSet | None:
     """Return the mesh of an OBJ file that VTK's reader does not take as it is, else None.
 
-    It leaves out curves of the first degree, ends the process at texture coordinates that are
-    missing, and stops at a slash without a number.
+    It leaves out colours of points and curves of the first degree, ends the process at texture
+    coordinates that are missing, and stops at a slash without a number.
     """
     whole = path.read_bytes()
     data = _STRAIGHT.sub(rb"\1l ", whole)
     if _SLASHES.search(data):
         data = _CORNERS.sub(lambda line: _SLASHES.sub(b"", line[0]), data)
     textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
-    if data == whole and (textured or _TEXTURE.search(data) is None):
+    first = _VERTEX.search(data)
+    colored = first is not None and len(first[0].split()) == _WITH_COLOR
+    if data == whole and not colored and (textured or _TEXTURE.search(data) is None):
         return None
     # What is left of damaged corners may be such numbers, too.
     while not textured and _TEXTURE.search(data):
@@ -185,7 +188,36 @@ def _wavefront(path: Path) -> pv.DataSet | None:
         with warnings.catch_warnings():
             # What is wrong is told by an error, with the name of the file.
             warnings.filterwarnings("ignore", "The VTK reader")
-            return pv.read(draft, validate=False)
+            mesh = pv.read(draft, validate=False)
+    if colored and isinstance(mesh, pv.PolyData):
+        _attach_colors(mesh, data, path)
+    return mesh
+
+
+#: Lines of points of OBJ, and the words of one with a place and a colour.
+_VERTEX = re.compile(rb"(?m)^[ \t]*v[ \t].*")
+_WITH_COLOR = 7
+
+
+def _attach_colors(mesh: pv.PolyData, data: bytes, path: Path) -> None:
+    """Attach the colours of the points of an OBJ file, which VTK's reader may have repeated."""
+    lines = [line.split()[1:] for line in _VERTEX.findall(data)]
+    if any(len(line) != _WITH_COLOR - 1 for line in lines):
+        _check.warn(f"file: '{path}' has colours of some points alone, which are left out")
+        return
+    rows: Array = np.array(lines, dtype=np.float64)
+    of_file = place_numbers(rows[:, :3].astype(np.float32))
+    of_mesh = place_numbers(np.asarray(mesh.points))
+    if np.array_equal(of_file, of_mesh):
+        at = np.arange(len(rows))  # points at one place may have colours of their own
+    else:
+        order = np.argsort(of_file)
+        at = order[np.minimum(np.searchsorted(of_file, of_mesh, sorter=order), len(order) - 1)]
+    if not np.array_equal(of_file[at], of_mesh):
+        _check.warn(f"file: '{path}' has colours of points that are left out")
+        return
+    colors = rows[at, 3:] * (255 if rows[:, 3:].max() <= 1 else 1)
+    mesh.point_data["color"] = np.rint(np.clip(colors, 0, 255)).astype(np.uint8)
 
 
 def _of_meshio(path: Path) -> pv.DataSet:
