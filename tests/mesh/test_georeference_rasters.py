@@ -150,12 +150,12 @@ def pages(path, values, **options):
 
 
 def test_pages_of_images_are_a_volume(tmp_path, random):
-    values = random.integers(0, 255, (4, 5, 6)).astype(np.uint8)
+    values = random.integers(0, 255, (12, 5, 6)).astype(np.uint8)
     volume = vizlight.read(pages(tmp_path / "cells.tif", values))
-    assert volume.dimensions == (6, 5, 4)
+    assert volume.dimensions == (6, 5, 12)
     # The first page is on top, and the first row of each is its upper edge.
-    np.testing.assert_array_equal(volume["cells"].reshape(4, 5, 6), values[::-1, ::-1], strict=True)
-    words = "ImageJ=1.53\nimages=4\nslices=4\nunit=micron\nspacing=0.5\n"
+    np.testing.assert_array_equal(volume["cells"].reshape(12, 5, 6), values[::-1, ::-1], strict=True)
+    words = "ImageJ=1.53\nimages=12\nslices=12\nunit=micron\nspacing=0.5\n"
     volume = vizlight.read(
         pages(tmp_path / "scaled.tif", values, description=words, x_resolution=10, y_resolution=10)
     )

@@ -421,7 +421,9 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
     """
     import rasterio
 
-    names = file.subdatasets if file.driver == "GTiff" else ()
+    # They are listed in the order of the alphabet, by names such as GTIFF_DIR:10:path.
+    listed = file.subdatasets if file.driver == "GTiff" else ()
+    names = sorted(listed, key=lambda name: int(name.split(":")[1]))
     if len(names) < 2 or not file.transform.is_identity or file.crs is not None:
         return None
     pages: list[Raw] = []
