@@ -1,7 +1,7 @@
 """Sizes, seconds and errors of vector figures, as a table: ``python tests/vector_sizes.py``.
 
-The pictures are drawn again by ``rsvg-convert`` of Debian's ``librsvg2-bin`` and compared with
-those of the plotters.
+The pictures are drawn again by ``rsvg-convert`` of Debian's ``librsvg2-bin`` and by Chromium, and
+compared with those of the plotters.
 """
 
 import re
@@ -18,6 +18,7 @@ from PIL import Image
 
 import vizlight
 from vizlight import Block, Frustum, Scene, Sphere
+from vizlight.draw.vector.words import words_of
 
 
 def plain(mesh, **options):
@@ -36,6 +37,29 @@ def solid():
     )
 
 
+def valued(mesh, values, cmap):
+    """Return a plotter with colours of values and light on a mesh."""
+    mesh["values"] = values
+    return plain(mesh, scalars="values", cmap=cmap, show_scalar_bar=False)
+
+
+def waves():
+    """Return a sheet of waves in the colours of their heights."""
+    sheet = pv.Plane(i_size=6, j_size=4, i_resolution=300, j_resolution=200)
+    x, y = sheet.points[:, :2].T
+    height = np.sin(2 * x) * np.cos(3 * y) * np.exp(-(x**2 + y**2) / 6)
+    sheet.points[:, 2] = 0.5 * height
+    return valued(sheet, height, "coolwarm")
+
+
+def torus(question):
+    """Return the look of a torus around which vectors run in waves."""
+    mesh = pv.ParametricTorus(ringradius=1, crosssectionradius=0.45)
+    x, y, _ = mesh.points.T
+    mesh["way"] = np.stack([-y, x, np.sin(6 * np.arctan2(y, x))], axis=1)
+    return vizlight.look(mesh, question).plotter()
+
+
 def look(name, *question):
     return vizlight.look(vizlight.load_example(name), *question).plotter()
 
@@ -46,6 +70,11 @@ SCENES = {
     "ball of 10^6 triangles, grey light": lambda: plain(
         pv.Sphere(theta_resolution=708, phi_resolution=708)
     ),
+    "solid, colours of values": lambda: valued(solid(), solid().points[:, 2], "viridis"),
+    "waves, diverging colours": waves,
+    "torus, hues of directions": lambda: torus("direction"),
+    "torus, lines of a flow": lambda: torus("flow"),
+    "hawaii, heights and shadows": lambda: look("hawaii.vti"),
     "dog, coloured light": lambda: look("dog.vtp"),
     "brain, coloured light": lambda: look("brain.vti"),
     "fault, relief": lambda: look("jacksboro_fault.vti"),
@@ -55,29 +84,55 @@ SCENES = {
 }
 
 
+def drawn(path, renderer):
+    """Return the picture of an SVG file by an independent renderer."""
+    png = path.with_suffix(f".{renderer}.png")
+    if renderer == "rsvg-convert":
+        command = [renderer, path, "-o", png]
+    else:
+        page = path.with_suffix(".html")
+        page.write_text(f'<body style="margin:0"><img src="{path.name}">')
+        command = [
+            renderer, "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=1200,900",
+            f"--screenshot={png}", page.as_uri(),
+        ]  # fmt: skip
+    subprocess.run(command, check=True, capture_output=True)
+    return np.asarray(Image.open(png).convert("RGB")).astype(int)[:800]
+
+
 def row(name, folder):
-    """Return size, seconds, error, share of pixels within the error, and what holds the faces."""
+    """Return size, seconds, kind, error, mean difference, and shares of pixels within the error.
+
+    Words are left out of the comparison, as renderers have other letters.
+    """
     plotter = SCENES[name]()
-    picture = np.asarray(plotter.screenshot(return_img=True)).astype(int)
+    plotter.screenshot(return_img=True)
     path = folder / "figure.svg"
     begin = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         plotter.vizlight.save_graphic(path)
     seconds = time.perf_counter() - begin
+    for prop in words_of(plotter)[1]:
+        prop.SetVisibility(False)
+    picture = np.asarray(plotter.screenshot(return_img=True)).astype(int)
     plotter.close()
-    png = path.with_suffix(".png")
-    subprocess.run(["rsvg-convert", path, "-o", png], check=True)
-    away = np.abs(np.asarray(Image.open(png).convert("RGB")).astype(int) - picture).max(axis=2)
-    found = re.search(r"within ([\d.]+) of", path.read_text())
+    text = path.read_text()
+    kind = re.search(r"<desc>\d* ?(.*?),? ", text).group(1)
+    found = re.search(r"within ([\d.]+) of", text)
     error = float(found.group(1)) if found else 0.0
-    within = np.mean(away <= error + 1)
-    size = path.stat().st_size / 1000
+    bare = folder / "bare.svg"
+    bare.write_text(re.sub(r'(?s)<g id="words">.*</g>', "", text))
+    away = [
+        np.abs(drawn(bare, each) - picture).max(axis=2) for each in ("rsvg-convert", "chromium")
+    ]
     return (
-        f"{size:.0f} kB",
+        f"{path.stat().st_size / 1000:.0f} kB",
         f"{seconds:.1f} s",
-        f"{error:.1f}" if found else "pixels",
-        f"{within:.2%}",
+        kind,
+        f"{error:.1f}" if found else "none",
+        f"{away[0].mean():.2f}",
+        *(f"{np.mean(each <= error + 1):.2%}" for each in away),
     )
 
 

@@ -177,7 +177,7 @@ def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
     shader = actor.GetShaderProperty()
     fragment = shader.GetFragmentCustomUniforms()
     fragment.SetUniform3f(GROUND, list(renderer.GetBackground()))
-    samples = _samples(renderer)
+    samples = line_samples(renderer)
     fragment.SetUniformf(DARKENED, 0.0 if of_data else DARKER)
     for uniforms in (fragment, shader.GetGeometryCustomUniforms()):
         uniforms.SetUniformf(SAMPLES, samples)
@@ -186,11 +186,16 @@ def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
 def enlarge(actor: vtkActor, renderer: vtkRenderer) -> None:
     """Give VTK's own lines the width in pixels that they have once a larger picture is shrunk."""
     prop = actor.GetProperty()
-    prop.SetLineWidth(prop.GetLineWidth() * _samples(renderer))
+    prop.SetLineWidth(prop.GetLineWidth() * line_samples(renderer))
 
 
-def _samples(renderer: vtkRenderer) -> float:
-    """Return the width of a line that a renderer draws one pixel wide."""
+def line_samples(renderer: vtkRenderer) -> float:
+    """Return the width of a line that a renderer draws one pixel wide.
+
+    Parameters
+    ----------
+    renderer : vtkRenderer
+    """
     return SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
 
 

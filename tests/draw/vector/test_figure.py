@@ -13,6 +13,7 @@ import vizlight
 from vizlight import Scene
 from vizlight.draw.vector import figure
 from vizlight.draw.vector.files import Words
+from vizlight.draw.vector.lines import lines_of
 from vizlight.draw.vector.samples import enlarged, samples_of
 from vizlight.draw.vector.words import words_of
 from vizlight.files import FileError
@@ -48,8 +49,8 @@ def drawn(path, size):
 
 
 def fills(text):
-    """Return the colours of paths, without the ground beneath all faces."""
-    return re.findall(r'<path fill="(#\w+)"', text)[1:]
+    """Return the colours of faces, without the mean beneath and the background over them."""
+    return re.findall(r'<path fill="(#\w+)"', text)[1:-1]
 
 
 def test_a_cube_has_three_fills_of_its_exact_colours(plotter, tmp_path):
@@ -132,6 +133,52 @@ def test_a_grey_ball_is_drawn_within_its_error(plotter, tmp_path):
     # Away from the edge, whose pixels are mixtures with the ground.
     assert np.mean(away[radius < 47] <= 5) > 0.995
     assert away[radius > 52].max() == 0
+
+
+def test_many_colours_are_plates_within_the_error_and_a_page_of_its_own_size(plotter, tmp_path):
+    ball = pv.Sphere(radius=1, theta_resolution=40, phi_resolution=40)
+    ball["z"] = ball.points[:, 0]
+    plotter.vizlight.add_mesh(ball, scalars="z", cmap="viridis", scene=Scene())
+    plotter.remove_scalar_bar()
+    seen_from_above(plotter)
+    picture = plotter.screenshot(return_img=True).astype(int)
+    path = plotter.vizlight.save_graphic(tmp_path / "ball.svg", error=5)
+    text = path.read_text()
+    assert text.count("mix-blend-mode:lighten") == 3
+    # Each plate has one channel, and all have the same outline, so that no edge has a fringe.
+    plates = text.split("<g style=")[1:]
+    grounds = [re.findall(r'fill="#(\w+)" d="([^"]*)"', plate)[-1] for plate in plates]
+    assert [color for color, _ in grounds] == ["ff0000", "00ff00", "0000ff"]
+    assert len({outline for _, outline in grounds}) == 1
+    away = np.abs(drawn(path, picture.shape[:2]) - picture).max(axis=2)
+    y, x = np.mgrid[:120, :150]
+    radius = np.hypot(x - 74.5, y - 59.5)
+    assert np.mean(away[radius < 47] <= 6) > 0.995
+    assert away[radius > 52].max() == 0
+    few = plotter.vizlight.save_graphic(tmp_path / "few.svg", error=60).read_text()
+    assert "mix-blend-mode" not in few
+
+
+def test_lines_of_changing_width_are_outlines(plotter, tmp_path):
+    line = pv.Line((-1, 0, 0), (1, 0, 0), resolution=40)
+    line["width"] = np.linspace(0, 1, line.n_points)
+    plotter.vizlight.add_mesh(line, color="black", width="width", line_width=12, scene=Scene())
+    seen_from_above(plotter)
+    text = plotter.vizlight.save_graphic(tmp_path / "wedge.svg").read_text()
+    outline = re.findall(r'<path fill="#000000" d="([^"]*)"', text)[-1]
+    corners = np.cumsum(np.array(re.findall(r"-?\d+", outline), dtype=float).reshape(-1, 2), axis=0)
+    assert np.ptp(corners[:, 1]) / 10 == pytest.approx(12, abs=0.3)
+    # A wedge needs no more than its corners.
+    assert len(corners) < 9
+
+
+def test_lines_of_vtk_are_as_wide_as_in_a_supersampled_picture(plotter):
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.add_mesh(pv.Line((-1, 0, 0), (1, 0, 0)), color="black", line_width=20)
+    seen_from_above(plotter)
+    picture = plotter.screenshot(return_img=True)
+    (lines,) = lines_of(plotter, lambda _: None)
+    assert lines.width == pytest.approx(np.count_nonzero(picture[:, 75, 0] < 128), abs=1)
 
 
 def test_details_that_are_too_many_become_pixels_with_a_note(plotter, tmp_path, monkeypatch):

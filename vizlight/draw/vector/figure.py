@@ -11,13 +11,15 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.vector import VECTORS
-from vizlight.draw.vector.files import Fill, Picture, Sheet, pdf_of, svg_of
+from vizlight.draw.vector.files import Fill, Picture, Plate, Sheet, pdf_of, svg_of
 from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
 from vizlight.draw.vector.samples import Samples, enlarged, samples_of
 from vizlight.draw.vector.words import words_of
 from vizlight.files import check_output, replace_file
 from vizlight.geometry.contours.faces import faces
-from vizlight.geometry.contours.palette import palette_of
+from vizlight.geometry.contours.levels import levels
+from vizlight.geometry.contours.palette import FEWER, nearest_colors, palette_of
+from vizlight.geometry.contours.steady import steadied
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,17 +34,27 @@ __all__ = ["save_graphic"]
 
 #: Largest file in bytes that is made where no error is asked for.
 LARGEST = 500_000
-#: Errors in 1/255: the finest and the coarsest of which one is chosen, the first to try with one
-#: channel and with three, and the largest that is not worth a warning.
-FINEST, COARSEST, FIRST, UNSAID = 2.0, 32.0, (4.0, 16.0), 4.0
+#: Errors in 1/255: the finest and the coarsest of which one is chosen, and the largest that is not
+#: worth a warning.
+FINEST, COARSEST, UNSAID = 2.0, 16.0, 4.0
+#: Bytes of a figure of an error of 1 for each sample and difference of neighbouring ones by 1, as
+#: measured, and the largest difference that counts.
+BYTES, EDGE = 1.6, 32.0
+#: Colours up to which those of three channels are faces in SVG files, and plates above.
+FEW = 32
 #: Error that would be needed above which no coarser figure is tried.
-HOPELESS = 48.0
+HOPELESS = 24.0
 #: Power of the error to which the size falls, as measured, and share of the largest size that is
 #: aimed at.
 POWER, AIM = 1.5, 0.9
 #: Pixels in place of paths, until they fit: how many along each of the picture's own, and the
 #: quality of JPEG, None for PNG.
 PIXELS = ((2, None), (2, 92), (1, 92))
+#: Shares of an error by which samples may move, and at which borders may lie off their place.
+STEADY, LOOSE = 0.08, 0.12
+#: Ratio of the radius of a palette of three channels to its largest difference of one, as tried,
+#: and difference that is rounding.
+WIDER, EXACT = (1.4, 1.2, 1.0), 0.1
 #: Most samples of a picture, and most along a side of a pixel.
 SAMPLES, FINE = 12_000_000, 4
 
@@ -69,10 +81,12 @@ def save_graphic(
     if error is not None:
         error = _check.number("error", error, low=0.1, high=128.0)
     drawn = _Drawn.of(plotter, live_of)
-    first = FIRST[drawn.samples.colors.shape[2] > 1] if error is None else error
-    best = drawn.attempt(path.suffix, first)
+    first = drawn.likely_error() if error is None else error
+    suffix = path.suffix.lower()
+    plates = suffix == ".svg" and drawn.has_more_colors(FEW, first)
+    best = drawn.attempt(suffix, first, plates=plates)
     if error is None:
-        best = _fitting(drawn, path.suffix, best)
+        best = _fitting(drawn, suffix, best, plates=plates)
     _note(path, best, error=error)
     return replace_file(path, lambda draft: Path(draft).write_bytes(best.data))
 
@@ -93,6 +107,7 @@ class _Drawn:
     background: Color
     scale: int
     samples: Samples
+    shown: Bools
     place: tuple[int, int]
     courses: list[Course]
     words: list[Item]
@@ -111,6 +126,8 @@ class _Drawn:
             samples = samples_of(plotter)
         if lines:
             with enlarged(plotter, scale, props):
+                for each in lines:
+                    each.actor.GetProperty().SetLineWidth(scale * each.width)
                 whole = samples_of(plotter)
                 courses = [course_of(each, whole, samples, scale) for each in lines]
         red, green, blue = pv.Color(plotter.background_color).float_rgb
@@ -118,24 +135,67 @@ class _Drawn:
         shown = np.any(samples.colors != ground[: samples.colors.shape[2]], axis=2)
         rows, columns = (_span(shown.any(axis=axis), scale) for axis in (1, 0))
         samples = Samples(samples.colors[rows, columns], samples.depth[rows, columns])
+        shown = shown[rows, columns]
         place = columns.start // scale, rows.start // scale
-        return cls((width, height), (red, green, blue), scale, samples, place, courses, words)
+        size = (width, height)
+        return cls(size, (red, green, blue), scale, samples, shown, place, courses, words)
 
-    def attempt(self, suffix: str, error: float) -> _Attempt:
-        """Return the figure with an error that is asked."""
-        colors = self.samples.colors
-        ground = np.rint(255 * np.array(self.background))[: colors.shape[2]]
-        palette = palette_of(colors, ground, error)
-        fills: list[Item] = [
-            Fill(_rgb(face.color), [ring + self.place for ring in face.rings])
-            for face in faces(palette, colors, self.scale)
-        ]
+    def likely_error(self) -> float:
+        """Return the error with which the figure is likely to have its largest size."""
+        colors, shown, total = self.samples.colors, self.shown, 0.0
+        for near, far in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
+            step = np.minimum(np.abs(colors[near] - colors[far]), np.float32(EDGE))
+            total += float(np.sum(step[shown[near] & shown[far]], dtype=np.float64))
+        size = BYTES * total / self.scale
+        return float(np.clip((size / (AIM * LARGEST)) ** (1 / POWER), FINEST, COARSEST))
+
+    def has_more_colors(self, count: int, error: float) -> bool:
+        """Return whether three channels have more colours than some number, within an error."""
+        colors = self.samples.colors[self.shown][::FEWER]
+        return colors.shape[1] > 1 and len(nearest_colors(colors, error)[0]) > count
+
+    def attempt(self, suffix: str, error: float, *, plates: bool) -> _Attempt:
+        """Return the figure with an error that is asked, of three channels as plates if asked."""
+        if plates:
+            parts = [self._faces(slice(i, i + 1), error) for i in range(3)]
+            under: Item = Fill((0, 0, 0), [_page(self.size)])
+            fills = [under, *(Plate(faces) for _, _, faces in parts)]
+        else:
+            parts = [self._faces(slice(None), error)]
+            fills = [*parts[0][2]]
         courses = [_in_channels(course, 3) for course in self.courses]
         strokes: list[Item] = [*strokes_of(courses, self.background, error)]
-        words = (
-            f"{len(palette.colors)} colours, each within {palette.error:.1f} of 255 of the light"
-        )
-        return _Attempt(self._written(suffix, fills, strokes, words), error, palette.error)
+        count, reached = sum(part[0] for part in parts), max(part[1] for part in parts)
+        kind = "levels of red, green and blue" if plates else "colours"
+        words = f"{count} {kind}, each within {reached:.1f} of 255 of the light"
+        return _Attempt(self._written(suffix, fills, strokes, words), error, reached)
+
+    def _faces(self, channels: Slice, error: float) -> tuple[int, float, list[Fill]]:
+        """Return the number of colours of channels, their largest error, and their faces.
+
+        Faces are in the order of painting, the background last, all around what reaches beneath it.
+        """
+        colors = self.samples.colors[..., channels]
+        ground = np.rint(255 * np.array(self.background))[channels][: colors.shape[2]]
+        moved = steadied(colors, self.shown, self.scale, STEADY * error)
+        half = (1 - STEADY - LOOSE) * error
+        single = colors.shape[2] == 1
+        for wider in (1.0,) if single else WIDER:
+            palette = palette_of(moved, ground, wider * half, self.scale, self.shown)
+            if palette.error <= half:
+                break
+        fills: list[Fill] = []
+        for face in (levels if single else faces)(palette, moved, self.scale, LOOSE * error):
+            color = np.zeros(3)
+            color[channels] = face.color
+            rings = [ring + self.place for ring in face.rings]
+            fills.append(Fill(_rgb(color), rings))
+        page = _page(self.size)
+        last = fills.pop() if fills else Fill(self.background, [page])
+        fills.append(Fill(last.color, [page, *last.rings[1:]]))
+        # Colours that are exact have no borders within a surface that may be off.
+        loose = (STEADY + LOOSE) * error if palette.error > EXACT else 0.0
+        return len(palette.colors), palette.error + loose, fills
 
     def pixels(self, suffix: str, along: int, quality: int | None) -> _Attempt:
         """Return the figure with so many pixels along each of the picture's own, as PNG or JPEG."""
@@ -155,7 +215,7 @@ class _Drawn:
     def _written(self, suffix: str, faces: list[Item], lines: list[Item], words: str) -> bytes:
         groups = {"faces": faces, "lines": lines, "words": self.words}
         sheet = Sheet(self.size, self.background, groups, words)
-        return svg_of(sheet).encode() if suffix.lower() == ".svg" else pdf_of(sheet)
+        return svg_of(sheet).encode() if suffix == ".svg" else pdf_of(sheet)
 
 
 def _in_channels(course: Course, count: int) -> Course:
@@ -172,14 +232,20 @@ def _span(shown: Bools, scale: int) -> Slice:
     return slice(max(first, 0) * scale, min(last * scale, len(shown)))
 
 
+def _page(size: tuple[int, int]) -> Array:
+    """Return the ring around a picture."""
+    width, height = size
+    return np.array([(0, 0), (width, 0), (width, height), (0, height)], dtype=np.float64)
+
+
 def _rgb(color: Array) -> Color:
     red, green, blue = np.broadcast_to(color, 3) / 255
     return float(red), float(green), float(blue)
 
 
-def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
+def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> _Attempt:
     """Return the most accurate figure that is not too large, from a first attempt."""
-    best, first = None, attempt
+    best = None
     for _ in range(4):
         size = len(attempt.data)
         if size <= LARGEST and (best is None or attempt.asked < best.asked):
@@ -194,7 +260,7 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
             return best
         if attempt.asked == COARSEST:
             break
-        attempt = drawn.attempt(suffix, error)
+        attempt = drawn.attempt(suffix, error, plates=plates)
     if best is not None:
         return best
     # Pixels in place of faces help nothing where it is the strokes that are many.
@@ -202,7 +268,7 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt) -> _Attempt:
         pixels = drawn.pixels(suffix, along, quality)
         if len(pixels.data) <= LARGEST:
             return pixels
-    return first
+    return attempt if attempt.asked == COARSEST else drawn.attempt(suffix, COARSEST, plates=plates)
 
 
 def _note(path: Path, best: _Attempt, *, error: float | None) -> None:

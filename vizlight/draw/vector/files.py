@@ -95,7 +95,14 @@ class Picture:
     quality: int | None = None
 
 
-Item: TypeAlias = "Fill | Polyline | Words | Picture"
+@dataclass(frozen=True)
+class Plate:
+    """Faces of one channel: a picture has the lightest of its plates in each."""
+
+    items: Sequence[Fill]
+
+
+Item: TypeAlias = "Fill | Polyline | Words | Picture | Plate"
 
 
 @dataclass(frozen=True)
@@ -164,6 +171,10 @@ def _drawn(every: Iterable[Item]) -> Iterable[str]:
             )
         elif isinstance(item, Words):
             yield from _text(item)
+        elif isinstance(item, Plate):
+            yield '<g style="mix-blend-mode:lighten">\n'
+            yield from _drawn(item.items)
+            yield "</g>\n"
         else:
             yield _image(item)
     if small:
@@ -255,6 +266,8 @@ def figure_of(sheet: Sheet) -> Figure:
                     ha={0.0: "left", 0.5: "center", 1.0: "right"}[item.across],
                 )  # fmt: skip
             continue
+        elif isinstance(item, Plate):
+            raise TypeError("figures of matplotlib have no plates")
         else:
             (x, y), (wide, high) = item.place, item.size
             low = 1 - (y + high) / height

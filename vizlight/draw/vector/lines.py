@@ -10,11 +10,11 @@ import pyvista as pv
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
 from vizlight.draw.live import in_view, matrix_of
-from vizlight.draw.strokes import LEAST
-from vizlight.draw.vector.files import Polyline
+from vizlight.draw.strokes import LEAST, line_samples
+from vizlight.draw.vector.files import Fill, Polyline
 from vizlight.draw.vector.samples import actors_of
-from vizlight.geometry.contours.faces import SEEN, simplified
 from vizlight.geometry.contours.palette import nearest_colors
+from vizlight.geometry.contours.rings import SEEN, simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
 
 if TYPE_CHECKING:
@@ -32,6 +32,11 @@ __all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
 BEHIND = 1.5
 #: Ratio of two widths that are drawn as one, and difference from the ground that is rounding.
 ALIKE, SAME = 1.12, 2.0
+#: Width in pixels above which a line is its outline, so that its parts join without a wedge, and
+#: more lines than one actor has.
+BROAD, LINES = 3.0, 1 << 40
+#: Places by which they overlap.
+EARLIER = 2
 #: Width in pixels below which nothing is drawn, and most places on a segment.
 THIN, LONGEST = 0.05, 20_000
 #: Distance by which lines may be drawn nearer to the eye than they are, as a share of their size.
@@ -120,7 +125,10 @@ def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]
                 continue
             how = Style() if live is None else live.stroke
             colors = _unlit_colors(actor, pv.wrap(mesh), live)
-            lines.append(Lines(renderer, actor, how, float(style.GetLineWidth()), colors))
+            # VTK's own lines are wider in a larger picture, which is shrunk.
+            wide = line_samples(renderer) if how == Style() else 1.0
+            width = float(style.GetLineWidth()) / wide
+            lines.append(Lines(renderer, actor, how, width, colors))
     return lines
 
 
@@ -203,7 +211,22 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
         colors = lines.colors[ids][:, : color.shape[1]]
         color = colors[start] + along[:, np.newaxis] * (colors[start + 1] - colors[start])
     seen &= colored & (width > THIN)
+    # Beneath other lines a wide one goes on: where its middle is hidden its border may be seen.
+    clear = distance - _distance(_read(bare.depth, place), camera) <= reach
+    clear &= colored & (width > BROAD)
+    seen |= clear & _near(seen, number[start], width + 1)
     return Course(place / scale, distance, number[start], ends, width, seen, color, halo)
+
+
+def _near(seen: Bools, line: Indices, count: Array) -> Bools:
+    """Return which places have one that is seen within some places before or behind."""
+    at = np.arange(len(seen))
+    # Lines are as far from each other as no place of a line is.
+    place = at + line * len(seen)
+    before = np.maximum.accumulate(np.where(seen, place, -2 * len(seen)))
+    after = np.minimum.accumulate(np.where(seen, place, 1 << 60)[::-1])[::-1]
+    near: Bools = np.minimum(place - before, after - place) <= count
+    return near
 
 
 def _over_surface(
@@ -296,8 +319,10 @@ def _read(picture: Array, place: Array) -> Array:
     return values
 
 
-def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Polyline]:
+def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Polyline | Fill]:
     """Yield strokes from the farthest to the nearest, each after its halo.
+
+    Those of several widths are their outlines.
 
     Parameters
     ----------
@@ -312,10 +337,9 @@ def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterat
     every = Course(*(np.concatenate(part) for part in zip(*courses, strict=True)))
     line = np.repeat(np.arange(len(courses)), [len(course.line) for course in courses])
     centres, label = nearest_colors(every.color[every.seen].astype(np.float32), error)
-    kind = np.full((len(line), 4), -1)
+    kind = np.full((len(line), 3), -1)
     kind[every.seen, 0] = label
     kind[:, 1], kind[:, 2] = line, every.line
-    kind[every.seen, 3] = np.rint(np.log(every.width[every.seen]) / np.log(ALIKE))
     begins = np.flatnonzero(np.append(True, np.any(np.diff(kind, axis=0) != 0, axis=1)))
     begins = begins[every.seen[begins]]
     changes = np.append(np.flatnonzero(np.any(np.diff(kind, axis=0) != 0, axis=1)), len(line) - 1)
@@ -323,25 +347,51 @@ def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterat
     # Each reaches to the first place of the next, so that they join.
     following = np.minimum(finishes + 1, len(line) - 1)
     joined = np.all(kind[following, 1:3] == kind[begins, 1:3], axis=1) & every.seen[following]
+    joined &= following > finishes
     finishes = np.where(joined, following, finishes)
     kept = finishes > begins
     begins, finishes = begins[kept], finishes[kept]
-    spans = [np.arange(a, b + 1) for a, b in zip(begins, finishes, strict=True)]
+    # One of one colour stays a stroke.
+    same = np.all(kind[begins - 1, 1:] == kind[begins, 1:], axis=1) & every.seen[begins - 1]
+    same &= begins > 0
+    wide = (every.width[begins] > BROAD) & (joined[kept] | same)
+    # Wide ones begin earlier, beneath the one before, so that no seam shows.
+    firsts = begins.copy()
+    for _ in range(EARLIER):
+        before = np.maximum(firsts - 1, 0)
+        same = every.seen[before] & np.all(kind[before, 1:] == kind[begins, 1:], axis=1)
+        firsts = np.where(wide & same, before, firsts)
+    spans = [np.arange(a, b + 1) for a, b in zip(firsts, finishes, strict=True)]
     if not spans:
         return
     rows = np.concatenate(spans)
-    starts = np.append(0, np.cumsum(finishes - begins + 1))
+    across = _across(every.place, LINES * line + every.line)
+    starts = np.append(0, np.cumsum(finishes - firsts + 1))
     limit = np.full(len(rows), SEEN)
     limit[starts[1:] - 1] = 1e-9
-    corners = simplified(every.place[rows], starts, limit)
+    corners = simplified(np.column_stack([every.place, every.width / 2])[rows], starts, limit)
     mean = np.add.reduceat(every.distance[rows], starts[:-1]) / np.diff(starts)
     for run in np.argsort(-mean, kind="stable"):
         span = slice(starts[run], starts[run + 1])
         here = rows[span]
-        points = every.place[here][corners[span]]
-        red, green, blue = (centres[kind[here[0], 0]] / 255).tolist()
-        width = float(np.mean(every.width[here]))
-        if (halo := float(np.median(every.halo[here]))) > 0:
-            yield Polyline(ground, points, width + 2 * halo)
-        whole = bool(every.end[here[0]] and every.end[here[-1]])
-        yield Polyline((red, green, blue), points, width, whole)
+        kept = here[corners[span]]
+        points, width = every.place[kept], every.width[kept]
+        red, green, blue = (centres[kind[begins[run], 0]] / 255).tolist()
+        halo = float(np.median(every.halo[here]))
+        side = across[kept]
+        if not wide[run] and width.max() <= ALIKE * width.min():
+            mean_width = float(np.mean(every.width[here]))
+            whole = bool(every.end[here[0]] and every.end[here[-1]])
+            if halo > 0:
+                yield Polyline(ground, points, mean_width + 2 * halo)
+            yield Polyline((red, green, blue), points, mean_width, whole)
+        else:
+            if halo > 0:
+                yield Fill(ground, [_outline(points, side, width + 2 * halo)])
+            yield Fill((red, green, blue), [_outline(points, side, width)])
+
+
+def _outline(points: Array, across: Array, width: Array) -> Array:
+    """Return the ring around a line of some widths, from the unit vectors across it."""
+    side = across * (width / 2)[:, np.newaxis]
+    return np.concatenate([points + side, (points - side)[::-1]])

@@ -10,9 +10,9 @@ import scipy
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vizlight._types import Array, Indices
+    from vizlight._types import Array, Bools, Indices
 
-__all__ = ["JUMP", "Palette", "nearest_colors", "palette_of"]
+__all__ = ["FEWER", "JUMP", "Palette", "nearest_colors", "palette_of"]
 
 #: Share of the samples above which one exact colour is its own face.
 FLAT = 2e-3
@@ -29,6 +29,8 @@ ROUNDS = 4
 #: Neighbours of a sample, and the number of those of its colour below which it is a speck.
 AROUND = [(down, right) for down in (-1, 0, 1) for right in (-1, 0, 1) if down or right]
 FEW = 4
+#: Difference up to which the rim of surfaces has the color beside it.
+RIM = 96.0
 #: Colours that are tried for one of the palette.
 CANDIDATES = 4
 #: Difference of neighbouring samples, in errors, above which they are of two surfaces.
@@ -56,7 +58,9 @@ class Palette(NamedTuple):
     error: float
 
 
-def palette_of(samples: Array, background: Array, error: float) -> Palette:
+def palette_of(
+    samples: Array, background: Array, error: float, scale: int, shown: Bools | None = None
+) -> Palette:
     """Return a few colours such that each sample is near one of them.
 
     Parameters
@@ -66,6 +70,10 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     background : ndarray, shape (c,)
     error : float
         Largest difference of a channel, in the unit of the samples.
+    scale : int
+        Samples for each pixel, along a side.
+    shown : ndarray of bool, shape (rows, columns), optional
+        Mask of the samples that are not background. Default: those that differ from it.
 
     Returns
     -------
@@ -74,10 +82,12 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     """
     rows, columns, channels = samples.shape
     flat = samples.reshape(-1, channels)
-    shown = np.flatnonzero(np.any(flat != background.astype(flat.dtype), axis=1))
-    foreground = flat[shown].astype(np.float32)
+    if shown is None:
+        shown = np.any(samples != background.astype(flat.dtype), axis=2)
+    where = np.flatnonzero(shown)
+    foreground = flat[where].astype(np.float32)
     labels = np.zeros(rows * columns, dtype=np.int32)
-    if not len(shown):
+    if not len(where):
         return Palette(background[np.newaxis], background[np.newaxis], labels.reshape(rows, -1), 0)
     centres, number = nearest_colors(foreground, error)
     # From dark to light, and none that no sample has.
@@ -86,11 +96,12 @@ def palette_of(samples: Array, background: Array, error: float) -> Palette:
     order = order[count[order] > 0]
     rank = np.zeros(len(centres), dtype=np.int32)
     rank[order] = np.arange(1, len(order) + 1)
-    labels[shown] = rank[number]
-    low, high = _extremes(foreground, labels[shown], len(order) + 1)
+    labels[where] = rank[number]
+    low, high = _extremes(foreground, labels[where], len(order) + 1)
     colors = np.concatenate([background[np.newaxis], (low + high)[1:] / 2])
     largest_error = float(np.max((high - low)[1:]) / 2)
     kept = np.concatenate([background[np.newaxis], centres[order]])
+    _trim(labels.reshape(rows, columns), samples, kept, scale)
     _settle(labels.reshape(rows, columns), samples, kept, error)
     return Palette(kept, colors, labels.reshape(rows, columns), largest_error)
 
@@ -128,7 +139,7 @@ def _settle(labels: NDArray[np.int32], samples: Array, centres: Array, error: fl
     Where colours change within a pixel, faces would be specks that nobody sees. A corner of a face
     stays if its colour differs clearly from those around it.
     """
-    limit = (JUMP * error) ** 2
+    limit = JUMP * error
     for _ in range(ROUNDS):
         padded = np.pad(labels, 1, constant_values=-1)
         rows, columns = labels.shape
@@ -138,16 +149,40 @@ def _settle(labels: NDArray[np.int32], samples: Array, centres: Array, error: fl
         row, column = np.nonzero((alike < FEW) & (labels > 0))
         if not len(row):
             return
-        firm = np.pad(alike >= FEW, 1)
-        color = samples[row, column]
-        best, nearest = labels[row, column].copy(), np.full(len(row), np.inf)
-        for down, right in AROUND:
-            at = row + 1 + down, column + 1 + right
-            other = padded[at]
-            away = np.sum((centres[other] - color) ** 2, axis=1)
-            better = firm[at] & (away < nearest) & ((away < limit) | (alike[row, column] < 2))
-            best[better], nearest[better] = other[better], away[better]
-        labels[row, column] = best
+        few = np.where(alike[row, column] < 2, np.inf, limit)
+        _join(labels, samples, centres, (row, column), (alike >= FEW) & (labels > 0), few)
+
+
+def _join(labels: NDArray[np.int32], samples: Array, centres: Array, at: tuple[Indices, Indices],
+          firm: Bools, limit: Array | float) -> tuple[Indices, Indices]:  # fmt: skip
+    """Give samples the nearest color of firm ones beside them; return those within a limit."""
+    row, column = at
+    padded, sure = np.pad(labels, 1, constant_values=-1), np.pad(firm, 1)
+    color = samples[row, column]
+    best, nearest = np.zeros(len(row), dtype=np.int32), np.full(len(row), np.inf)
+    for down, right in AROUND:
+        beside = row + 1 + down, column + 1 + right
+        other = padded[beside]
+        away = np.abs(centres[other] - color).max(axis=1)
+        better = sure[beside] & (away < nearest)
+        best[better], nearest[better] = other[better], away[better]
+    taken = nearest < limit
+    row, column = row[taken], column[taken]
+    labels[row, column] = best[taken]
+    return row, column
+
+
+def _trim(labels: NDArray[np.int32], samples: Array, centres: Array, scale: int) -> None:
+    """Let colors at the rim of surfaces be those a pixel within.
+
+    Light falls off there within a pixel, which is a mixture with what is beside it.
+    """
+    shown = labels > 0
+    firm = scipy.ndimage.binary_erosion(shown, iterations=max(scale - 1, 1), border_value=1)
+    for _ in range(scale + 1):
+        near = scipy.ndimage.binary_dilation(firm, np.ones((3, 3), dtype=np.bool_)) & shown & ~firm
+        row, column = np.nonzero(near)
+        firm[_join(labels, samples, centres, (row, column), firm, RIM)] = True
 
 
 def _even(samples: Array, error: float) -> tuple[Array, Indices]:
