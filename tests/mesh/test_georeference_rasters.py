@@ -154,7 +154,9 @@ def test_pages_of_images_are_a_volume(tmp_path, random):
     volume = vizlight.read(pages(tmp_path / "cells.tif", values))
     assert volume.dimensions == (6, 5, 12)
     # The first page is on top, and the first row of each is its upper edge.
-    np.testing.assert_array_equal(volume["cells"].reshape(12, 5, 6), values[::-1, ::-1], strict=True)
+    np.testing.assert_array_equal(
+        volume["cells"].reshape(12, 5, 6), values[::-1, ::-1], strict=True
+    )
     words = "ImageJ=1.53\nimages=12\nslices=12\nunit=micron\nspacing=0.5\n"
     volume = vizlight.read(
         pages(tmp_path / "scaled.tif", values, description=words, x_resolution=10, y_resolution=10)

@@ -26,6 +26,22 @@ def test_the_first_of_several_models_is_read(tmp_path):
     np.testing.assert_array_equal(first.points, one.points)
 
 
+def test_elements_are_those_of_the_columns_or_of_the_names(tmp_path):
+    """Old files have other words in the columns of elements; hydrogen is kept."""
+    names = [(" CA ", "ATOM  "), ("HG1 ", "ATOM  "), ("FE  ", "HETATM"), ("1HB ", "ATOM  ")]
+    lines = [
+        f"{kind}{i + 1:5d} {name} GLY A{i + 1:4d}    {9.0 * i:8.3f}{0:8.3f}{0:8.3f}  0.50 {i:5.2f}"
+        for i, (name, kind) in enumerate(names)
+    ]
+    for end in ("      1HPV 186", ""):
+        mesh = vizlight.read(written(tmp_path, "".join(f"{one}{end}\n" for one in lines), "a.pdb"))
+        assert mesh["atom_type"].tolist() == [6, 1, 26, 1]
+        assert (mesh.n_lines, mesh.n_verts) == (0, 4)
+    assert mesh["b_factor"].tolist() == [0, 1, 2, 3]
+    assert mesh["residue"].tolist() == [1, 2, 3, 4]
+    assert mesh["occupancy"].tolist() == [0.5] * 4
+
+
 def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
     water = vizlight.read(written(tmp_path, WATER, "water.xyz"))
     assert water["atom_type"].tolist() == [8, 1, 1]

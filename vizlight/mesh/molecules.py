@@ -9,40 +9,78 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkMolecule
 
-from vizlight import _check, _supervise
+from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-#: End of the first of several models of a PDB file, and the start of each.
-_END, _MODEL = re.compile(rb"^ENDMDL", re.MULTILINE), re.compile(rb"^MODEL ", re.MULTILINE)
-#: Line of an atom in an XYZ file: its symbol, and what may follow its place.
-_ATOM = re.compile(r"[A-Za-z]{1,3}\d*$")
+#: Symbol of an atom at the start of a line of an XYZ file.
+_SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
+#: Point arrays of a PDB file: their columns, and what stands for none.
+_NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60, 66, 0.0)}
 
 
-def of_pdb(path: Path) -> pv.PolyData | None:
-    """Return the first of several models; None where there is one, which PyVista reads.
+def of_pdb(path: Path) -> pv.PolyData:
+    """Return the atoms of the first model of a PDB file, bonds by the distances of these atoms.
 
-    VTK's reader joins the atoms of all models by bonds with each other.
+    VTK's reader joins the atoms of all models with each other, leaves out hydrogen, and takes the
+    columns of old files for elements, which makes false bonds.
 
     Parameters
     ----------
     path : pathlib.Path
         Path of the file.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``residue``,
+        ``chain``, ``occupancy`` and ``b_factor``. Of atoms with several places the first is taken.
+
+    Raises
+    ------
+    ValueError
+        If there are no atoms, or one has no place.
     """
-    data = path.read_bytes()
-    count = len(_MODEL.findall(data))
-    end = _END.search(data)
-    if count < 2 or end is None:
-        return None
-    with _supervise.folder(path) as folder:
-        draft = folder / "first.pdb"
-        draft.write_bytes(data[: end.end()] + b"\n")
-        mesh = pv.read(draft, validate=False)
-    _warn_of_states(path, count)
-    assert isinstance(mesh, pv.PolyData)
+    lines = path.read_text(encoding="latin-1").splitlines()
+    ends = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
+    if len(ends) > 1:
+        _warn_of_states(path, len(ends))
+    atoms = [
+        line
+        for line in lines[: ends[0] if ends else None]
+        if line.startswith(("ATOM", "HETATM")) and line[16:17] in ("", " ", "A", "1")
+    ]
+    if not atoms:
+        raise ValueError("it has no atoms")
+    places = []
+    for line in atoms:
+        try:
+            places.append([float(line[i : i + 8]) for i in (30, 38, 46)])
+        except ValueError:
+            raise ValueError(f"{line[:27]!r} has no place of three numbers") from None
+    mesh = _joined([_element(line) for line in atoms], places)
+    for name, (first, last, none) in _NUMBERS.items():
+        words = [line[first:last].strip() for line in atoms]
+        try:
+            mesh.point_data[name] = [type(none)(word) if word else none for word in words]
+        except ValueError:
+            continue  # numbers of residues may have letters
+    chains = sorted({line[21:22] for line in atoms})
+    mesh.point_data["chain"] = [chains.index(line[21:22]) for line in atoms]
     return mesh
+
+
+def _element(line: str) -> str:
+    """Return the element of an atom: of its columns, else by its name."""
+    named, name = line[76:78].strip(), line[12:16]
+    if named.isalpha():
+        return named
+    letters = re.sub("[^A-Za-z]", "", name)
+    # Two letters begin one column before those of one; four are those of hydrogen.
+    is_wide = name[:1].isalpha() and line.startswith("HETATM") and name[3:4] == " "
+    return letters[:2] if is_wide and len(letters) > 1 else letters[:1]
 
 
 def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
@@ -68,8 +106,31 @@ def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
     """
     words = [line.split() for line in lines]
     third = words[2] if len(words) > 2 else []
-    if len(words[0]) != 1 or not words[0][0].isdigit() or not third or not _ATOM.match(third[0]):
+    if len(words[0]) != 1 or not words[0][0].isdigit() or not third or not _SYMBOL.match(third[0]):
         return None
+    count = int(words[0][0])
+    atoms = words[2 : 2 + count]
+    if len(atoms) < count:
+        raise ValueError(f"{len(atoms)} of {count} atoms are there")
+    places = []
+    for number, atom in enumerate(atoms):
+        try:
+            places.append([float(word) for word in atom[1:4]])
+        except ValueError:
+            places.append([])
+        if len(places[-1]) < 3 or not np.isfinite(places[-1]).all():
+            raise ValueError(f"line {number + 3} has no element with a place of three numbers")
+    if len(words) > 2 + count and words[2 + count] == words[0]:
+        _warn_of_states(path, len(words) // (count + 2))
+    mesh = _joined([atom[0].rstrip("0123456789") for atom in atoms], places)
+    if not mesh.point_data["atom_type"].all():
+        number = int(np.argmin(mesh.point_data["atom_type"]))
+        raise ValueError(f"line {number + 3} has no element with a place of three numbers")
+    return mesh
+
+
+def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.PolyData:
+    """Return atoms with their atomic numbers, 0 for what is no element, joined by bonds."""
     # Few files need what takes 10 ms to load.
     from vtkmodules.vtkDomainsChemistry import (
         vtkMoleculeToLinesFilter,
@@ -77,34 +138,20 @@ def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
         vtkSimpleBondPerceiver,
     )
 
-    count = int(words[0][0])
-    atoms = words[2 : 2 + count]
-    if len(atoms) < count:
-        raise ValueError(f"{len(atoms)} of {count} atoms are there")
     table, molecule = vtkPeriodicTable(), vtkMolecule()
-    for number, atom in enumerate(atoms):
-        element = table.GetAtomicNumber(atom[0].rstrip("0123456789")) if atom else 0
-        try:
-            place = [float(word) for word in atom[1:4]]
-        except ValueError:
-            place = []
-        if element == 0 or len(place) < 3 or not np.isfinite(place).all():
-            raise ValueError(f"line {number + 3} has no element with a place of three numbers")
-        molecule.AppendAtom(element, *place)
-    if len(words) > 2 + count and words[2 + count] == words[0]:
-        _warn_of_states(path, len(words) // (count + 2))
+    numbers = {name: table.GetAtomicNumber(name) if name else 0 for name in set(elements)}
+    for name, place in zip(elements, places, strict=True):
+        molecule.AppendAtom(numbers[name], *place)
     bonds, drawn = vtkSimpleBondPerceiver(), vtkMoleculeToLinesFilter()
     bonds.SetInputData(molecule)
     drawn.SetInputConnection(bonds.GetOutputPort())
     drawn.Update()
-    joined = pv.wrap(drawn.GetOutput())
-    alone = np.setdiff1d(np.arange(count), joined.lines)
+    lines = pv.wrap(drawn.GetOutput()).lines
+    alone = np.setdiff1d(np.arange(len(places)), lines.reshape(-1, 3)[:, 1:])
     mesh = pv.PolyData(
-        np.asarray(joined.points, dtype=np.float64),
-        lines=joined.lines,
-        verts=np.column_stack([np.ones_like(alone), alone]),
+        np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
     )
-    mesh.point_data["atom_type"] = [molecule.GetAtomAtomicNumber(i) for i in range(count)]
+    mesh.point_data["atom_type"] = [numbers[name] for name in elements]
     return mesh
 
 
