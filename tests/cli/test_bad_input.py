@@ -84,6 +84,7 @@ import pyvista as pv
         ("light flow.vti --array r -o a.vtm", "it is one mesh, which has no blocks"),
         ("light flow.vti --tangents r,q", "tangents: expected the name of an array, one of"),
         ("light terrain.vti --for slope", "expected vectors for 'slope', got"),
+        ("light scan.vtp --for slope", "take --for shape"),
         ("fur scan.vtp", "mesh: expected a surface with faces, got a PolyData mesh without"),
         ("view none.vtp", "no such file"),
         ("view torus.vtp -o page.png", "ends in .html"),

@@ -43,3 +43,12 @@ def test_values_that_rise_ever_faster_have_no_isosurface_that_stands_out():
     x, y, z = np.asarray(image.points).T
     image["p"] = x * y * z
     assert levels.best_level(image, "p")[1] <= 1
+
+
+def test_corners_of_strips_are_those_of_their_triangles():
+    tube = pv.Line(resolution=3).tube(0.1, n_sides=5)
+    assert tube.n_strips > 0
+    ids, starts, counts = levels.sampled_corners(tube)
+    assert (set(counts), len(ids)) == ({3}, 3 * len(starts))
+    assert len(starts) == tube.triangulate().n_cells
+    assert [len(part) for part in levels.sampled_corners(pv.Line())] == [0, 0, 0]

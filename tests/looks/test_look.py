@@ -339,3 +339,28 @@ def test_a_row_of_points_is_a_line():
     look = vizlight.look(row, size=SIZE)
     assert (look.shown, look.array) == ("lines", "p")
     look.plotter().close()
+
+
+def test_components_in_two_files_are_one_vector(tmp_path):
+    xr = pytest.importorskip("xarray")
+    pytest.importorskip("netCDF4")
+    lat, lon = np.linspace(40, 60, 9), np.linspace(0, 30, 11)
+    paths = []
+    for name, standard in (("a", "eastward_wind"), ("b", "northward_wind")):
+        rows = np.add.outer(0.1 * lat, lon) + len(paths)
+        values = xr.DataArray(rows, dims=("lat", "lon"), attrs={"standard_name": standard})
+        places = {
+            "lat": ("lat", lat, {"units": "degrees_north"}),
+            "lon": ("lon", lon, {"units": "degrees_east"}),
+        }
+        paths.append(tmp_path / f"{name}.nc")
+        xr.Dataset({name: values}, coords=places).to_netcdf(paths[-1])
+    look = vizlight.look(paths, size=(300, 200))
+    assert look.array == "a,b"
+    assert "overlay=" in look.script()
+    assert vizlight.look([paths[0], paths[0]], size=(300, 200)).array == "a"
+
+
+def test_a_level_needs_the_array_that_it_is_one_of():
+    with pytest.raises(ValueError, match="level: expected contour= with it, got it alone"):
+        vizlight.look(pv.ImageData(dimensions=(3, 3, 3)), level=2)

@@ -52,12 +52,17 @@ def one_line(error: object) -> str:
     return re.sub(rf"(?<![\w.(])([a-z]+(?:_[a-z]+)*)={value}(?=[ ,;.)]|$)", _option, text)
 
 
+#: Options that have another name on the command line than in Python.
+_NAMES = {"question": "for"}
+
+
 def _option(match: re.Match[str]) -> str:
     if re.search(r"\w\([^()]*$", match.string[: match.start()]):
         # A call of Python stays what it is.
         return match[0]
     value = (match[2] if match.re.groups > 1 else "") or ""
-    return f"--{match[1].replace('_', '-')} {shlex.quote(value.strip(chr(39)))}".removesuffix(" ''")
+    name = _NAMES.get(match[1], match[1].replace("_", "-"))
+    return f"--{name} {shlex.quote(value.strip(chr(39)))}".removesuffix(" ''")
 
 
 def complain(text: object) -> None:

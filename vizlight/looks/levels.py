@@ -101,6 +101,8 @@ def sampled_corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:
 
     The points of a cell of a grid are in the order of a walk around it, along its edges.
     """
+    if isinstance(mesh, pv.PolyData) and mesh.n_strips:
+        mesh = mesh.triangulate()
     generator = np.random.default_rng(0)
     count = mesh.n_cells
     chosen = np.arange(count)
@@ -112,7 +114,7 @@ def sampled_corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:
         chosen = chosen[chosen < len(ends) - 1]
         counts = ends[chosen + 1] - ends[chosen]
         chosen, counts = chosen[counts > 0], counts[counts > 0]
-        starts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.intp)
+        starts = (np.cumsum(counts) - counts).astype(np.intp)
         offsets = np.repeat(ends[chosen] - starts, counts)
         return ids[np.arange(counts.sum()) + offsets], starts, counts
     shape = np.maximum(np.asarray(mesh.dimensions), 1)

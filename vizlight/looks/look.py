@@ -413,6 +413,10 @@ def decide(data: object, wishes: Wishes) -> Look:
     several = list(data) if isinstance(data, list | tuple) else [data]
     if not several:
         raise ValueError(message("data", "a mesh, a file, or several", "none"))
+    if _have_components(several, wishes):
+        # Components of one vector in several files, on one grid.
+        wishes = replace(wishes, part={**wishes.part, "overlay": several[1:]})
+        several = several[:1]
     parts, steps = [], []
     for item in several:
         for step in read_steps(item, wishes):
@@ -502,6 +506,26 @@ def _unread(look: Look, names: Sequence[str]) -> str:
         if name in names:
             return f"not chosen: {look.drawing.words}; its {name} cannot be read: {reason}"
     return ""
+
+
+def _have_components(data: Sequence[object], wishes: Wishes) -> bool:
+    """Return whether files have each a component of one vector, such as that of a wind."""
+    paths = [item for item in data if isinstance(item, str | Path)]
+    grids = (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
+    if len(data) < 2 or len(paths) < len(data) or "overlay" in wishes.part:
+        return False
+    if not all(Path(path).suffix.lower() in grids for path in paths):
+        return False
+    keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # given where they are read again
+        try:
+            alone = files.read(paths[0], **keywords)
+            joined = files.read(paths[0], overlay=paths[1:], **keywords)
+        except (ValueError, OSError):
+            return False  # they are not on one grid
+    assert isinstance(joined, pv.DataSet)
+    return any(not {*group} <= {*alone.point_data} for group in meaning.components(joined))
 
 
 def read_steps(data: object, wishes: Wishes) -> list[Step]:

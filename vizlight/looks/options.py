@@ -67,6 +67,8 @@ def sorted_out(
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
     scene = options.pop("scene", None)
     _check.boolean("globe", options.get("globe", False))
+    if options.get("level") is not None and options.get("contour") is None:
+        raise ValueError(_check.message("level", "contour= with it", "it alone"))
     if options.get("map_parts") is not None:
         options["map_parts"] = map_parts.named(options["map_parts"])
     for name, value in options.items():
