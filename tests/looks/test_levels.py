@@ -46,7 +46,7 @@ def test_values_that_rise_ever_faster_have_no_isosurface_that_stands_out():
 
 
 def test_corners_of_strips_are_those_of_their_triangles():
-    tube = pv.Line(resolution=3).tube(0.1, n_sides=5)
+    tube = pv.Line(resolution=3).tube(radius=0.1, n_sides=5)
     assert tube.n_strips > 0
     ids, starts, counts = levels.sampled_corners(tube)
     assert (set(counts), len(ids)) == ({3}, 3 * len(starts))
