@@ -1,5 +1,6 @@
 """``vizlight.look``: what is shown of which data, files, scripts, and bad input."""
 
+import json
 import re
 
 import numpy as np
@@ -364,3 +365,15 @@ def test_components_in_two_files_are_one_vector(tmp_path):
 def test_a_level_needs_the_array_that_it_is_one_of():
     with pytest.raises(ValueError, match="level: expected contour= with it, got it alone"):
         vizlight.look(pv.ImageData(dimensions=(3, 3, 3)), level=2)
+
+
+def test_a_page_has_the_bar_of_its_values_and_is_seen_whole(tmp_path):
+    grid = pv.ImageData(dimensions=(24, 12, 1))
+    grid["kind"] = (np.arange(288) // 96).astype(np.int32)
+    page = vizlight.look(grid, size=SIZE).save(tmp_path / "kinds.html").read_text("utf-8")
+    content = json.loads(page.partition('id="scene">')[2].partition("</script>")[0])
+    (bar,) = content["bars"]
+    assert (bar["title"], bar["numbers"]) == ("kind", ["0", "1", "2"])
+    assert [color.partition(" ")[2] for color in bar["colors"]][1] == "33.3333% 66.6667%"
+    # The long side of the grid fits in a square.
+    assert content["camera"]["scale"] >= 23 / 2

@@ -55,8 +55,8 @@ if TYPE_CHECKING:
     from vizlight.shading.plan import Plan
 
 
-#: Largest number of colours of a scalar bar.
-COLORS = 64
+#: Largest number of colours of a scalar bar, and of those that have each a part of it.
+COLORS, CLASSES = 64, 32
 #: Colour maps that the page offers, the default one first.
 MAPS = ("viridis", "cividis", "plasma", "coolwarm", "twilight", "gray")
 #: Lamps without a place that a reader may add.
@@ -533,19 +533,27 @@ def _directions(rows: Array, linear: Array) -> dict[str, object]:
 
 
 def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
-    """Return a scalar bar: its colours from left to right, and three numbers."""
+    """Return a scalar bar: its colours from left to right, and three numbers, or those of kinds."""
     low, high = table.GetTableRange()
     logarithmic = bool(table.GetScale())
     # Halfway along a logarithmic bar is the geometric mean.
     middle = float(np.sqrt(low * high)) if logarithmic else (low + high) / 2
     every = np.asarray(table.values)[:, :3]
     # A bar on a page is a gradient, which needs fewer colours than a table has.
-    chosen = every[np.linspace(0, len(every) - 1, min(COLORS, len(every))).astype(int)]
-    return {
-        "title": title,
-        "colors": ["#" + bytes(color).hex() for color in chosen.astype(np.uint8)],
-        "numbers": numerals((low, middle, high)),
-    }
+    count = len(every)
+    chosen = every[np.linspace(0, count - 1, min(COLORS, count)).astype(int)]
+    colors = ["#" + bytes(color).hex() for color in chosen.astype(np.uint8)]
+    numbers: tuple[float, ...] = (low, middle, high)
+    if count <= CLASSES:
+        # Classes have each a part of the bar, and kinds, from half below the first, a number.
+        ends = [f"{100 * i / count:g}%" for i in range(count + 1)]
+        colors = [
+            f"{color} {a} {b}"
+            for color, (a, b) in zip(colors, itertools.pairwise(ends), strict=True)
+        ]
+        if count == high - low and low % 1 == 0.5:
+            numbers = tuple(low + 0.5 + i for i in range(count))
+    return {"title": title, "colors": colors, "numbers": numerals(numbers)}
 
 
 __all__ = ["live_html"]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Given, Keywords
     from vizlight.looks.contents import Named, Role
-    from vizlight.looks.recipes.drawing import Drawing, Recipe
+    from vizlight.looks.recipes.drawing import Drawing, Layer, Recipe
     from vizlight.looks.wishes import Wishes
     from vizlight.observers.figures import Legibility
     from vizlight.scene import Scene
@@ -240,18 +240,33 @@ class Look:
         key: Keywords = {} if wishes.picture.get("key", True) else {"key": False}
         if wishes.source:
             key["source"] = list(wishes.source)
-        live = [layer for layer in drawing.layers if layer.live]
+        live = [self._with_bar(layer) for layer in drawing.layers if layer.live]
+        camera = drawing.camera
+        if "aspect" in camera.keywords:
+            # Beside its panel the picture of a page is as high as it is wide.
+            keywords = camera.keywords | {"aspect": 1.0}
+            camera = Step(camera.name, camera.path, *camera.arguments, **keywords)
         # The frame of a map is no data.
         if not any(layer.keywords.get("pickable", True) for layer in live):
-            shown: Keywords = {"camera": drawing.camera, "background": wishes.background, **key}
+            shown: Keywords = {"camera": camera, "background": wishes.background, **key}
             return [Step("", "vizlight.live_html", drawing.lit, path, **shown)]
         background = wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, draws=False)
         return [
             *(layer.added(plotter) for layer in live),
-            Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)),
+            Step("", ".camera=", plotter, Step("", ".copy", camera)),
             Step("", ".vizlight.export_html", plotter, path, **key),
         ]
+
+    def _with_bar(self, layer: Layer) -> Layer:
+        """Return a layer with the bar of its values, which a page draws in place of the key."""
+        values = [key for key in self.drawing.keys if key.get("question") == "value"]
+        clim = layer.keywords.get("clim")
+        key = next((key for key in values if len(values) == 1 or key.get("clim") == clim), None)
+        if key is None or layer.keywords.get("scalars") is None:
+            return layer
+        bar = {"show_scalar_bar": True, "scalar_bar_args": {"title": key["title"]}}
+        return replace(layer, keywords=layer.keywords | bar)
 
     def _picture(self, *, off_screen: bool = True) -> tuple[Step, list[Step]]:
         """Return the step that makes a plotter, and those that fill it."""
