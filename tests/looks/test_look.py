@@ -377,3 +377,17 @@ def test_a_page_has_the_bar_of_its_values_and_is_seen_whole(tmp_path):
     assert [color.partition(" ")[2] for color in bar["colors"]][1] == "33.3333% 66.6667%"
     # The long side of the grid fits in a square.
     assert content["camera"]["scale"] >= 23 / 2
+
+
+@pytest.mark.parametrize(("name", "said"), [("zinc", True), ("elevation", False)])
+def test_an_only_band_is_said_to_be_taken_for_heights(tmp_path, name, said):
+    rasterio = pytest.importorskip("rasterio")
+    rows = np.add.outer(np.arange(20.0), np.arange(30.0) ** 1.5)
+    with rasterio.open(
+        tmp_path / "a.tif", "w", driver="GTiff", height=20, width=30, count=1, dtype="float64",
+        transform=rasterio.Affine(10, 0, 4e5, 0, -10, 5e6), crs="EPSG:32633",
+    ) as file:  # fmt: skip
+        file.write(rows, 1)
+        file.set_band_description(1, name)
+    notes = vizlight.look(tmp_path / "a.tif", size=SIZE).notes
+    assert any(f"{name} is taken for heights" in note for note in notes) == said

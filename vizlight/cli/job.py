@@ -151,7 +151,7 @@ class Command:
         in_time = any(steps[-1].path == "film.save" for steps in outputs)
         for note in dict.fromkeys(look.notes):
             if not (in_time and note.startswith("time ")):
-                say(f"note     {note}")
+                say(f"note     {one_line(note)}")
         if look.others:
             say(f"ask      {'; '.join(other.shell for other in look.others)}")
         return max(codes)

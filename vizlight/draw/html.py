@@ -326,7 +326,9 @@ class Page:
             lit, seen = fixed_colors(placed, scene, colors, ids)
             why = "" if live.reason == "asked for" else f", because {live.reason}"
             said = f"; {seen} as from the first view" if seen else ""
-            if scene.lights:  # ambient light alone follows no eye
+            shines = scene.material.specular > 0 or scene.depth_cue is not None
+            # Of ambient light, and of diffuse light from fixed lamps, nothing depends on the eye.
+            if scene.lights and (shines or any(light.follows_view for light in scene.lights)):
                 self.notices.append(
                     f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
                 )

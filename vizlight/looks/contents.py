@@ -202,6 +202,19 @@ class Contents:
         return None
 
 
+def says_heights(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether an array is one of heights by its name or words, and not as an only band.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    name : str
+        Name of the array.
+    """
+    return _HEIGHTS.search(f"{name.lower()} {_words_of(mesh, name)}") is not None
+
+
 def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...]:
     """Return the arrays that are data, the best for a picture first.
 

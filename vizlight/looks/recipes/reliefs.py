@@ -9,6 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.looks import map_parts
+from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
 from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of
 from vizlight.looks.steps import Step
@@ -43,6 +44,8 @@ def relief(case: Case) -> Drawing:
         keywords["occlusion"] = "sky"
     lit = case.wishes.step("lit", "relief_shadow", straight, scene, **keywords)
     notes = [note] if note else []
+    if case.wishes.question == "auto" and not says_heights(data.run(), array.name):
+        notes.append(f"{array.name} is taken for heights; question='value' shows its colours alone")
     if not keywords["lit"]:
         bent = lit if straight is data else Step("chart", data.path, lit)
         return _share(case, bent, camera, scene, f"shadow on {array.name}", "t", notes)
