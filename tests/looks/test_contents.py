@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.looks.contents import Contents
+from vizlight.looks.contents import Contents, sorted_arrays
+from vizlight.mesh import meaning
 
 
 def of(**arrays):
@@ -148,3 +149,16 @@ def test_one_layer_of_cells_is_flat_though_it_is_thick(layers, axis):
     assert Contents(grid).flat_axis == axis
     thicker = pv.ImageData(dimensions=(11, 11, 2), spacing=(1, 1, 2)).cast_to_unstructured_grid()
     assert Contents(thicker).flat_axis is None
+
+
+def test_active_kinds_with_colours_of_their_own_come_first():
+    line = pv.Line(resolution=3)
+    line.clear_data()
+    line["charge"] = [0.1, 0.2, 0.3, 0.5]
+    line["element"] = [6, 6, 8, 8]
+    line.set_active_scalars("element")
+    assert [one.name for one in sorted_arrays(line)] == ["charge", "element"]
+    said = meaning.Meaning()
+    said.add_kinds("element", [(6, "C", (0.5, 0.5, 0.5)), (8, "O", (1, 0, 0))])
+    meaning.attach(line, said)
+    assert [one.name for one in sorted_arrays(line)] == ["element", "charge"]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import vizlight
+from vizlight.mesh import meaning
 
 ATOM = "ATOM  {:5d}  CA  GLY A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C  \n"
 WATER = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
@@ -47,6 +48,8 @@ def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
     assert water["atom_type"].tolist() == [8, 1, 1]
     assert sorted(map(sorted, water.lines.reshape(-1, 3)[:, 1:].tolist())) == [[0, 1], [0, 2]]
     assert water.n_verts == 0
+    assert meaning.flags(water, "atom_type") == {1: "H", 8: "O"}
+    assert meaning.flags(water, "atom_type", "colors") == {1: "#b2b2b2", 8: "#ff0d0d"}
     far = WATER.replace("3", "4", 1) + "Na1 9 9 9\n"
     with pytest.warns(UserWarning, match="the first of 2 states"):
         salt = vizlight.read(written(tmp_path, far + far, "salt.xyz"))

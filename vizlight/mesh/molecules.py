@@ -10,11 +10,15 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkMolecule
 
 from vizlight import _check
+from vizlight.mesh import meaning
+from vizlight.model import formulas
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+#: Largest luma of the colour of an element.
+PALE = 0.7
 #: Symbol of an atom at the start of a line of an XYZ file.
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
@@ -152,6 +156,18 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
         np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
     )
     mesh.point_data["atom_type"] = [numbers[name] for name in elements]
+    mesh.set_active_scalars("atom_type")
+    kinds = []
+    for number in sorted({*numbers.values()}):
+        color = [0.0, 0.0, 0.0]
+        table.GetDefaultRGBTuple(number, color)
+        # White and yellow are darker, to be seen on paper.
+        light = float(np.dot(formulas.LUMA, color))
+        paler = [part * min(1, PALE / light) for part in color]
+        kinds.append((number, table.GetSymbol(number), paler))
+    said = meaning.Meaning()
+    said.add_kinds("atom_type", kinds)
+    meaning.attach(mesh, said)
     return mesh
 
 
