@@ -41,6 +41,7 @@ def volume():
         ("g.ex2", b"x", ""),
         ("h.vtp", b"", ""),
         ("i.dwg", b"x", "no reader takes '.dwg' files; convert it to"),
+        ("j.stp", b"x", "gmsh -2 -clcurv 20 'j.stp' -o 'j.stl'"),
         ("j.dae", b"x", "no reader takes '.dae' files; convert it to"),
         ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),
         # Headers that break off within a line.

@@ -124,6 +124,10 @@ _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 
 
+#: Files of CAD, whose surfaces have no points.
+_SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
+
+
 class FileError(ValueError):
     """A file cannot be read or written."""
 
@@ -579,6 +583,8 @@ def _by_package(path: Path) -> pv.DataObject:
             way = "unpack it first"
         if path.suffix.lower() == ".geo":
             way = f"gmsh makes a mesh of it: gmsh -3 -format msh2 '{path.name}'"
+        if path.suffix.lower() in _SHAPES:
+            way = f"gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{path.name}' -o '{path.stem}.stl'"
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
