@@ -8,7 +8,8 @@ import pyvista as pv
 
 import vizlight
 from vizlight.draw.render import BackendError
-from vizlight.looks.recipes import fields
+from vizlight.looks.recipes import drawing, fields
+from vizlight.mesh import meaning
 
 
 def sheet(turn, count=60):
@@ -200,3 +201,19 @@ def test_streamlines_of_a_flat_map_have_its_frame_and_no_box():
     lines = look.drawing.layers[0].mesh.run()
     assert str(lines.field_data["unit"][0]) == "metre"
     assert "projection" in lines.field_data
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "word"),
+    [("UWND,VWND", "", "speed"), ("uvw", "", "speed"), ("B", "M/S", "speed"), ("B", "T", "length")],
+)
+def test_lengths_of_vectors_are_speeds_by_their_name_or_unit(name, unit, word):
+    grid = pv.ImageData(dimensions=(2, 2, 1))
+    names = name.split(",")
+    for part in names:
+        grid[part] = np.zeros((4, 3)) if len(names) == 1 else np.zeros(4)
+    said = meaning.Meaning()
+    for part in names:
+        said.add_array(part, {"units": unit})
+    meaning.attach(grid, said)
+    assert drawing.titled_length(grid, name).startswith(f"{word} of ")

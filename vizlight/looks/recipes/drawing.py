@@ -65,7 +65,7 @@ ON_BOX, CUT = 1e-3, 0.95
 #: Methods of CF over the time of a step.
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
-VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|vectors?|.*(veloc|wind|flow|current).*")
+VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|wi?nd|flow|current).*")
 #: Width over height of a map from which a key takes less room below it, in that of the picture.
 WIDE = 1.08
 #: Questions whose pictures of maps have north up, whatever their shape is.
@@ -592,7 +592,7 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
 def titled_length(mesh: pv.DataSet, name: str) -> str:
     """Return the title of the lengths of vectors: their speed, if their unit or name is of one."""
     title = titled(mesh, name)
-    is_speed = title.endswith("/s)") or VELOCITY.fullmatch(name.lower())
+    is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
     return f"{'speed' if is_speed else 'length'} of {title}"
 
 
