@@ -12,6 +12,7 @@ import vizlight
 from studies import fur as study
 from studies import peak_memory
 from vizlight import Bundle, Light, Material, Scene, View, _compiled, _pool, fur
+from vizlight.mesh import meaning
 from vizlight.model import cylinder
 
 TOWARD, EYE = unit([(-1.0, -0.6, 0.9), (0.3, -1, 0.8)])
@@ -487,3 +488,13 @@ def test_a_closed_surface_is_covered_on_its_outer_side():
     ball.point_data["Normals"] *= -1
     tips = vizlight.fur(ball, length=0.2, fibres=200)["fibres"].points
     assert np.linalg.norm(tips, axis=1).max() > 0.6
+
+
+def test_fibres_and_lines_lie_on_the_map_of_their_surface():
+    grid = pv.ImageData(dimensions=(9, 8, 1))
+    grid["v"] = np.tile([1.0, 0.2, 0.0], (grid.n_points, 1))
+    grid.field_data["unit"], grid.field_data["meaning"] = ["metre"], ['{"axes": ["x east"]}']
+    lines = vizlight.streamlines(grid, Scene(), tangents="v", seeds=3)
+    for mesh in (lines, *vizlight.fur(grid, Scene(), fibres=5)):
+        assert mesh.field_data["unit"][0] == "metre"
+        assert meaning.of(mesh).axes == ["x east"]

@@ -134,3 +134,17 @@ def test_vectors_of_cells_are_averaged():
         assert off.max() < 0.02
     assert found["curves"].n_lines == expected["curves"].n_lines == 20
     assert "C" not in mesh.point_data
+
+
+def test_components_are_the_vectors_of_all_panels(made):
+    sphere, panels = made
+    apart = sphere.copy()
+    del apart.point_data["V"]
+    apart["u"], apart["v"], apart["w"] = np.asarray(sphere["V"]).T
+    options = {"seeds": 80, "facing": "outward"}
+    for names in (("u", "v", "w"), "u,v,w"):
+        same = vizlight.satin(apart, SCENE, tangents=names, **options)
+        for name in ("curves", "surface", "field", "conditioned"):
+            np.testing.assert_allclose(
+                same[name]["luminance"], panels[name]["luminance"], atol=1e-6
+            )

@@ -12,7 +12,7 @@ import pyvista as pv
 from vizlight import _check, _pool
 from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
-from vizlight.mesh import blocks, bundles, records
+from vizlight.mesh import blocks, bundles, georeference, records
 from vizlight.mesh.normals import NORMALS, onlooker, split_where_computed, with_normals
 from vizlight.mesh.sky import in_medium
 from vizlight.model import kernels
@@ -233,6 +233,7 @@ def fur(
     if inside:
         _check.warn(f"{inside} of {options.fibres} fibres point into the surface and were reversed")
     meshes = [_mesh(points, options.segments + 1), grown.surface.copy(deep=True)]
+    georeference.place_alike(meshes[0], grown.surface)
     lighting.finish(meshes, results, "fur", scene, options, name, dimmings=grown.dimmings)
     return pv.MultiBlock(dict(zip(("fibres", "skin"), meshes, strict=True)))
 

@@ -109,7 +109,9 @@ def satin(
             rows = tangents_of(surface, name, 3)
             traced = surface.copy(deep=False)
             traced.point_data[name] = rows
-        vectors_of(traced, "tangents", name, 3)
+        # Components are checked where they are traced.
+        if "," not in name or name in traced.point_data:
+            vectors_of(traced, "tangents", name, 3)
     field = LightOptions.of(vars(options) | {"conditioned": False})
     panels = {
         "surface": dataclasses.replace(field, tangents=None, model=field.for_surface().model),

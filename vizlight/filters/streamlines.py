@@ -293,10 +293,7 @@ def light_lines(
     with _progress.progress("trace", 100, show=progress_bar) as report:
         lines, tangents = _traced(mesh, scene, full, report, argument)
     lines = _as_strokes(lines, mesh, tangents, full)
-    # Lines on a map lie on the same map.
-    for key in (georeference.UNIT, georeference.PROJECTION):
-        if key in mesh.field_data:
-            lines.field_data[key] = mesh.field_data[key]
+    georeference.place_alike(lines, mesh)
     # Lines beside a surface have its self-shadow unless it is switched off (Banks 6).
     conditioned = full.surface is not None if full.conditioned is None else full.conditioned
     normals = "Normals" if conditioned is True else None

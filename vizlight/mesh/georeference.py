@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DEGREE", "PROJECTION", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees",
-    "in_metres", "is_earth", "is_map", "motion", "on_earth", "rates", "read", "scale_to_one",
-    "seem_degrees", "stretch", "unit_of",
+    "in_metres", "is_earth", "is_map", "motion", "on_earth", "place_alike", "rates", "read",
+    "scale_to_one", "seem_degrees", "stretch", "unit_of",
 ]  # fmt: skip
 
 
@@ -412,6 +412,18 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         said.notes.append("taken for degrees by their ranges")
     meaning.attach(grid, said)
     return grid
+
+
+def place_alike(lines: pv.DataSet, mesh: pv.DataSet) -> None:
+    """Say of lines that they lie on the map, and in the frame, of the mesh that they are made from.
+
+    Parameters
+    ----------
+    lines, mesh : pyvista.DataSet
+    """
+    for key in (UNIT, PROJECTION, meaning.MEANING):
+        if key in mesh.field_data:
+            lines.field_data[key] = mesh.field_data[key]
 
 
 def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
