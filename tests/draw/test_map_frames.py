@@ -103,8 +103,21 @@ def test_letters_without_height():
 def test_lines_are_thin_and_words_as_high_as_asked():
     assert map_frames.LINE < map_frames.GAP
     made = frame(sheet(1000, 500, unit="metre"), 30.0)
-    word = np.asarray(made.points, dtype=float)[8:]
+    word = np.asarray(made.points, dtype=float)[8 : -count("N") - 4]
     assert np.ptp(word[:, 1]) == pytest.approx(0.73 * 30, rel=0.1)
+
+
+def count(word):
+    return len(letters.triangles(word)[0])
+
+
+def test_an_arrow_points_north_beside_a_bar():
+    mesh = sheet(37_000, 20_000, unit="metre")
+    head = np.asarray(frame(mesh, 900.0).points, dtype=float)[-count("N") - 4 : -count("N")]
+    tip = head[0] - head[1:].mean(axis=0)
+    assert tip[:2] == pytest.approx([0, 930], abs=1)
+    assert head[:, 1].max() < mesh.bounds[2]
+    assert head[:, 0].min() > mesh.bounds[1] - 3 * 900
 
 
 def charted(west, east, south, north, step=1.0):
@@ -165,8 +178,8 @@ def test_maps_on_which_lengths_are_alike_have_a_bar():
     assert not map_frames.has_bar(sheet(60, 40))
     # 2 degrees of latitude are 222 km: the bar of 50 km is a quarter of 3 degrees at 46 north.
     corners = np.asarray(frame(charted(6, 9, 45, 47), 5e3).points, dtype=float)
-    low = corners[corners[:, 1] < corners[:, 1].min() + 5e3]
-    assert np.ptp(low[:, 0]) > 50e3
+    after = count("50 km") + 4 + count("N")
+    assert np.ptp(corners[-after - 4 : -after, 0]) == pytest.approx(50e3)
 
 
 def test_a_chart_on_its_side_has_its_parallels_below():

@@ -56,8 +56,8 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     A map in degrees, and one in lengths with a known projection, has a thin frame with round
     degrees along its left and its lower side. One in lengths has a bar of a round length below it,
     as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
-    toward the north is below a map in lengths if its north is not straight up. Nothing is on the
-    data but the words of parallels around a pole.
+    toward the north is beside the bar, and below a map without one whose north is not straight up
+    and has no degrees. Nothing is on the data but the words of parallels around a pole.
 
     Parameters
     ----------
@@ -95,8 +95,6 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     parts: list[Part] = []
     if is_degrees and straight:
         parts += _degrees(box, letters, np.rint(turn))
-    elif turn[1, 1] <= 1 - ALMOST:
-        parts += _arrow(box, letters, turn)
     if sheet is not None:
         parts += _around(sheet, letters, turn)
     metres = _bar_unit(mesh, is_measured=sheet is not None)
@@ -104,7 +102,9 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
         if parts:
             # Below the words of degrees.
             box[2] = min(points[:, 1].min() for points, _ in parts) - GAP * letters
-        parts += _bar(box, letters, metres)
+        parts += [*_bar(box, letters, metres), *_arrow(box, letters, turn)]
+    elif turn[1, 1] <= 1 - ALMOST and not (is_degrees and straight):
+        parts += _arrow(box, letters, turn)
     if not parts:
         return pv.PolyData()
     corners, triangles = union(parts)
