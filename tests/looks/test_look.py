@@ -391,3 +391,13 @@ def test_an_only_band_is_said_to_be_taken_for_heights(tmp_path, name, said):
         file.set_band_description(1, name)
     notes = vizlight.look(tmp_path / "a.tif", size=SIZE).notes
     assert any(f"{name} is taken for heights" in note for note in notes) == said
+
+
+def test_creases_of_a_part_are_lines_and_a_smooth_shape_has_none():
+    block = pv.Box().triangulate().subdivide(2, subfilter="linear")
+    drawn, creases = vizlight.look(block, size=SIZE).drawing.layers
+    assert drawn.live
+    edges = creases.mesh.run()
+    assert edges.n_cells == 12 * 4
+    assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
+    assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1

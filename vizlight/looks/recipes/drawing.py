@@ -26,6 +26,8 @@ from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
+from vizlight.vtk.corners import SHARP
+from vizlight.vtk.normals import creases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -48,11 +50,12 @@ THIN = 1.5 / (85 / 25.4 * 300)
 ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
-#: Keywords that take the edges of a surface that are its borders.
+#: Keywords that take the edges of a surface that are its borders, and those that are its creases.
 BORDERS = {
     "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
     "non_manifold_edges": False,
 }  # fmt: skip
+CREASES = BORDERS | {"boundary_edges": False, "feature_edges": True, "feature_angle": SHARP}
 #: Function that makes classes of colours.
 BANDS = "vizlight.maps.bands"
 #: Largest number of them as a share of that of the cells, and distance of places that are one, as a
@@ -246,6 +249,17 @@ class Case:
         return edges if _are_borders(edges.run(), surface) else None
 
     @cached_property
+    def creases(self) -> Step | None:
+        """Step that takes the creases of a surface, None where it has none that are meant."""
+        surface = self.surface.run()
+        if not isinstance(surface, pv.PolyData):
+            return None
+        carried = surface.point_data.active_normals_name is not None
+        if not creases(surface, has_normals=carried):
+            return None
+        return Step("creases", ".extract_feature_edges", self.surface, **CREASES)
+
+    @cached_property
     def box(self) -> Step | None:
         """Step that makes the box that cuts the surface, None where none does."""
         edges = self.borders
@@ -254,11 +268,10 @@ class Case:
         return Step("", ".outline", self.surface)
 
     def edges(self, camera: Step) -> list[Layer]:
-        """Return the layers of the borders of the surface, and of its box."""
-        layers = []
-        if self.borders is not None:
-            drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False}
-            layers.append(Layer(self.borders, drawn | BESIDE, live=False))
+        """Return the layers of the borders and creases of the surface, and of its box."""
+        drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False, **BESIDE}
+        every = [self.borders, self.creases]
+        layers = [Layer(lines, drawn, live=False) for lines in every if lines is not None]
         return layers if self.box is None else [*layers, *self.boxed(self.box, camera)]
 
     def boxed(self, box: Step, camera: Step) -> list[Layer]:
