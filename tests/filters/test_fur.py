@@ -490,11 +490,13 @@ def test_a_closed_surface_is_covered_on_its_outer_side():
     assert np.linalg.norm(tips, axis=1).max() > 0.6
 
 
-def test_fibres_and_lines_lie_on_the_map_of_their_surface():
+def test_what_is_made_of_a_map_lies_on_it():
     grid = pv.ImageData(dimensions=(9, 8, 1))
     grid["v"] = np.tile([1.0, 0.2, 0.0], (grid.n_points, 1))
     grid.field_data["unit"], grid.field_data["meaning"] = ["metre"], ['{"axes": ["x east"]}']
     lines = vizlight.streamlines(grid, Scene(), tangents="v", seeds=3)
-    for mesh in (lines, *vizlight.fur(grid, Scene(), fibres=5)):
+    *_, paths = vizlight.pathlines([grid, grid], times=[0, 1], tangents="v", seeds=[[2.0, 3, 0]])
+    bands = vizlight.isoluminance(grid, Scene(), levels=3)
+    for mesh in (lines, paths, *bands, *vizlight.fur(grid, Scene(), fibres=5)):
         assert mesh.field_data["unit"][0] == "metre"
         assert meaning.of(mesh).axes == ["x east"]

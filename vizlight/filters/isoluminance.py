@@ -16,7 +16,7 @@ from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
-from vizlight.mesh import blocks, normals, records, subdivision
+from vizlight.mesh import blocks, georeference, normals, records, subdivision
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
@@ -201,7 +201,11 @@ def _make(
     if not any(block.n_points for block in blocks.all_blocks(mesh)):
         return _of_mesh(pv.PolyData(), light)
     # Blocks are joined, so that all have the same contours.
-    return _of_mesh(blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh, light)
+    whole = blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh
+    result, bands, light = _of_mesh(whole, light)
+    for block in blocks.all_blocks(result):
+        georeference.place_alike(block, whole)
+    return result, bands, light
 
 
 class _Light:

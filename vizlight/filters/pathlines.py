@@ -13,7 +13,7 @@ import pyvista as pv
 from vizlight import _check, _progress
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
-from vizlight.mesh import cf_grids, meaning, records
+from vizlight.mesh import cf_grids, georeference, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
@@ -230,7 +230,8 @@ def _lines(
     # particles.
     tangents = None if streaks else TANGENTS if name != TANGENTS else OWN_TANGENTS
     light = LightOptions.of(vars(options) | {"tangents": tangents})
-    carrier, times = Carrier(steps.mesh(0), name), steps.times
+    first, times = steps.mesh(0), steps.times
+    carrier = Carrier(first, name)
     rows = Rows(np.empty((0, *seeds.shape)), np.empty((0, *seeds.shape)), np.empty(0))
     before, coarse = steps.vectors(0, name), 0.0
     for i in range(1, len(times)):
@@ -273,6 +274,7 @@ def _lines(
             raise ValueError(_check.message(name, expected, "no line"))
         if tangents is not None:
             records.attach_rows(lines, tangents, np.asarray(lines.point_data[name]))
+        georeference.place_alike(lines, first)
         lines.field_data[TIME] = [float(times[i])]
         report(i)
         yield lines, light
