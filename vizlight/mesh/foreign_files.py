@@ -186,7 +186,7 @@ def _wavefront(path: Path) -> pv.DataSet | None:
         draft = folder / "draft.obj"
         draft.write_bytes(data)
         with warnings.catch_warnings():
-            # What is wrong is told by an error, with the name of the file.
+            # An error says what is wrong, with the name of the file.
             warnings.filterwarnings("ignore", "The VTK reader")
             mesh = pv.read(draft, validate=False)
     if colored and isinstance(mesh, pv.PolyData):

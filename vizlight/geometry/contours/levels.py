@@ -207,7 +207,7 @@ def _rings(labels: NDArray[np.int32], lowest: int) -> Rings:
 def _covers(level: Indices, at: Indices, slope: Array, half: float, *, sharp: Bools) -> Indices:
     """Return the levels whose areas may hide the borders of others, 0 where a border is seen.
 
-    Of several levels that cross a pixel a few are drawn; between two surfaces the highest is.
+    Where several levels cross a pixel, a few are drawn, the highest of them between two surfaces.
     """
     steep = np.maximum(slope * CROWD / (2 * max(half, 1e-6)), 1.0)
     stride = np.left_shift(1, np.log2(steep).astype(np.int64))
