@@ -241,6 +241,7 @@ OWN = {
     "filters.key.key": {"scene": presets.shape(), "levels": [0.2, 0.4], "clim": (0.0, 1.0)},
     "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
+    "creases.creases": {"surface": ball},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},

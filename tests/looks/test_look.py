@@ -233,9 +233,24 @@ def test_bad_input(mesh, options, error, words):
 
 
 def test_every_rule_can_be_reached():
-    shown = {(look[1], look[2]) for look in KINDS.values()} | {("shape", "isosurface")}
+    shown = {(look[1], look[2]) for look in KINDS.values()}
+    shown |= {("shape", "isosurface"), ("value", "molecule")}
     for rule in RULES:
         assert any(rule.shown == what for _, what in shown) or rule.shown == "hull"
+
+
+def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
+    path = tmp_path / "water.xyz"
+    path.write_text("3\n\nO 0 0 0\nH 0.76 0.59 0\nH -0.76 0.59 0\n")
+    look = vizlight.look(path, size=SIZE)
+    assert (look.shown, look.array) == ("molecule", "atom_type")
+    hydrogen = look.mesh.extract_cells(look.mesh.cell_data["atom_type"] == 1).points
+    far = np.linalg.norm(hydrogen[hydrogen[:, 0] > 0] - (0.76, 0.59, 0), axis=1)
+    # A quarter of the radius of van der Waals, 1.2 angstroms.
+    assert np.isclose(far, 0.3, atol=1e-5).sum() > 200
+    # Each half of a stick has the colour of its own atom.
+    assert far.max() < 0.55
+    assert look.drawing.keys[0]["title"] == "atom_type"
 
 
 def test_a_part_with_most_points_on_its_surface_shows_values_there():
@@ -393,11 +408,15 @@ def test_an_only_band_is_said_to_be_taken_for_heights(tmp_path, name, said):
     assert any(f"{name} is taken for heights" in note for note in notes) == said
 
 
-def test_creases_of_a_part_are_lines_and_a_smooth_shape_has_none():
-    block = pv.Box().triangulate().subdivide(2, subfilter="linear")
-    drawn, creases = vizlight.look(block, size=SIZE).drawing.layers
+def test_creases_of_a_part_are_lines_that_are_seen():
+    # A ball with a slot on the side away from the usual eye.
+    ball = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    points = ball.points.copy()
+    points[(np.abs(points[:, 1]) < 0.15) & (points[:, 0] > 0), 0] -= 0.2
+    ball.points = points
+    look = vizlight.look(ball, size=SIZE)
+    drawn, creases = look.drawing.layers
     assert drawn.live
-    edges = creases.mesh.run()
-    assert edges.n_cells == 12 * 4
-    assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
+    assert creases.mesh.run().points[:, 0].max() > 0.4
+    assert look.view.position[0] > 0
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1

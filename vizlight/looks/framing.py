@@ -15,6 +15,7 @@ import pyvista as pv
 import scipy
 
 from vizlight.looks.contents import LAYER
+from vizlight.mesh.creases import creases
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 #: The same around a surface that its box cuts: near the diagonals of the box, from where it is seen
 #: through most of its openings.
 DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
+#: How much more a view counts in which all creases are seen.
+CREASED = 0.3
 #: How much more a view counts in which vectors run to the right.
 RIGHTWARD = 0.1
 #: Pixels along each side of the picture in which self-occlusion is counted.
@@ -134,11 +137,12 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
-    values = _values(surface, shown, faces)
+    values, edges = _values(surface, shown, faces), _creases(surface)
     if not stands_along_y(corners, areas):
-        return _around(corners, normals, areas, _ways(), values)
+        return _around(corners, normals, edges, _ways(), values)
     # As if y were z, and back.
-    eye = _around(corners @ Y_TO_Z.T, normals @ Y_TO_Z.T, areas, _ways(), values)
+    corners, normals, edges = (rows @ Y_TO_Z.T for rows in (corners, normals, edges))
+    eye = _around(corners, normals, edges, _ways(), values)
     toward = _vector(Y_TO_Z.T @ eye.toward)
     return Viewpoint(toward, (0.0, 1.0, 0.0), False, f"{eye.words}, y up")
 
@@ -240,6 +244,15 @@ def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:
     return Viewpoint(_vector(toward), (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), True)
 
 
+def _creases(surface: pv.PolyData) -> Array:
+    """Return the ends of the creases of a surface, (N, 2, 3), with its farthest coordinate at 1."""
+    edges = creases(surface)
+    if not edges.n_cells:
+        return np.empty((0, 2, 3))
+    ends: Array = np.asarray(edges.points, dtype=np.float64)[edges.lines.reshape(-1, 3)[:, 1:]]
+    return ends / (np.abs(surface.points).max() or 1.0)
+
+
 def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:
     """Return the values of an array at the first corners of faces, None without values."""
     if shown is None or shown not in surface.point_data:
@@ -263,15 +276,24 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
         return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
     corners, normals = _with_normals(corners)
     ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
-    return _around(corners, normals, np.linalg.norm(normals, axis=1), ways)
+    return _around(corners, normals, _creases(surface), ways)
 
 
 def _around(
-    corners: Array, normals: Array, areas: Array, ways: list[Array], values: Array | None = None
+    corners: Array, normals: Array, edges: Array, ways: list[Array], values: Array | None = None
 ) -> Viewpoint:
-    """Return the eye from which most of some triangles is seen, and most of their values."""
+    """Return the eye from which most of some triangles is seen, of their values, and of creases."""
     places = _places(corners)
-    scores = [(_seen(corners, places, normals, areas, way, values), way) for way in ways]
+    areas = np.linalg.norm(normals, axis=1)
+    lengths, middles = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1), edges.mean(axis=1)
+    whole = float(lengths.sum())
+    scores = []
+    for way in ways:
+        score = _seen(corners, places, normals, areas, way, values)
+        if whole > 0:
+            front = _in_front(np.concatenate([middles, places]), len(middles), way)
+            score *= 1 + CREASED * float(lengths[front].sum()) / whole
+        scores.append((score, way))
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 

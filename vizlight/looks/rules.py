@@ -60,6 +60,10 @@ def _is_lines(contents: Contents) -> bool:
     return contents.dimension == 1
 
 
+def _is_molecule(contents: Contents) -> bool:
+    return lines.is_molecule(contents.mesh)
+
+
 def _is_points(contents: Contents) -> bool:
     return contents.dimension == 0
 
@@ -96,6 +100,7 @@ def _is_loaded(contents: Contents) -> bool:
 
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
+    Rule("molecule", _is_molecule, "value", ("kinds", "values"), lines.molecule, "a molecule"),
     Rule("lines", _is_lines, "value", ("values", "kinds"), lines.lines, "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
     Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,

@@ -39,8 +39,9 @@ def of_pdb(path: Path) -> pv.PolyData:
     Returns
     -------
     pyvista.PolyData
-        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``residue``,
-        ``chain``, ``occupancy`` and ``b_factor``. Of atoms with several places the first is taken.
+        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``radius``,
+        that of van der Waals, ``residue``, ``chain``, ``occupancy`` and ``b_factor``. Of atoms with
+        several places the first is taken.
 
     Raises
     ------
@@ -100,8 +101,8 @@ def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
     Returns
     -------
     pyvista.PolyData or None
-        Bonds, and points of atoms without any, with ``atom_type``, the atomic number; None where
-        the lines are of another form.
+        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, and
+        ``radius``, that of van der Waals; None where the lines are of another form.
 
     Raises
     ------
@@ -156,6 +157,8 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
         np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
     )
     mesh.point_data["atom_type"] = [numbers[name] for name in elements]
+    radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
+    mesh.point_data["radius"] = [radii[name] for name in elements]
     mesh.set_active_scalars("atom_type")
     kinds = []
     for number in sorted({*numbers.values()}):

@@ -26,8 +26,6 @@ from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
-from vizlight.vtk.corners import SHARP
-from vizlight.vtk.normals import creases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -50,12 +48,11 @@ THIN = 1.5 / (85 / 25.4 * 300)
 ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
-#: Keywords that take the edges of a surface that are its borders, and those that are its creases.
+#: Keywords that take the edges of a surface that are its borders.
 BORDERS = {
     "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
     "non_manifold_edges": False,
 }  # fmt: skip
-CREASES = BORDERS | {"boundary_edges": False, "feature_edges": True, "feature_angle": SHARP}
 #: Function that makes classes of colours.
 BANDS = "vizlight.maps.bands"
 #: Largest number of them as a share of that of the cells, and distance of places that are one, as a
@@ -251,13 +248,10 @@ class Case:
     @cached_property
     def creases(self) -> Step | None:
         """Step that takes the creases of a surface, None where it has none that are meant."""
-        surface = self.surface.run()
-        if not isinstance(surface, pv.PolyData):
+        if not isinstance(self.surface.run(), pv.PolyData):
             return None
-        carried = surface.point_data.active_normals_name is not None
-        if not creases(surface, has_normals=carried):
-            return None
-        return Step("creases", ".extract_feature_edges", self.surface, **CREASES)
+        edges = Step("creases", "render.creases", self.surface)
+        return edges if edges.run().n_cells else None
 
     @cached_property
     def box(self) -> Step | None:
@@ -583,7 +577,8 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
     date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
     if not date and len(series.of(mesh)) > 1:
-        date = f"t = {times[0]:g}"
+        unit = said.time.partition(", ")[0].partition(" since ")[0]
+        date = f"t = {times[0]:g} {meaning.written(unit)}".rstrip()
     method = OVER_TIME.search(methods)
     if not date or method is None:
         return date

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,8 @@ import pyvista as pv
 import scipy
 
 from vizlight.filters.tint import RGB
+from vizlight.looks.contents import Contents
+from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
@@ -35,6 +38,9 @@ TOUCHING, MOST_ASKED = 1.6, 2000
 #: Length of arrows as a share of the size of the data, and their form.
 LONG_ARROW = 0.03
 ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
+#: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
+#: between them, in angstroms.
+MOST_BALLS, BALL, STICK = 1000, 0.25, {"radius": 0.1, "n_sides": 20}
 #: Size in pixels of balls up to which they are squares on a map.
 SMALL_BALL = 6.0
 
@@ -75,6 +81,27 @@ def lines(case: Case) -> Drawing:
     lit = case.lit(case.data, scene, **light)
     notes = [note] if note else []
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=case.data)
+
+
+def is_molecule(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a molecule, with few enough atoms for balls and sticks."""
+    arrays = mesh.point_data
+    is_one = isinstance(mesh, pv.PolyData) and {"atom_type", "radius"} <= set(arrays)
+    return is_one and mesh.n_points <= MOST_BALLS and np.ndim(arrays["radius"]) == 1
+
+
+def molecule(case: Case) -> Drawing:
+    """Draw the atoms of a molecule as balls, and its bonds as sticks, in the colours of values."""
+    array, atoms = case.needed_array, case.data
+    bonds = atoms
+    if array.role == "kinds":
+        bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
+    ball = Step("", "pyvista.Sphere", theta_resolution=24, phi_resolution=16)
+    balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=BALL, geom=ball)
+    solid = balls
+    if atoms.run().n_lines:
+        solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **STICK))
+    return surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
 
 
 def _width(case: Case) -> float:

@@ -1,0 +1,32 @@
+"""Creases of surfaces as lines."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight import render
+
+
+def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
+    block = pv.Box().triangulate().subdivide(2, subfilter="linear")
+    edges = render.creases(block)
+    assert edges.n_cells == 12 * 4
+    assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
+    assert not render.creases(pv.Sphere()).n_cells
+
+
+def test_edges_that_connect_to_no_length_are_roughness():
+    ground = pv.Plane(i_resolution=40, j_resolution=40).triangulate()
+    points = ground.points.copy()
+    points[:, 2] = np.abs(points[:, 0])
+    # One tip, whose edges are as long as two cells.
+    points[41 * 20 + 10, 2] += 0.03
+    ground.points = points
+    edges = render.creases(ground)
+    assert edges.n_cells == 40
+    assert np.abs(edges.points[:, 0]).max() < 1e-6
+
+
+def test_other_meshes_are_refused():
+    with pytest.raises(TypeError, match=r"^surface: expected a pyvista\.PolyData, got"):
+        render.creases(pv.ImageData(dimensions=(2, 2, 2)))
