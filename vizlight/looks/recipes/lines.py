@@ -40,7 +40,7 @@ LONG_ARROW = 0.03
 ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
-MOST_BALLS, BALL, STICK = 1000, 0.25, {"radius": 0.1, "n_sides": 20}
+MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
 #: Size in pixels of balls up to which they are squares on a map.
 SMALL_BALL = 6.0
 
@@ -96,7 +96,7 @@ def molecule(case: Case) -> Drawing:
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
-    ball = Step("", "pyvista.Sphere", theta_resolution=24, phi_resolution=16)
+    ball = Step("", "pyvista.Sphere", radius=1, theta_resolution=24, phi_resolution=16)
     balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=BALL, geom=ball)
     solid = balls
     if atoms.run().n_lines:
