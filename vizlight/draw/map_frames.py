@@ -278,7 +278,7 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
             if score < -1:
                 continue
             half = np.array([letters.width(word), DIGIT]) * size / 2
-            middle = end + way * ((TICK + GAP) * size + np.abs(way) @ half)
+            middle = _beside(end, way, toward, half, size)
             low, high = middle - half - GAP * size, middle + half + GAP * size
             if any(np.all((low < other[1]) & (other[0] < high)) for other in boxes):
                 continue
@@ -286,6 +286,19 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
             parts.append(_tick(end, way, size))
             parts.append(_word(word, middle[0], middle[1] - half[1], size, align=0.5))
     return parts
+
+
+def _beside(end: Array, way: Array, toward: Array, half: Array, size: float) -> Array:
+    """Return the middle of a word at the end of a tick: at the tick's height where there is room.
+
+    ``way`` is that of the tick, ``toward`` the side of the map, ``half`` half of the word's box.
+    """
+    start, aside, extent = end + way * (TICK + GAP) * size, way @ toward, np.abs(way) @ half
+    if aside < ASIDE:
+        return np.asarray(start + way * extent)
+    # The box is beyond the tick, and beyond the line of the border.
+    far = max(np.abs(toward) @ half, (extent - TICK * size) / aside)
+    return np.asarray(start + toward * far)
 
 
 def _away(end: Array, outline: Array, near: float, toward: Array) -> tuple[float, Array]:
