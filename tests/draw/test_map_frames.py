@@ -139,7 +139,7 @@ def test_the_frame_of_a_cone_is_outside_of_it_and_has_words_along_two_sides():
     inside = (np.abs(earth[:, 0] + 90) < 44.9) & (earth[:, 1] > 15.1) & (earth[:, 1] < 59.9)
     assert not inside.any()
     west, east, south, north = np.array(made.bounds[:4]) - mesh.bounds[:4]
-    assert west < -2 * size
+    assert west < -size
     assert south < -size
     assert 0 < north < 2 * size
     assert 0 < east < 3 * size
