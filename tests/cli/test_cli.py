@@ -107,6 +107,18 @@ def test_a_direction_is_the_name_of_an_axis(volume, done):
     assert np.any(pictures[0] != pictures[2])
 
 
+def test_a_colour_is_seen_in_plain_light_and_a_view_has_a_name(done):
+    pv.Cone().save("part.stl")
+    script = done(
+        "light", "part.stl", "-o", "x.png", "--color", "tan", "--view", "front", "--script"
+    )
+    assert "presets" not in script
+    assert "color='tan'" in script.replace('"', "'")
+    assert "camera_on(data, (0.0, -1.0, 0.0)" in script
+    hues = done("light", "part.stl", "-o", "x.png", "--color", "tan", "--for", "shape", "--script")
+    assert "vizlight.presets.shape(" in hues
+
+
 def test_colours_of_a_file_are_no_light(done):
     ball = pv.Sphere()
     ball["rgb"] = np.arange(3 * ball.n_points).astype(np.uint8).reshape(-1, 3)

@@ -182,7 +182,7 @@ def test_a_surface_is_sampled_on_request():
 def test_holes_are_marked():
     grid, _ = grids()["ImageData"]
     grid["height"][[3, 4]] = np.nan
-    with pytest.warns(UserWarning, match="2 of 63 points have no height or no normal and t = 0"):
+    with pytest.warns(UserWarning, match="2 of 63 points have no height and t = 0"):
         out = relief_shadow(grid, SCENE, lit=True)
     assert np.flatnonzero(~out["t_valid"].astype(bool)).tolist() == [3, 4]
     assert not out["t"][[3, 4]].any()

@@ -135,6 +135,16 @@ def test_a_globe_with_heights_is_raised():
     assert "heights are taken 200000 times; exaggeration=1 takes them as they are" in look.notes
 
 
+@pytest.mark.parametrize("question", ["auto", "relief"])
+def test_a_title_says_how_often_heights_are_taken(question):
+    grid = pv.ImageData(dimensions=(12, 9, 1), spacing=(10, 10, 1))
+    grid["elevation"] = np.add.outer(np.arange(9.0), np.arange(12.0) ** 2).ravel()
+    raised = {"warp": "elevation"} if question == "auto" else {}
+    for factor, words in ((2, "elevation; heights times 2"), (1, "elevation")):
+        look = vizlight.look(grid, question, exaggeration=factor, size=SIZE, **raised)
+        assert look.drawing.keys[0]["title"] == words
+
+
 @pytest.mark.slow
 @pytest.mark.opengl
 def test_the_script_of_a_globe_draws_the_same(tmp_path, monkeypatch):

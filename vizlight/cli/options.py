@@ -173,7 +173,7 @@ class Finish:
     shininess
         Power of the specular term. Default: 20.
     color
-        Name of a colour, or #rrggbb, for a picture in colour.
+        Name of a colour, or #rrggbb, in plain light.
     """
 
     ambient: float | None = None
@@ -191,7 +191,7 @@ class CameraOptions:
     Parameters
     ----------
     view
-        Direction x,y,z to the eye, or a JSON file of a camera. Default: by the data.
+        Direction x,y,z to the eye, iso, front, or a JSON file. Default: by the data.
     up
         Direction x,y,z that is up, or x, y or z. Default: z, or y seen along z.
     parallel

@@ -214,6 +214,9 @@ def _scene_maker(
         else:
             # Lamps that are named light a plain material, not that of a preset.
             plain = "plain" if explicit and question != "relief" else question
+            if "color" in changes and plain in QUESTIONS and QUESTIONS[plain].by_hue:
+                # Hues of the light would hide the colour.
+                plain = "lamp"
             scene = plain_scene(lights.question or plain, view, camera, n)
             keep_view = True
             if changes and not fresh:
@@ -251,10 +254,14 @@ def _lights(lights: Lights, n: int) -> list[Step]:
 
 def _view_of(view: str | None, scene: Scene | None, seen: Keywords) -> object:
     """Return the direction toward the eye, or a camera, of an option or of the scene's file."""
+    from vizlight.looks.wishes import VIEWS
+
     if view is None:
         return None if scene is None or scene.view is None else _view_of_scene(scene, seen)
     if view.lower().endswith(".json"):
         return _saved_camera(view)
+    if view in VIEWS:
+        return view
     # In n-space the eye has n components.
     toward = options.numbers(view, tuple(range(4, 100)))
     return toward if any(toward) else options.vector("view", view)

@@ -343,8 +343,9 @@ def relief_shadow(
     arrays[name] = t @ (weight / weight.sum())
     if missing:
         arrays[name + VALID] = shadow.valid
+        lacking = "height" if isinstance(shadow, FieldCaster) else "normal"
         _check.warn(
-            f"{missing} of {len(t)} points have no height or no normal and t = 0; "
+            f"{missing} of {len(t)} points have no {lacking} and t = 0; "
             f"the point array {name + VALID!r} marks them"
         )
     _warn_of_wide(surface, t, options.raster)

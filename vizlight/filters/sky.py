@@ -199,7 +199,8 @@ def with_sky(
         meshes, options, finer=finer, show=False, elevation=elevation, factor=factor
     )
     lit = [mesh.copy(deep=False) for mesh in taken]
-    _attach(lit, results, options, finer=finer)
+    # Of heights the caller says which are missing.
+    _attach(lit, results, options, finer=finer, says_lost=elevation is None)
     return lit
 
 
@@ -318,7 +319,12 @@ def _found(
 
 
 def _attach(
-    meshes: Sequence[pv.DataSet], results: Sequence[Sky], options: SkyOptions, *, finer: bool
+    meshes: Sequence[pv.DataSet],
+    results: Sequence[Sky],
+    options: SkyOptions,
+    *,
+    finer: bool,
+    says_lost: bool = True,
 ) -> None:
     """Attach skies to meshes, with their records."""
     lost = total = dark = 0
@@ -357,7 +363,7 @@ def _attach(
         if active is not None:
             # Such as the heights of a flat grid.
             records.activate(mesh, active.GetName())
-    if lost:
+    if lost and says_lost:
         _check.warn(
             f"{lost} of {total} points have no sky (in a hole, without a normal, or buried inside "
             f"a surface) and that of the nearest point; the point array {options.name + VALID!r} "

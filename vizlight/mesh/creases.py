@@ -8,6 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight.vtk.cells import check_whole
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import creases as share_of_creases
 
@@ -37,8 +38,8 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
 
     Raises
     ------
-    TypeError
-        If it is no surface.
+    TypeError, ValueError
+        If it is no surface, or a cell of it is damaged.
 
     Examples
     --------
@@ -51,6 +52,7 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     """
     if not isinstance(surface, pv.PolyData):
         raise TypeError(_check.message("surface", "a pyvista.PolyData", _check.describe(surface)))
+    check_whole(surface, "surface")
     carried = surface.point_data.active_normals_name is not None
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()

@@ -474,7 +474,17 @@ class Case:
         has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING
         if has_grey and brains.hemisphere(mesh):
             bar["title"] += "; grey: medial wall"
-        return bar
+        return bar | {"title": bar["title"] + times_as_high(self._exaggeration)}
+
+    @property
+    def _exaggeration(self) -> float:
+        """Factor of the heights of what is drawn, 1 where they are as they are."""
+        step: object = self.data
+        while isinstance(step, Step):
+            if step.path == "files.warped":
+                return float(step.arguments[2])  # type: ignore[arg-type]
+            step = step.arguments[0] if step.arguments else None
+        return 1.0
 
     @property
     def needed_array(self) -> Named:
@@ -595,6 +605,11 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
     first, *others = (re.split(r"[_ ]+", text) for text in texts)
     left = [word for word in first if all(word in words for words in others)]
     return " ".join(left).replace("component of ", "").replace(" component", "")
+
+
+def times_as_high(factor: float) -> str:
+    """Return the words in a title that say the factor of heights."""
+    return "" if factor == 1 else f"; heights times {factor:g}"
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:

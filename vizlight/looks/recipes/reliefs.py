@@ -11,14 +11,14 @@ import pyvista as pv
 from vizlight.looks import map_parts
 from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
-from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of
+from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of, times_as_high
 from vizlight.looks.steps import Step
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Keywords
+    from vizlight._types import Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
     from vizlight.scene import Light
@@ -58,7 +58,9 @@ def relief(case: Case) -> Drawing:
     if straight is not data:
         shown = Step("chart", data.path, shown)
         drawn |= {"scalars": "rgb", "rgb": True, "lighting": False}
-    keys = [case.bar(array, colors)]
+    bar = case.bar(array, colors)
+    factor: Foreign = keywords.get("exaggeration", 1.0)
+    keys = [bar | {"title": bar["title"] + times_as_high(factor)}]
     # The filter has said how many points have no height.
     layer = Layer(shown, drawn, quiet=True, live=straight is data)
     return Drawing(

@@ -103,7 +103,7 @@ def surface(case: Case) -> Drawing:
     lit = case.lit(mesh, scene, **light)
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
-    drawn = {"scene": scene, "color": "white", **case.wishes.drawn(light)}
+    drawn = {"scene": scene, **case.wishes.drawn(light)}
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
         key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
