@@ -13,7 +13,7 @@ from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import creases as share_of_creases
 
 if TYPE_CHECKING:
-    from vizlight._types import Array
+    from vizlight._types import Indices
 
 __all__ = ["creases"]
 
@@ -62,7 +62,7 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     if not edges.n_cells:
         return pv.PolyData()
     edges = edges.connectivity("all")
-    part: Array = np.asarray(edges.point_data["RegionId"])
+    part: Indices = np.asarray(edges.point_data["RegionId"])
     low, high = np.full((2, part.max() + 1, 3), [[[np.inf]], [[-np.inf]]])
     np.minimum.at(low, part, edges.points)
     np.maximum.at(high, part, edges.points)
