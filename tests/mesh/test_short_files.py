@@ -380,3 +380,21 @@ def test_a_legacy_file_that_ends_before_its_cells(tmp_path):
     path.write_text(path.read_text().partition("CELLS")[0] + "METADATA\n")
     with pytest.raises(FileError, match="its last block is not whole"):
         vizlight.read(path)
+
+
+def test_a_damaged_file_of_exodus_is_opened_by_another_process(tmp_path, monkeypatch):
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("netCDF4")
+    path = tmp_path / "grid.e"
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    meshio.Mesh(corners, [("tetra", [[0, 1, 2, 3]])]).write(path)
+    assert short_files.missing_part(path) == ""
+    data = bytearray(path.read_bytes())
+    data[64:320] = bytes(256)
+    path.write_bytes(data)
+    with pytest.raises(FileError, match="VTK's reader of Exodus cannot read it to its end"):
+        vizlight.read(path)
+    monkeypatch.setattr(short_files, "_EXODUS", "import time; time.sleep(60)")
+    monkeypatch.setattr(short_files, "_EXODUS_SECONDS", 0.2)
+    with pytest.raises(FileError, match="VTK's reader of Exodus does not come to an end"):
+        vizlight.read(path)

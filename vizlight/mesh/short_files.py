@@ -16,6 +16,8 @@ import mmap
 import os
 import re
 import struct
+import subprocess
+import sys
 import zipfile
 import zlib
 from pathlib import Path
@@ -261,6 +263,42 @@ def _netcdf(file: BinaryIO) -> str:
     except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
         return f"a variable is not whole: {error}"
     return ""
+
+
+#: Reads a file of Exodus; the exit code is 0 if it has points.
+_EXODUS = """
+import sys
+from vtkmodules.vtkIOExodus import vtkExodusIIReader
+reader = vtkExodusIIReader()
+reader.SetFileName(sys.argv[1])
+reader.UpdateInformation()
+for kind in range(20):
+    for i in range(reader.GetNumberOfObjectArrays(kind)):
+        reader.SetObjectArrayStatus(kind, reader.GetObjectArrayName(kind, i), 1)
+reader.Update()
+sys.exit(not reader.GetOutput().GetNumberOfPoints())
+"""
+#: Seconds that it may take, and what each megabyte adds.
+_EXODUS_SECONDS, _EXODUS_SECONDS_PER_MB = 15.0, 0.5
+
+
+def _exodus(file: BinaryIO) -> str:
+    """Read a file of HDF5 in another process: one that is damaged ends it, or spoils later ones."""
+    lacking, size = _netcdf(file), file.seek(0, 2)
+    file.seek(0)
+    if lacking or file.read(len(_HDF)) != _HDF or not sys.executable:
+        return lacking
+    try:
+        run = subprocess.run(
+            [sys.executable, "-c", _EXODUS, file.name],
+            capture_output=True,
+            stdin=subprocess.DEVNULL,
+            timeout=_EXODUS_SECONDS + _EXODUS_SECONDS_PER_MB * size / 1e6,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return "VTK's reader of Exodus does not come to an end of it"
+    return "VTK's reader of Exodus cannot read it to its end" if run.returncode else ""
 
 
 #: Bytes of the header of a binary STL file with its count, and of each triangle.
@@ -858,7 +896,6 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".dat", ".tec"), _tecplot),
     **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), _xml),
     **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
-    **dict.fromkeys(
-        (".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii"), _netcdf
-    ),
+    **dict.fromkeys((".nc", ".nc4", ".cdf"), _netcdf),
+    **dict.fromkeys((".e", ".ex2", ".exo", ".exii"), _exodus),
 }  # fmt: skip
