@@ -233,6 +233,16 @@ WRONG = {
     "corner": ("a.3ds", studio(0, 1, 9), "a triangle has the point 9 of 3"),
     "rows": ("a.3ds", studio(0, 1, 2, count=99), "99 rows are not within 8 bytes"),
     "chunk": ("a.3ds", studio(0, 1, 2)[:-1], "a part of .* bytes is not within"),
+    "attribute": (
+        "a.vtk",
+        cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nPOINT_DATA 4\nF\xffELD a 1\n",
+        "stands where an array begins",
+    ),
+    "cell type": (
+        "a.vtk",
+        cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nCELL_TYPES 2\n5 99\n",
+        "no cells of type 99",
+    ),
     "part": ("a.case", CASE, "the part b'7', which the geometry has not"),
 }
 

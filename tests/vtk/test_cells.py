@@ -20,3 +20,15 @@ def test_quadrilaterals_have_the_halves_of_vtk(random, far):
     whole = np.sort(surface.triangulate().regular_faces, axis=1)
     np.testing.assert_array_equal(np.unique(found, axis=0), np.unique(whole, axis=0))
     assert len(found) == 2 * surface.n_cells
+
+
+def test_cells_with_fewer_points_than_their_type_needs_are_refused():
+    grid = pv.UnstructuredGrid(np.array([4, 0, 1, 2, 3]), np.array([10], np.uint8), np.eye(4, 3))
+    cells.check_whole(grid, "mesh")
+    types = grid.celltypes
+    types[0] = pv.CellType.QUADRATIC_WEDGE
+    with pytest.raises(ValueError, match="expected cells of type 26 with 15 points, got one of"):
+        cells.check_whole(grid, "mesh")
+    types[0] = 255
+    with pytest.raises(ValueError, match="expected cells of types that VTK has, got one of type"):
+        cells.check_whole(grid, "mesh")

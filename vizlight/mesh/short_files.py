@@ -29,7 +29,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.mesh import references, series
-from vizlight.vtk.cells import cell_arrays, connectivity
+from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -780,7 +780,13 @@ def _legacy(file: BinaryIO) -> str:
         cells = (
             _cells(data, at, is_text) for word in keywords for at in _places(data, b"\n" + word)
         )
-        return next(filter(None, itertools.chain(fields, cells)), "")
+        types = (_types(data, at, is_text) for at in _places(data, b"\nCELL_TYPES "))
+        named = (
+            _named(data, at)
+            for word in (b"\nPOINT_DATA ", b"\nCELL_DATA ")
+            for at in _places(data, word)
+        )
+        return next(filter(None, itertools.chain(fields, cells, types, named)), "")
 
 
 _VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
@@ -788,6 +794,38 @@ _CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
 _COUNTS = re.compile(rb"\s\w+[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]*\r?\n")
 #: The first word after numbers.
 _LETTER = re.compile(rb"[a-zA-Z]")
+
+
+#: What begins with an array of points or cells in a legacy file, or stands in its place.
+_ATTRIBUTES = (
+    b"SCALARS", b"VECTORS", b"NORMALS", b"TENSORS", b"TENSORS6", b"TEXTURE_COORDINATES",
+    b"COLOR_SCALARS", b"LOOKUP_TABLE", b"FIELD", b"GLOBAL_IDS", b"PEDIGREE_IDS", b"EDGE_FLAGS",
+    b"METADATA", b"POINT_DATA", b"CELL_DATA",
+)  # fmt: skip
+
+
+def _named(data: mmap.mmap | bytes, at: int) -> str:
+    """Return the reason why no array begins where it should."""
+    word = re.compile(rb"\n\w+[ \t]+\d+\s+(\S+)").match(data, at)
+    if word is None or word[1].upper() in _ATTRIBUTES:
+        return ""
+    return f"{word[1][:20]!r} stands where an array begins"
+
+
+def _types(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why types of cells are none that VTK has."""
+    counts = re.compile(rb"\n\w+[ \t]+(\d+)[ \t]*\r?\n").match(data, at)
+    if counts is None:
+        return ""
+    count, start = int(counts[1]), counts.end()
+    if is_text:
+        end = _LETTER.search(data, start)
+        numbers = np.fromstring(data[start : end.start() if end else None], np.int64, sep=" ")
+    else:
+        there = min(count, (len(data) - start) // 4)
+        numbers = np.frombuffer(data, ">i4", there, start)
+    unknown = [kind for kind in np.unique(numbers) if points_of_type(int(kind)) is None]
+    return f"VTK has no cells of type {unknown[0]}" if unknown else ""
 
 
 def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:

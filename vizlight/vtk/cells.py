@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonCore import (
     vtkPoints,
     vtkStringArray,
     vtkUnsignedCharArray,
+    vtkVersion,
 )
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYHEDRON,
@@ -20,6 +21,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataSet,
     vtkExplicitStructuredGrid,
+    vtkGenericCell,
     vtkImageData,
     vtkPointSet,
     vtkPolyData,
@@ -49,6 +51,12 @@ cell_data: Callable[[Foreign], vtkCellData] = vtkDataSet.GetCellData
 field_data: Callable[[Foreign], vtkFieldData] = vtkDataObject.GetFieldData
 grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
 vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
+#: Returns the types of the cells of an unstructured grid; its name changed in VTK 9.6.
+_types_of_cells: Callable[[Foreign], vtkDataArray] = (
+    vtkUnstructuredGrid.GetCellTypes
+    if (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 6)
+    else vtkUnstructuredGrid.GetCellTypesArray
+)
 #: Has no types.
 _SUPPORT: Foreign = numpy_support
 #: Meshes with points along axes.
@@ -401,3 +409,31 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
                 remedy = "the file may be cut or damaged"
                 got = f"{ids.min()} to {ids.max()}"
                 raise ValueError(where + _check.message(name, expected, got, remedy))
+    if isinstance(mesh, vtkUnstructuredGrid) and mesh.GetNumberOfCells():
+        _check_types(mesh, name, where)
+
+
+def _check_types(mesh: vtkUnstructuredGrid, name: str, where: str) -> None:
+    """Check that cells have the points that their types need: VTK reads beyond their ends."""
+    types = as_numpy(_types_of_cells(mesh))
+    sizes = np.diff(as_numpy(mesh.GetCells().GetOffsetsArray()))
+    for kind in np.flatnonzero(np.bincount(types)):
+        least = points_of_type(int(kind))
+        there = int(sizes[types == kind].min())
+        if least is None or there < least:
+            expected = f"cells of type {kind} with {least} points"
+            if least is None:
+                expected = "cells of types that VTK has"
+            got = f"one of type {kind} with {there}"
+            remedy = "the file may be cut or damaged"
+            raise ValueError(where + _check.message(name, expected, got, remedy))
+
+
+@functools.cache
+def points_of_type(kind: int) -> int | None:
+    """Return the least number of points of a cell of a type, None if VTK has no such type."""
+    if not kind:
+        return 0
+    cell = vtkGenericCell.InstantiateCell(kind)
+    # Cells of any number of points have none at first, those of any order the corners.
+    return None if cell is None else cell.GetNumberOfPoints()
