@@ -62,7 +62,7 @@ MESHES = {
 
 @pytest.mark.parametrize("filter_", FILTERS)
 @pytest.mark.parametrize("mesh", MESHES)
-@pytest.mark.filterwarnings("ignore:.*(sharper than|could not be lit|no height|shadows end within)")
+@pytest.mark.filterwarnings("ignore:.*(sharper than|could not be lit|no normal|shadows end within)")
 def test_every_filter_takes_every_mesh(filter_, mesh):
     made = FILTERS[filter_](MESHES[mesh]())
     assert sum(block.n_points for block in blocks.all_blocks(made))
