@@ -40,6 +40,7 @@ def test_roles(name, values, role):
     ("name", "values"),
     [
         ("GlobalNodeId", np.arange),
+        ("NumIdCell", np.arange),
         ("constant", np.ones),
         ("latitude", rising),
         ("nothing", lambda n: np.full(n, np.nan)),

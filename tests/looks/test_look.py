@@ -270,7 +270,9 @@ def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path
     image["atlas"] = np.where(inside, 5 + (x > 0) * 4 + (y > 0) * 20, 0).astype(np.int16)
     look = vizlight.look(image, size=SIZE)
     assert look.shown == "hull"
-    mesh = look.drawing.layers[0].mesh.run()
+    # The box of the image has no creases in the picture.
+    (drawn,) = look.drawing.layers
+    mesh = drawn.mesh.run()
     assert {*np.unique(mesh.cell_data["atlas"])} == {5, 9, 25, 29}
     radius = np.linalg.norm(np.asarray(mesh.points) - 14.5, axis=1)
     assert np.ptp(radius) < 1.5
@@ -401,3 +403,7 @@ def test_creases_of_a_part_are_lines_and_a_smooth_shape_has_none():
     assert edges.n_cells == 12 * 4
     assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1
+    # Faces that a file has twice have no edge between two faces alone.
+    twice = pv.PolyData(block.points, np.concatenate([block.faces, block.faces]))
+    assert vizlight.look(twice, size=SIZE).drawing.layers[0].live
+    assert len(vizlight.look(twice, size=SIZE).drawing.layers) == 1

@@ -37,6 +37,8 @@ _NO_DATUM = {
     "coords", "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons",
     "lat", "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
 }  # fmt: skip
+#: Words anywhere in the names of numbers of nodes and cells, such as ``NumIdCell``.
+_NUMBERS = {"id", "ids", "gid"}
 #: Words that names of coordinates of nodes, and of tables of which belongs to which, consist of.
 _TABLE_WORDS = {
     "x", "y", "z", "lon", "lat", "node", "nodes", "nod", "cell", "cells", "face", "faces", "edge",
@@ -293,7 +295,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
-    if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
+    numbers = words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(words)
+    if named and (words[0] == "vtk" or (numbers and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):
         return None

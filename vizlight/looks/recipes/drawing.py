@@ -257,7 +257,9 @@ class Case:
         carried = surface.point_data.active_normals_name is not None
         if not creases(surface, has_normals=carried):
             return None
-        return Step("creases", ".extract_feature_edges", self.surface, **CREASES)
+        edges = Step("creases", ".extract_feature_edges", self.surface, **CREASES)
+        # A mesh that has each face twice has no edge between two faces alone.
+        return edges if edges.run().n_cells else None
 
     @cached_property
     def box(self) -> Step | None:
