@@ -403,7 +403,26 @@ def test_creases_of_a_part_are_lines_and_a_smooth_shape_has_none():
     assert edges.n_cells == 12 * 4
     assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1
+    # Faces that are wound against their neighbours make no crease.
+    faces = block.regular_faces.copy()
+    faces[::3] = faces[::3, ::-1]
+    other = vizlight.look(pv.PolyData.from_regular_faces(block.points, faces), size=SIZE)
+    assert other.drawing.layers[1].mesh.run().n_cells == 12 * 4
     # Faces that a file has twice have no edge between two faces alone.
     twice = pv.PolyData(block.points, np.concatenate([block.faces, block.faces]))
     assert vizlight.look(twice, size=SIZE).drawing.layers[0].live
     assert len(vizlight.look(twice, size=SIZE).drawing.layers) == 1
+
+
+def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_other():
+    random = np.random.default_rng(0)
+    on_ball = random.normal(size=(2000, 3))
+    on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
+    within = random.uniform(-1, 1, (2000, 3))
+    sizes = []
+    for points in (on_ball, within):
+        (drawn,) = vizlight.look(pv.PolyData(points), size=(600, 400)).drawing.layers
+        sizes.append(drawn.keywords["point_size"])
+    # 2000 points on a ball some 300 pixels wide are 12 pixels apart, those in front of it.
+    assert 10 < sizes[0] < 20
+    assert sizes[1] < 6

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
+#: Name of VTK's marks of points and cells that are not drawn.
+GHOSTS = "vtkGhostType"
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
 #: Largest share of runs of equal labels that have one row only: regions are larger than that, while
@@ -233,6 +235,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             if name in outputs:
                 continue
             values = np.asarray(data[name])
+            if of_cells and GHOSTS in data:
+                # Cells that are hidden, such as those that others refine.
+                values = values[np.asarray(data[GHOSTS]) == 0]
             array = _described(name, values, of_cells=of_cells, named=True)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
@@ -299,6 +304,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if named and (words[0] == "vtk" or (numbers and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):
+        return None
+    if named and words[0] == "unnamed" and np.array_equal(values, np.arange(len(values))):
         return None
     lower = name.lower()
     if are_colors(values):

@@ -26,6 +26,7 @@ from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
+from vizlight.vtk.cells import connectivity
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import creases
 
@@ -56,6 +57,8 @@ BORDERS = {
     "non_manifold_edges": False,
 }  # fmt: skip
 CREASES = BORDERS | {"boundary_edges": False, "feature_edges": True, "feature_angle": SHARP}
+#: Keywords that wind all faces of a surface alike.
+WOUND = {"point_normals": False, "split_vertices": False, "consistent_normals": True}
 #: Function that makes classes of colours.
 BANDS = "vizlight.maps.bands"
 #: Largest number of them as a share of that of the cells, and distance of places that are one, as a
@@ -257,7 +260,11 @@ class Case:
         carried = surface.point_data.active_normals_name is not None
         if not creases(surface, has_normals=carried):
             return None
-        edges = Step("creases", ".extract_feature_edges", self.surface, **CREASES)
+        mesh = self.surface
+        if not _are_wound_alike(surface):
+            # VTK takes the edge between a face and one wound the other way for a crease.
+            mesh = Step("wound", ".compute_normals", mesh, **WOUND)
+        edges = Step("creases", ".extract_feature_edges", mesh, **CREASES)
         # A mesh that has each face twice has no edge between two faces alone.
         return edges if edges.run().n_cells else None
 
@@ -504,6 +511,15 @@ class Case:
         """Least width of lines, in pixels."""
         width = self.wishes.picture.get("line_width")
         return float(width) if width else round(max(1.5, THIN * max(self.wishes.size)), 1)
+
+
+def _are_wound_alike(surface: pv.PolyData) -> bool:
+    """Return whether no two faces run along an edge the same way."""
+    ids, ends = connectivity(surface.GetPolys())
+    ahead = np.roll(ids, -1)
+    ahead[ends[1:] - 1] = ids[ends[:-1]]
+    ways = ids.astype(np.int64) * surface.n_points + ahead
+    return len(np.unique(ways)) == len(ways)
 
 
 def _are_borders(edges: pv.PolyData, surface: pv.PolyData) -> bool:
