@@ -19,8 +19,8 @@ GOOD = 1.5
 #: Share of the levels at either end, where values that rise ever faster are steepest, and the
 #: contrast that a level needs there.
 OUTER, STRONG = 0.1, 3.0
-#: Share of the values that are the lowest one, and its distance to the first others in that of these
-#: to the median, from which it stands for no value; share of this distance at which others begin.
+#: Share of the values that are the lowest one, and its distance to the first others in that of
+#: these to the median, from which it is no value; share of this distance at which others begin.
 APART, FAR, UNBLENDED = 0.01, 2.0, 0.9
 #: Fewest cells of the sample that a level must cross.
 FEWEST = 30

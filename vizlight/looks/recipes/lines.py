@@ -33,8 +33,8 @@ POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 #: looked for.
 TOUCHING, MOST_ASKED = 1.6, 2000
 #: Size of the points of a surface in their distance, and the largest one in pixels; most points for
-#: which it is looked for, and the ratios of the distances of the 16th and the 4th neighbour on a surface: it is 2 on a plane,
-#: 1.6 in a volume, 4 on a line.
+#: which it is looked for, and ratios of the distances of the 16th and the 4th neighbour on a
+#: surface: it is 2 on a plane, 1.6 in a volume, 4 on a line.
 CLOSED, LARGEST, MOST_CLOSED, ON_SURFACE = 1.3, 24.0, 300_000, (1.75, 2.6)
 #: The two neighbours, each point being its own first one.
 NEIGHBOURS = (5, 17)
