@@ -172,3 +172,9 @@ def test_values_of_hidden_cells_are_not_seen():
     assert [array.name for array in Contents(grid).arrays] == ["q"]
     grid.cell_data["vtkGhostType"] = 8 * (np.arange(9) >= 5).astype(np.uint8)
     assert Contents(grid).arrays == ()
+
+
+def test_a_name_stands_for_one_array():
+    grid = pv.ImageData(dimensions=(4, 4, 1))
+    grid.point_data["ref"], grid.cell_data["ref"] = np.arange(16.0) / 3, np.arange(9) % 3
+    assert [(array.name, array.of_cells) for array in Contents(grid).arrays] == [("ref", False)]

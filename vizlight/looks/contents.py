@@ -232,7 +232,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     described, texture = [], mesh.point_data.active_texture_coordinates_name
     for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
         for name in data:
-            if name in outputs:
+            # A name stands for the array of points where both have it.
+            if name in outputs or (of_cells and name in mesh.point_data):
                 continue
             values = np.asarray(data[name])
             if of_cells and GHOSTS in data:
