@@ -111,11 +111,11 @@ _ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when as
 
 
 #: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
-#: keys of ParaView's and ranges of NaN are metadata, conditions at the boundary of CGNS no cells,
-#: percentages of 3DS parts of materials.
+#: keys of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
+#: cells, percentages of 3DS parts of materials.
 _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
-    "|glTF extension .* is used in|Error parsing percentage"
+    "|glTF extension .* is used in|Error parsing percentage|Unknown field: '[^:]*:="
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")

@@ -133,3 +133,16 @@ def test_extremes_at_a_side_or_without_a_closed_line_are_not_marked():
     assert made["extremes"].n_points == 0
     with pytest.raises(ValueError, match="extremes: expected"):
         isolines(grid, "h", [1.0], letters=0.6, extremes=0.0)
+
+
+def test_lines_of_a_level_do_not_depend_on_the_other_levels():
+    y, x = np.mgrid[:12, :15]
+    field = pv.ImageData(dimensions=(15, 12, 1))
+    field["f"] = (np.sin(x / 2.0) + np.cos(y / 3.0)).ravel()
+    field = field.extract_surface(algorithm="dataset_surface")
+    few = contoured(field, "f", np.array([-0.4, 0.4]))
+    every = contoured(field, "f", np.linspace(-0.8, 0.8, 9).round(1))
+    kept = [(piece, level) for piece, level in every if level in (-0.4, 0.4)]
+    assert [level for _, level in few] == [level for _, level in kept]
+    for (one, _), (other, _) in zip(few, kept, strict=True):
+        np.testing.assert_array_equal(one, other)

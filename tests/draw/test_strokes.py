@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 from lamps import far, shiny
 from vectors import unit
+from vtkmodules.vtkRenderingCore import vtkMapper
 
 import vizlight
 from vizlight import Material, Scene, View, render
@@ -353,3 +354,43 @@ def test_lines_that_pass_the_eye_are_cut_at_the_near_plane():
     picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
     assert np.all(picture[:, :105] == 0)
     assert picture[:, 130:195].sum(axis=0) == pytest.approx(4, abs=0.3)
+
+
+def test_plain_lines_are_whole_on_the_surface_that_they_lie_on():
+    """The switch of VTK for that, which is one for a process, is as before after a frame."""
+    before = vtkMapper.GetResolveCoincidentTopology()
+    plane = pv.Plane(i_resolution=8, j_resolution=8)
+    dark = []
+    for opacity in (1.0, 0.0):
+        plotter = render.canvas((200, 200))
+        plotter.add_mesh(plane, color="white", lighting=False, opacity=opacity)
+        plotter.add_mesh(plane.extract_all_edges(), color="black", lighting=False, line_width=3)
+        plotter.camera = render.camera_on(plane, (0.3, 0.4, 1.0))
+        front = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+        dark.append((255 - front).sum())
+        plotter.close()
+        assert vtkMapper.GetResolveCoincidentTopology() == before
+    assert dark[0] > 0.95 * dark[1]
+
+
+@pytest.mark.parametrize("lighting", [True, False])
+def test_points_are_as_large_as_asked(lighting):
+    plotter = render.canvas((60, 60))
+    point = pv.PolyData(np.zeros((1, 3)))
+    plotter.vizlight.add_mesh(point, color="black", point_size=20, lighting=lighting)
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    plotter.close()
+    # A square, or a disc where the driver rounds points.
+    assert 0.95 * np.pi * 100 < (1 - picture[:, :, 0] / 255).sum() < 410
+
+
+def test_colours_that_hide_nearly_all_are_opaque():
+    """VTK would draw the far side of the ball over its near side."""
+    ball = pv.Sphere(theta_resolution=12, phi_resolution=12)
+    ball["RGBA"] = np.full((ball.n_points, 4), 254, np.uint8)
+    ball["glass"] = np.full((ball.n_points, 4), 100, np.uint8)
+    plotter = render.canvas((60, 60))
+    opaque, glass = (plotter.vizlight.add_mesh(ball, scalars=name) for name in ("RGBA", "glass"))
+    assert opaque.GetForceOpaque()
+    assert not glass.GetForceOpaque()
+    plotter.close()

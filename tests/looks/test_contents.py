@@ -40,7 +40,9 @@ def test_roles(name, values, role):
     ("name", "values"),
     [
         ("GlobalNodeId", np.arange),
+        ("NumIdCell", np.arange),
         ("constant", np.ones),
+        ("Unnamed_0", np.arange),
         ("latitude", rising),
         ("nothing", lambda n: np.full(n, np.nan)),
         ("vtkValidPointMask", lambda n: np.arange(n) % 2),
@@ -162,3 +164,17 @@ def test_active_kinds_with_colours_of_their_own_come_first():
     said.add_kinds("element", [(6, "C", (0.5, 0.5, 0.5)), (8, "O", (1, 0, 0))])
     meaning.attach(line, said)
     assert [one.name for one in sorted_arrays(line)] == ["element", "charge"]
+
+
+def test_values_of_hidden_cells_are_not_seen():
+    grid = pv.ImageData(dimensions=(4, 4, 1))
+    grid.cell_data["q"] = np.arange(9) // 5 + 0.5
+    assert [array.name for array in Contents(grid).arrays] == ["q"]
+    grid.cell_data["vtkGhostType"] = 8 * (np.arange(9) >= 5).astype(np.uint8)
+    assert Contents(grid).arrays == ()
+
+
+def test_a_name_stands_for_one_array():
+    grid = pv.ImageData(dimensions=(4, 4, 1))
+    grid.point_data["ref"], grid.cell_data["ref"] = np.arange(16.0) / 3, np.arange(9) % 3
+    assert [(array.name, array.of_cells) for array in Contents(grid).arrays] == [("ref", False)]

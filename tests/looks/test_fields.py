@@ -30,6 +30,13 @@ def test_the_turn_of_a_field_is_that_per_length_around_its_cells(turn, kind):
     assert fields.turn_of(mesh, "wind") == pytest.approx(turn / 2, rel=1e-6, abs=1e-7)
 
 
+def test_what_a_field_does_in_few_places_does_not_count():
+    grid = sheet(0.2)
+    wild = np.asarray(grid.points)[:, 0] > 45
+    grid["wind"][wild] = np.random.default_rng(0).normal(size=(wild.sum(), 3))
+    assert fields.turn_of(grid, "wind") == pytest.approx(0.1, rel=1e-6)
+
+
 def test_a_field_at_rest_does_not_turn():
     grid = sheet(1.0)
     grid["wind"][:] = 0

@@ -52,3 +52,15 @@ def test_corners_of_strips_are_those_of_their_triangles():
     assert (set(counts), len(ids)) == ({3}, 3 * len(starts))
     assert len(starts) == tube.triangulate().n_cells
     assert [len(part) for part in levels.sampled_corners(pv.Line())] == [0, 0, 0]
+
+
+def test_what_a_scanner_did_not_see_has_no_level():
+    """The edge of the circle of a scanner is the steepest one, and no part of the body."""
+    scan = pv.ImageData(dimensions=(30, 30, 30), origin=(-14.5,) * 3)
+    x, y, z = np.asarray(scan.points, dtype=float).T
+    noise = np.random.default_rng(0).normal(0, 20, len(x))
+    values = np.where(x**2 + y**2 + z**2 < 60, 50.0, -1000.0) + noise
+    scan["CT"] = np.where(x**2 + y**2 < 180, values, -3000.0)
+    level, contrast = levels.best_level(scan, "CT")
+    assert -900 < level < 0
+    assert contrast > 1.5

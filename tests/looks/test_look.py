@@ -295,7 +295,9 @@ def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path
     image["atlas"] = np.where(inside, 5 + (x > 0) * 4 + (y > 0) * 20, 0).astype(np.int16)
     look = vizlight.look(image, size=SIZE)
     assert look.shown == "hull"
-    mesh = look.drawing.layers[0].mesh.run()
+    # The box of the image has no creases in the picture.
+    (drawn,) = look.drawing.layers
+    mesh = drawn.mesh.run()
     assert {*np.unique(mesh.cell_data["atlas"])} == {5, 9, 25, 29}
     radius = np.linalg.norm(np.asarray(mesh.points) - 14.5, axis=1)
     assert np.ptp(radius) < 1.5
@@ -430,3 +432,17 @@ def test_creases_of_a_part_are_lines_that_are_seen():
     assert creases.mesh.run().points[:, 0].max() > 0.4
     assert look.view.position[0] > 0
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1
+
+
+def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_other():
+    random = np.random.default_rng(0)
+    on_ball = random.normal(size=(2000, 3))
+    on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
+    within = random.uniform(-1, 1, (2000, 3))
+    sizes = []
+    for points in (on_ball, within):
+        (drawn,) = vizlight.look(pv.PolyData(points), size=(600, 400)).drawing.layers
+        sizes.append(drawn.keywords["point_size"])
+    # 2000 points on a ball some 300 pixels wide are 12 pixels apart, those in front of it.
+    assert 10 < sizes[0] < 20
+    assert sizes[1] < 6

@@ -77,3 +77,14 @@ def test_an_isosurface_of_crumbs_gives_way_to_slices():
     grid["f"], grid["g"] = bumps.ravel(), bumps.ravel()
     assert volumes._is_crumbs(grid.contour([0.5], scalars="f"))
     assert not volumes._is_crumbs(volume().contour([0.0], scalars="T"))
+
+
+def test_a_scan_fills_the_picture_and_not_its_box():
+    grid = volume(count=40)
+    look = vizlight.look(grid)
+    assert "render.box_edges" not in [layer.mesh.path for layer in look.drawing.layers]
+    eye = look.view
+    right = np.cross(eye.direction, eye.up)
+    depth = (look.mesh.points - eye.position) @ eye.direction
+    across = np.abs((look.mesh.points - eye.position) @ right) / depth
+    assert across.max() > 0.8 * np.tan(np.radians(eye.view_angle / 2))

@@ -13,6 +13,13 @@ def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
     assert edges.n_cells == 12 * 4
     assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
     assert not render.creases(pv.Sphere()).n_cells
+    # Faces that are wound against their neighbours make no crease.
+    faces = block.regular_faces.copy()
+    faces[::3] = faces[::3, ::-1]
+    assert render.creases(pv.PolyData.from_regular_faces(block.points, faces)).n_cells == 12 * 4
+    # Faces that are there twice have no edge between two faces alone.
+    twice = pv.PolyData(block.points, np.concatenate([block.faces, block.faces]))
+    assert not render.creases(twice).n_cells
 
 
 def test_edges_that_connect_to_no_length_are_roughness():

@@ -182,6 +182,16 @@ def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
+def test_references_of_points_leave_their_name_to_those_of_cells(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, corners = np.eye(4)[:, :3], [("tetra", [[0, 1, 2, 3]])]
+    rows = {"medit:ref": np.arange(4)}, {"medit:ref": [np.array([7])]}
+    meshio.Mesh(points, corners, *rows).write(tmp_path / "a.mesh")
+    mesh = vizlight.read(tmp_path / "a.mesh")
+    assert (mesh.cell_data["medit:ref"] == 7).all()
+    assert list(mesh.point_data) == ["medit:ref of points"]
+
+
 def test_an_array_of_meshio_without_rows_for_some_cells_is_left_out(tmp_path):
     pytest.importorskip("meshio")
     path = tmp_path / "a.fem"

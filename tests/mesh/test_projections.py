@@ -9,7 +9,8 @@ from vizlight.mesh import projections
 SUITED = {
     (-135, -45, 15, 60): "lcc", (-20, 40, -60, -20): "lcc", (100, 175, 30, 80): "lcc",
     (-180, 180, 60, 90): "stere", (0, 357.5, -90, -50): "stere", (6, 9, 45, 47): "eqc",
-    (-180, 180, -90, 90): "", (90, 110, -8, 8): "", (-90, 90, 20, 80): "",
+    (-180, 180, -90, 90): "", (90, 110, -8, 8): "", (-90, 90, 20, 80): "lcc",
+    (-100, 100, 20, 80): "",
 }  # fmt: skip
 POLE = {"grid_north_pole_latitude": 39.25, "grid_north_pole_longitude": -162.0}
 ROTATED = projections.of_attributes(POLE | {"north_pole_grid_longitude": 10.0})
@@ -36,6 +37,8 @@ def test_which_map_has_which_projection(bounds, kind):
         *((projections.suited(bounds), bounds) for bounds, kind in SUITED.items() if kind),
         (ROTATED, (-180, 180, -89, 89)),
         (projections.around(20.0), (-159.9, 199.9, -89.9, 89.9)),
+        ("+proj=lcc +lon_0=15 +lat_0=63 +lat_1=63 +R=6371000 +units=m +no_defs", (0, 30, 50, 70)),
+        ("+proj=lcc +lon_0=15 +lat_0=63 +lat_1=63 +R=6371000 +x_0=400000", (0, 30, 50, 70)),
     ],
 )
 def test_places_are_those_of_proj_and_come_back(text, bounds):

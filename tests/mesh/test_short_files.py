@@ -378,6 +378,12 @@ def test_an_axis_that_vtk_takes_for_components(tmp_path):
             assert vizlight.read(tmp_path / "a.nrrd").dimensions == dimensions
 
 
+def test_a_key_of_a_program_is_no_field_of_an_image(tmp_path):
+    key = b"\nSegmentation_ConversionParameters:=Smoothing: 0.5|&\n\n"
+    (tmp_path / "a.nrrd").write_bytes(NRRD.replace(b"\n\n", key))
+    assert vizlight.read(tmp_path / "a.nrrd").dimensions == (10, 3, 2)
+
+
 def test_places_beyond_the_largest(tmp_path):
     pv.RectilinearGrid([0.0, 1e200], [0.0, 1], [0.0, 1]).save(tmp_path / "a.vtr")
     with pytest.raises(FileError, match=r"points beyond 1e\+100, the largest coordinate"):

@@ -42,12 +42,14 @@ if TYPE_CHECKING:
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
-    from vizlight._types import ColorLike, Foreign, Given, Keywords
+    from vizlight._types import ColorLike, Foreign, Given, Keywords, Raw
     from vizlight.filters.relight import Source
     from vizlight.scene.presets import AnyScene
 
 __all__ = ["Component", "add_recorded"]
 
+#: Opacity from which on colours are drawn as opaque.
+OPAQUE = 0.98
 #: Coefficients ka, kd and ks of an actor that PyVista was not told others for.
 UNTOUCHED = (0.0, 1.0, 0.0)
 #: Passes of VTK that need its own light or normals, and what they draw.
@@ -193,6 +195,8 @@ class Component:
                 _check.warn(f"the mesh has PyVista's light in place of vizlight's: {why}")
             color_rows: Foreign = scalars
             unlit: pv.Actor = plotter.add_mesh(mesh, scalars=color_rows, **drawing)
+            if isinstance(unlit, pv.Actor):
+                enlarge(unlit, plotter.renderer)
             return unlit
         if scalars is None and scene is None and not (light_options or relight.is_lit(mesh)):
             others = any(drawing.get(name) for name in ("color", "multi_colors", "texture"))
@@ -656,6 +660,10 @@ class Component:
             if (prop.ambient, prop.diffuse, prop.specular) == UNTOUCHED:
                 prop.ambient, prop.diffuse = default.ambient, default.diffuse
                 prop.specular = default.specular
+        if drawing.get("rgb") and _hides(live.drawn[drawing["scalars"]]):
+            # VTK blends colours of four channels in the order of the cells, the far ones over
+            # the near ones.
+            actor.ForceOpaqueOn()
         try:
             live.start(actor)
             live.paint(plotter.renderer, actor)
@@ -754,6 +762,13 @@ def _address(thing: vtkObject) -> str:
     return str(thing.GetAddressAsString(""))
 
 
+def _hides(colors: Raw) -> bool:
+    """Return whether colours with opacities hide what is behind them, to the eye, everywhere."""
+    if colors.ndim != 2 or colors.shape[1] != 4:
+        return False
+    return bool(np.all(colors[:, 3] >= OPAQUE * (255 if colors.dtype.kind == "u" else 1)))
+
+
 def _map_of(drawing: Keywords) -> Keywords:
     """Return the colours of values, and of missing values, by keywords."""
     ends = drawing.get("clim")
@@ -774,6 +789,7 @@ def _add_cloud(
         as_given = are_colors(values_of(mesh, scalars))
         drawing = drawing | ({"rgb": True} if as_given else _map_of(drawing))
     actor: pv.Actor = plotter.add_mesh(mesh, scalars=scalars, **drawing)
+    enlarge(actor, plotter.renderer)
     return actor
 
 

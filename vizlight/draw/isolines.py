@@ -370,13 +370,21 @@ def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
     lines = mesh.contour(np.unique(levels).tolist(), scalars=name, compute_normals=False)
     if not lines.n_lines:
         return []
-    lines = lines.strip(join=True, max_length=100_000)
-    order, ends = connectivity(lines.GetLines())
-    flat = np.asarray(lines.points, dtype=np.float64)[order, :2]
+    points = np.asarray(lines.points, dtype=np.float64)
+    pairs = connectivity(lines.GetLines())[0].reshape(-1, 2)
     # The points of a line have its level.
-    at = np.asarray(lines.point_data[name], dtype=np.float64)[order[ends[:-1]]]
-    nearest = levels[np.abs(at[:, np.newaxis] - levels).argmin(axis=1)].tolist()
-    return list(zip(np.split(flat, ends[1:-1]), nearest, strict=True))
+    at = np.asarray(lines.point_data[name], dtype=np.float64)[pairs[:, 0]]
+    nearest = np.abs(at[:, np.newaxis] - levels).argmin(axis=1)
+    pieces: Pieces = []
+    # Each level by itself: where lines break does not depend on what other levels there are.
+    for number in np.unique(nearest):
+        ids, corners = np.unique(pairs[nearest == number], return_inverse=True)
+        rows = np.insert(corners.reshape(-1, 2), 0, 2, axis=1)
+        joined = pv.PolyData(points[ids], lines=rows).strip(join=True, max_length=100_000)
+        order, ends = connectivity(joined.GetLines())
+        flat = np.asarray(joined.points, dtype=np.float64)[order, :2]
+        pieces += [(piece, float(levels[number])) for piece in np.split(flat, ends[1:-1])]
+    return pieces
 
 
 def are_smooth(

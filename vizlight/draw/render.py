@@ -26,7 +26,14 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
-from vizlight.draw.strokes import adapt, directions, enlarge, stroke_of, widen
+from vizlight.draw.strokes import (
+    adapt,
+    directions,
+    enlarge,
+    lay_on_surfaces,
+    stroke_of,
+    widen,
+)
 from vizlight.draw.visible import save_seen
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
@@ -553,6 +560,7 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
+    lay_on_surfaces(plotter.renderer)
     # PyVista would look for the component among the entry points of all packages.
     from vizlight.draw import component  # noqa: F401
 

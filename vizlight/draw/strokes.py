@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkRenderingCore import vtkMapper
 
 from vizlight import _check
 from vizlight.draw import glsl
@@ -50,6 +52,8 @@ GROUND, SAMPLES, DARKENED = "vizGround", "vizSamples", "vizDarkened"
 #: Width of a line that supersampling draws one pixel wide, as measured from pictures of lines of 1
 #: to 40 pixels: twice the size, and VTK's lines are a tenth narrower there.
 SUPERSAMPLED = 2 / 0.9
+#: Offset of surfaces behind the lines on them, in their slope and in least steps of depth.
+BEHIND = 2.0
 
 
 def stroke_of(mesh: pv.DataSet, drawing: Keywords) -> Stroke:
@@ -184,9 +188,33 @@ def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
 
 
 def enlarge(actor: vtkActor, renderer: vtkRenderer) -> None:
-    """Give VTK's own lines the width in pixels that they have once a larger picture is shrunk."""
-    prop = actor.GetProperty()
-    prop.SetLineWidth(prop.GetLineWidth() * line_samples(renderer))
+    """Give VTK's own lines and points the size that they have once a larger picture is shrunk."""
+    prop, samples = actor.GetProperty(), line_samples(renderer)
+    prop.SetLineWidth(prop.GetLineWidth() * samples)
+    prop.SetPointSize(prop.GetPointSize() * (2.0 if samples > 1 else 1.0))
+
+
+def lay_on_surfaces(renderer: vtkRenderer) -> None:
+    """Draw VTK's own lines whole on surfaces, which eat those that lie on them otherwise.
+
+    VTK has one switch for all renderers of a process: after each frame it is as it was before.
+    """
+    factor, units = reference(0.0), reference(0.0)
+    vtkMapper.GetResolveCoincidentTopologyPolygonOffsetParameters(factor, units)
+    usual = float(factor), float(units)
+    before: list[int] = []
+
+    def start(*_: object) -> None:
+        before.append(vtkMapper.GetResolveCoincidentTopology())
+        vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
+        vtkMapper.SetResolveCoincidentTopologyPolygonOffsetParameters(BEHIND, BEHIND)
+
+    def end(*_: object) -> None:
+        vtkMapper.SetResolveCoincidentTopology(before.pop())
+        vtkMapper.SetResolveCoincidentTopologyPolygonOffsetParameters(*usual)
+
+    renderer.AddObserver("StartEvent", start)
+    renderer.AddObserver("EndEvent", end)
 
 
 def line_samples(renderer: vtkRenderer) -> float:

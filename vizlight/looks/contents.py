@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
+#: Name of VTK's marks of points and cells that are not drawn.
+GHOSTS = "vtkGhostType"
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
 #: Largest share of runs of equal labels that have one row only: regions are larger than that, while
@@ -37,6 +39,8 @@ _NO_DATUM = {
     "coords", "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons",
     "lat", "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
 }  # fmt: skip
+#: Words anywhere in the names of numbers of nodes and cells, such as ``NumIdCell``.
+_NUMBERS = {"id", "ids", "gid"}
 #: Words that names of coordinates of nodes, and of tables of which belongs to which, consist of.
 _TABLE_WORDS = {
     "x", "y", "z", "lon", "lat", "node", "nodes", "nod", "cell", "cells", "face", "faces", "edge",
@@ -228,9 +232,13 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     described, texture = [], mesh.point_data.active_texture_coordinates_name
     for data, of_cells in ((mesh.point_data, False), (mesh.cell_data, True)):
         for name in data:
-            if name in outputs:
+            # A name stands for the array of points where both have it.
+            if name in outputs or (of_cells and name in mesh.point_data):
                 continue
             values = np.asarray(data[name])
+            if of_cells and GHOSTS in data:
+                # Cells that are hidden, such as those that others refine.
+                values = values[np.asarray(data[GHOSTS]) == 0]
             array = _described(name, values, of_cells=of_cells, named=True)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
@@ -293,9 +301,12 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
-    if named and (words[0] == "vtk" or (words[-1] in _NO_DATUM and not of_kinds)):
+    numbers = words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(words)
+    if named and (words[0] == "vtk" or (numbers and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):
+        return None
+    if named and words[0] == "unnamed" and np.array_equal(values, np.arange(len(values))):
         return None
     lower = name.lower()
     if are_colors(values):

@@ -19,6 +19,9 @@ GOOD = 1.5
 #: Share of the levels at either end, where values that rise ever faster are steepest, and the
 #: contrast that a level needs there.
 OUTER, STRONG = 0.1, 3.0
+#: Share of the values that are the lowest one, and its distance to the first others in that of
+#: these to the median, from which it is no value; share of this distance at which others begin.
+APART, FAR, UNBLENDED = 0.01, 2.0, 0.9
 #: Fewest cells of the sample that a level must cross.
 FEWEST = 30
 
@@ -84,7 +87,7 @@ def _cells(mesh: pv.DataSet, name: str) -> tuple[Array, Array, Array]:
     ids, starts, counts = sampled_corners(mesh)
     if not len(counts):
         return np.empty(0), np.empty(0), np.empty(0)
-    corners = values[ids]
+    corners = _measured(values)[ids]
     low, high = np.minimum.reduceat(corners, starts), np.maximum.reduceat(corners, starts)
     if isinstance(mesh, pv.ImageData):
         size = np.full(len(low), float(np.linalg.norm(mesh.spacing)))
@@ -94,6 +97,24 @@ def _cells(mesh: pv.DataSet, name: str) -> tuple[Array, Array, Array]:
         size = np.linalg.norm(box, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         return low, high, (high - low) / size
+
+
+def _measured(values: Array) -> Array:
+    """Return values, NaN where they are the lowest one, far below others, or blends with it.
+
+    Nothing was measured there: scanners fill the corners around their circle so.
+    """
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return values
+    lowest = float(finite.min())
+    others = finite[finite > lowest]
+    if not len(others) or len(others) > (1 - APART) * len(finite):
+        return values
+    first, median = np.percentile(others, (5, 50))
+    if first - lowest < FAR * (median - first):
+        return values
+    return np.where(values < lowest + UNBLENDED * (first - lowest), np.nan, values)
 
 
 def sampled_corners(mesh: pv.DataSet) -> tuple[Indices, Indices, Indices]:

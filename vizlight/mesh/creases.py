@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.vtk.cells import check_whole
+from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import creases as share_of_creases
 
@@ -56,10 +56,16 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     carried = surface.point_data.active_normals_name is not None
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
+    if not _are_wound_alike(surface):
+        # VTK takes the edge between a face and one wound the other way for a crease.
+        surface = surface.compute_normals(
+            point_normals=False, split_vertices=False, consistent_normals=True
+        )
     edges = surface.extract_feature_edges(
         SHARP, boundary_edges=False, non_manifold_edges=False, manifold_edges=False
     )
     if not edges.n_cells:
+        # Faces that are there twice have no edge between two alone.
         return pv.PolyData()
     edges = edges.connectivity("all")
     part: Indices = np.asarray(edges.point_data["RegionId"])
@@ -72,3 +78,12 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     lines = np.insert(ends, 0, 2, axis=1)
     kept: pv.PolyData = pv.PolyData(edges.points, lines=lines.ravel()).clean()
     return kept
+
+
+def _are_wound_alike(surface: pv.PolyData) -> bool:
+    """Return whether no two faces run along an edge the same way."""
+    ids, ends = connectivity(surface.GetPolys())
+    ahead = np.roll(ids, -1)
+    ahead[ends[1:] - 1] = ids[ends[:-1]]
+    ways = ids.astype(np.int64) * surface.n_points + ahead
+    return len(np.unique(ways)) == len(ways)

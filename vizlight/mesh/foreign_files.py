@@ -251,6 +251,9 @@ def _of_meshio(path: Path) -> pv.DataSet:
         short_files.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
+    for name in data.point_data.keys() & data.cell_data.keys():
+        # A name stands for one array, and those of cells are the materials.
+        data.point_data[f"{name} of points"] = data.point_data.pop(name)
     try:
         mesh = pv.from_meshio(data)
     except KeyError as error:

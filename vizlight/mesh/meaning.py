@@ -514,8 +514,18 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 
 #: Names of degrees Celsius, in lower case and in the singular.
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
+#: Symbols of units that are written out, and of their prefixes.
+_PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
+_SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}
+_WRITTEN_OUT = re.compile("(kilo|hecto|centi|milli)?(meter|metre|second|gram|pascal|kelvin)s?")
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
+
+
+def _symbol(name: str) -> str:
+    """Return the symbol of a unit that is written out, such as cm for centimeters."""
+    found = _WRITTEN_OUT.fullmatch(name.lower())
+    return _PREFIXES[found[1] or ""] + _SYMBOLS[found[2]] if found is not None else name
 
 
 def written(unit: str) -> str:
@@ -528,8 +538,10 @@ def written(unit: str) -> str:
     """
     if unit.lower().replace("degrees", "degree") in _CELSIUS:
         return "°C"
+    if "/" in unit and not re.search(r"[\s()*^.\d]", unit):
+        return "/".join(map(_symbol, unit.split("/")))
     factors = [_FACTOR.fullmatch(word) for word in unit.split()]
-    known = [(found[1], int(found[2] or 1)) for found in factors if found is not None]
+    known = [(_symbol(found[1]), int(found[2] or 1)) for found in factors if found is not None]
     below = [name + " ²³"[-power - 1].strip() for name, power in known if power < 0]
     above = [name + " ²³"[power - 1].strip() for name, power in known if power > 0]
     # Without a factor above or with several below no shorter form is usual.

@@ -39,12 +39,14 @@ _KEYWORDS = {
 _WRITTEN = ("crs_wkt", "spatial_ref", "proj4", "proj4_params", "proj4text")
 #: Keywords of the projections on the sphere that need no PROJ.
 _ON_SPHERE = {"lcc", "stere", "ob_tran", "eqc", "eqearth"}
-_OF_ELLIPSOIDS = {"a", "b", "rf", "ellps", "datum", "k", "k_0", "lat_ts"}
+#: Their keywords with numbers, and those that say what is usual. With any other PROJ is needed.
+_OF_SPHERE = {"R", "lat_0", "lat_1", "lat_2", "lat_ts", "lon_0", "o_lat_p", "o_lon_p"}
+_USUAL = {"no_defs", "type=crs", "units=m", "wktext", "x_0=0", "y_0=0"}
 #: Share of the latitudes of a map from its sides to the two parallels that are true to scale.
 _INNER = 1 / 6
 #: Extents in degrees: of a map that is taken for flat, of one that a cone can hold, and of one
 #: around the earth; latitudes of a map's middle, and of its end, from which on it is drawn so.
-SMALL, WIDE, AROUND, MIDDLE, POLAR = 5.0, 150.0, 340.0, 25.0, 15.0
+SMALL, WIDE, AROUND, MIDDLE, POLAR = 5.0, 185.0, 340.0, 25.0, 15.0
 #: Coefficients of the Equal Earth projection, and steps of its inverse.
 EQUAL_EARTH, NEWTON = np.array([1.340264, -0.081106, 0.000893, 0.003796]), 12
 
@@ -74,11 +76,12 @@ def of_text(text: str) -> Projection | None:
     text : str
         Keywords of PROJ, or a reference system that rasterio reads, such as its WKT.
     """
-    words = dict(part.lstrip("+").partition("=")[::2] for part in text.split())
+    parts = [part.lstrip("+") for part in text.split()]
+    words = dict(part.partition("=")[::2] for part in parts if part not in _USUAL)
     kind = words.get("proj", "")
-    if kind not in _ON_SPHERE or _OF_ELLIPSOIDS & {*words} - {"lat_ts"}:
+    if kind not in _ON_SPHERE or {*words} - _OF_SPHERE - {"proj", "o_proj"}:
         return _by_proj(text)
-    numbers = {key: float(word) for key, word in words.items() if key not in ("proj", "o_proj")}
+    numbers = {key: float(word) for key, word in words.items() if key in _OF_SPHERE}
     middle = (math.radians(numbers.get("lon_0", 0.0)), math.radians(numbers.get("lat_0", 0.0)))
     radius = numbers.get("R", RADIUS)
     if kind == "eqc":

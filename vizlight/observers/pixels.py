@@ -17,6 +17,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
+from vizlight.draw.strokes import lay_on_surfaces
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
 
 #: Bits of the three channels.
 BITS = 24
-#: Offset by which surfaces stand behind the lines on them, in units of the depth buffer.
-BEHIND = 2.0
 
 
 class Cells(NamedTuple):
@@ -157,6 +156,7 @@ def visible(
     renderer = vtkRenderer()
     renderer.SetActiveCamera(camera)
     window.AddRenderer(renderer)
+    lay_on_surfaces(renderer)
     number = np.zeros((height, width), dtype=np.int64)
     # A picture has 24 bits of a cell's number; more cells take more pictures.
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
@@ -236,9 +236,6 @@ def _actor(
     mapper.SetInputData(data)
     mapper.SetScalarModeToUseCellData()
     mapper.SetColorModeToDirectScalars()
-    # A line on a surface is seen whole.
-    mapper.SetResolveCoincidentTopologyToPolygonOffset()
-    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(BEHIND, BEHIND)
     actor = vtkActor()
     actor.SetMapper(mapper)
     style = actor.GetProperty()

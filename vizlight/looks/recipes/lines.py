@@ -35,6 +35,12 @@ POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
 #: looked for.
 TOUCHING, MOST_ASKED = 1.6, 2000
+#: Size of the points of a surface in their distance, and the largest one in pixels; most points for
+#: which it is looked for, and ratios of the distances of the 16th and the 4th neighbour on a
+#: surface: it is 2 on a plane, 1.6 in a volume, 4 on a line.
+CLOSED, LARGEST, MOST_CLOSED, ON_SURFACE = 1.3, 24.0, 300_000, (1.75, 2.6)
+#: The two neighbours, each point being its own first one.
+NEIGHBOURS = (5, 17)
 #: Length of arrows as a share of the size of the data, and their form.
 LONG_ARROW = 0.03
 ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
@@ -130,7 +136,12 @@ def points(case: Case) -> Drawing:
     if case.contents.flat_axis is not None:
         # Those of a map fill it where they are even.
         size = max(size, TOUCHING * _apart(mesh.run()) / pixel_of(case, camera))
-    size = round(float(np.clip(size, *POINT_SIZES)), 1)
+    size = float(np.clip(size, *POINT_SIZES))
+    if case.contents.flat_axis is None and mesh.run().n_points <= MOST_CLOSED:
+        # Those of a surface close it.
+        closed = CLOSED * _apart_on_surface(mesh.run()) / pixel_of(case, camera)
+        size = max(size, min(closed, LARGEST))
+    size = round(size, 1)
     drawn: Keywords = {"point_size": size}
     # Small balls of a map leave gaps between them, which squares do not.
     drawn["render_points_as_spheres"] = case.contents.flat_axis is None or size > SMALL_BALL
@@ -203,6 +214,20 @@ def _apart(mesh: pv.DataSet) -> float:
     nearest = float(np.median(distances[:, 1]))
     sides = np.sort(np.ptp(points, axis=0))[1:]
     return min(2 * nearest, float(np.sqrt(sides.prod() / len(points))))
+
+
+def _apart_on_surface(mesh: pv.DataSet) -> float:
+    """Return the distance of points that lie on a surface in space, 0 for others."""
+    points: Array = np.asarray(mesh.points, dtype=np.float64)
+    points = np.unique(points[np.isfinite(points).all(axis=1)], axis=0)
+    if len(points) <= NEIGHBOURS[1]:
+        return 0.0
+    some = points[:: max(len(points) // MOST_ASKED, 1)]
+    distances: Array = np.asarray(scipy.spatial.cKDTree(points).query(some, k=[*NEIGHBOURS])[0])
+    near, far = np.median(distances, axis=0).tolist()
+    on_surface = ON_SURFACE[0] * near < far < ON_SURFACE[1] * near
+    # As many points are on a disc of this radius.
+    return float(far * np.sqrt(np.pi / NEIGHBOURS[1])) if on_surface else 0.0
 
 
 def _by_direction(lit: Step) -> Step:

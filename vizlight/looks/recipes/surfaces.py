@@ -41,6 +41,8 @@ def values(case: Case) -> Drawing:
     """Draw a sheet or a surface in the colours of values, with their bar."""
     array = case.needed_array
     mesh = smooth = _of_labels(case, array) if array.role == "kinds" else None
+    # The edges of an image are those of its box.
+    edges = case if smooth is None else replace(case, data=smooth)
     if mesh is None:
         mesh = _by_corner(case, array) if array.role == "kinds" else case.surface
     if array.role == "kinds" and case.contents.dimension == 3:
@@ -84,7 +86,7 @@ def values(case: Case) -> Drawing:
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
     if sides is None:
-        layers = [Layer(mesh, shown), *case.edges(camera)]
+        layers = [Layer(mesh, shown), *edges.edges(camera)]
     else:
         layers = [*(Layer(side, shown) for side in sides.layers()), case.words(names)]
     return Drawing(

@@ -60,7 +60,7 @@ def isosurface(case: Case) -> Drawing:
     around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
     if around and wishes.view is None and wishes.frame is None:
         eye = eye_around(mesh.run())
-        frame = wishes.camera(box, eye, boxed=not notes)
+        frame = wishes.camera(mesh if notes else box, eye, boxed=not notes)
         wishes = replace(wishes, frame=frame)
     words = f"isosurface {array.name} = {levels.number(level)}"
     second = _second(case, mesh.run())
