@@ -178,3 +178,9 @@ def test_a_name_stands_for_one_array():
     grid = pv.ImageData(dimensions=(4, 4, 1))
     grid.point_data["ref"], grid.cell_data["ref"] = np.arange(16.0) / 3, np.arange(9) % 3
     assert [(array.name, array.of_cells) for array in Contents(grid).arrays] == [("ref", False)]
+
+
+def test_lines_in_a_plane_are_flat():
+    flat = pv.MultipleLines([[0.0, 0, 2], [1, 0, 2], [1, 3, 2]])
+    assert Contents(flat).flat_axis == 2
+    assert Contents(pv.MultipleLines([[0.0, 0, 2], [1, 0, 2], [1, 3, 4]])).flat_axis is None

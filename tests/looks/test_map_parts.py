@@ -9,6 +9,7 @@ import pyvista as pv
 import vizlight
 from vizlight.draw.cameras import MARGIN
 from vizlight.draw.margins import LETTERS
+from vizlight.looks.recipes import reliefs
 from vizlight.mesh import meaning
 
 SIZE = (300, 200)
@@ -258,6 +259,13 @@ def test_the_title_says_what_a_value_sums_up_in_time(methods, span, words):
     meaning.attach(mesh, said)
     mesh.field_data["TimeValue"] = [48.0]
     assert vizlight.look(mesh).drawing.keys[0]["title"].startswith(words)
+
+
+def test_a_relief_of_the_whole_earth_has_a_sky_where_it_has_few_points(monkeypatch):
+    world = chart(360, 170, -180, -85, name="elevation")
+    assert vizlight.look(world, size=SIZE).drawing.lit.keywords["occlusion"] == "sky"
+    monkeypatch.setattr(reliefs, "MOST_WIDE", 300)
+    assert "occlusion" not in vizlight.look(world, size=SIZE).drawing.lit.keywords
 
 
 @pytest.mark.slow

@@ -766,7 +766,8 @@ def _hides(colors: Raw) -> bool:
     """Return whether colours with opacities hide what is behind them, to the eye, everywhere."""
     if colors.ndim != 2 or colors.shape[1] != 4:
         return False
-    return bool(np.all(colors[:, 3] >= OPAQUE * (255 if colors.dtype.kind == "u" else 1)))
+    opacity = np.asarray(colors[:, 3], dtype=np.float64)
+    return bool(np.all(opacity >= OPAQUE * (255 if colors.dtype.kind == "u" else 1)))
 
 
 def _map_of(drawing: Keywords) -> Keywords:

@@ -194,24 +194,24 @@ def enlarge(actor: vtkActor, renderer: vtkRenderer) -> None:
     prop.SetPointSize(prop.GetPointSize() * (2.0 if samples > 1 else 1.0))
 
 
-def lay_on_surfaces(renderer: vtkRenderer) -> None:
+def lay_on_surfaces(renderer: Foreign) -> None:
     """Draw VTK's own lines whole on surfaces, which eat those that lie on them otherwise.
 
     VTK has one switch for all renderers of a process: after each frame it is as it was before.
     """
-    factor, units = reference(0.0), reference(0.0)
-    vtkMapper.GetResolveCoincidentTopologyPolygonOffsetParameters(factor, units)
-    usual = float(factor), float(units)
+    mappers: Foreign = vtkMapper
+    usual: tuple[Foreign, Foreign] = reference(0.0), reference(0.0)
+    mappers.GetResolveCoincidentTopologyPolygonOffsetParameters(*usual)
     before: list[int] = []
 
     def start(*_: object) -> None:
-        before.append(vtkMapper.GetResolveCoincidentTopology())
-        vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
-        vtkMapper.SetResolveCoincidentTopologyPolygonOffsetParameters(BEHIND, BEHIND)
+        before.append(mappers.GetResolveCoincidentTopology())
+        mappers.SetResolveCoincidentTopologyToPolygonOffset()
+        mappers.SetResolveCoincidentTopologyPolygonOffsetParameters(BEHIND, BEHIND)
 
     def end(*_: object) -> None:
-        vtkMapper.SetResolveCoincidentTopology(before.pop())
-        vtkMapper.SetResolveCoincidentTopologyPolygonOffsetParameters(*usual)
+        mappers.SetResolveCoincidentTopology(before.pop())
+        mappers.SetResolveCoincidentTopologyPolygonOffsetParameters(*map(float, usual))
 
     renderer.AddObserver("StartEvent", start)
     renderer.AddObserver("EndEvent", end)

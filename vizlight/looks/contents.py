@@ -149,11 +149,11 @@ class Contents:
 
     @cached_property
     def flat_axis(self) -> int | None:
-        """Axis across which points, a surface or a slab have no extent, None for others.
+        """Axis across which points, lines, a surface or a slab have no extent, None for others.
 
         A slab of one layer of cells, as of a flow in two dimensions, may be thicker.
         """
-        share = {0: FLAT, 2: FLAT, 3: LAYER}.get(self.dimension, -1.0)
+        share = LAYER if self.dimension == 3 else FLAT
         thin = np.flatnonzero(self.sides <= share * np.sort(self.sides)[1])
         if not len(thin):
             return None

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 
 #: Eye above a map.
 ABOVE = Viewpoint((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
-#: Points above which a relief has no sky, which would take longer than all the rest.
-MOST_SKY = 250_000
+#: Points above which a relief has no sky, which would take longer than all the rest, and those of a
+#: map so wide that each row has metres of its own, which take eight times as long.
+MOST_SKY, MOST_WIDE = 250_000, 30_000
 
 
 def relief(case: Case) -> Drawing:
@@ -40,7 +41,8 @@ def relief(case: Case) -> Drawing:
     if isinstance(straight.run(), pv.StructuredGrid) and "raster" not in keywords:
         # Rows and columns that are not at right angles are sampled on an even grid.
         keywords["raster"] = 0.0
-    if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= MOST_SKY:
+    most = MOST_SKY if straight is data else MOST_WIDE
+    if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= most:
         keywords["occlusion"] = "sky"
     lit = case.wishes.step("lit", "relief_shadow", straight, scene, **keywords)
     notes = [note] if note else []
