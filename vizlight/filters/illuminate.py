@@ -190,14 +190,16 @@ def light_mesh(
     inplace: bool = False,
     progress_bar: bool = False,
     told: Told | None = None,
+    known: Sided | None = None,
 ) -> MeshT:
     """Light a mesh by options that are checked; see :func:`illuminate`.
 
-    ``told`` is what the whole decides of its sides, where the mesh is a part of one.
+    ``told`` is what the whole decides of its sides, where the mesh is a part of one, and ``known``
+    are the normals of a dataset that were computed already.
     """
     scene = as_scene(scene)
     inplace = _check.boolean("inplace", inplace)
-    taken, parts = parts_of(mesh, scene, options, told, joined=True)
+    taken, parts = parts_of(mesh, scene, options, told, known, joined=True)
     return light_parts(
         mesh, taken, parts, scene, options, inplace=inplace, progress_bar=progress_bar
     )
@@ -208,6 +210,7 @@ def parts_of(
     scene: Scene,
     options: LightOptions,
     told: Told | None = None,
+    known: Sided | None = None,
     *,
     joined: bool = False,
 ) -> tuple[list[pv.DataSet], list[Part]]:
@@ -228,12 +231,12 @@ def parts_of(
     # another.
     taken = with_sky(own, options.occlusion, finer=options.feature_angle is not None)
     # Where the sky asked for smaller triangles, their points have normals of their own.
-    known = [
-        sided if one.n_points == other.n_points else None
+    known_of = [
+        sided or known if one.n_points == other.n_points else None
         for (one, sided), other in zip(split, taken, strict=True)
     ]
     paths = [path for _, path in named]
-    parts = lighting.parts_of(taken, paths, scene, options, known, told, joined=joined)
+    parts = lighting.parts_of(taken, paths, scene, options, known_of, told, joined=joined)
     _tell_of_averages(named, options)
     return taken, parts
 

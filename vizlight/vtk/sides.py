@@ -9,12 +9,12 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.corners import crease_share
-from vizlight.vtk.normals import Told, facing_of, given_normals, wound_normals
+from vizlight.vtk.normals import Sided, Told, facing_of, given_normals, wound_normals
 from vizlight.vtk.orientation import middles, sides_of
 from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -67,12 +67,45 @@ class PartFacts(NamedTuple):
     edges: Indices
 
 
+class Undecided(NamedTuple):
+    """Normals of the points that a part owns, whose sides the whole has yet to decide.
+
+    Attributes
+    ----------
+    vectors, lean : ndarray, shape (n_points, 3) and (n_points,)
+        See :class:`.normals.Sided`.
+    piece : ndarray of int, shape (n_points,)
+        Piece of each point.
+    sharp : float
+        Share of edges that are creases.
+    """
+
+    vectors: Array
+    lean: Array
+    piece: Indices
+    sharp: float
+
+    def decided(self, told: Told) -> Sided:
+        """Return the normals on the sides that the whole has decided."""
+        sign = told.sign[self.piece].astype(np.float32)
+        return Sided(
+            self.vectors * sign[:, np.newaxis], self.lean * sign, told.number[self.piece],
+            float(self.sharp), kept=True, computed=True, averted=told.averted,
+        )  # fmt: skip
+
+
 def side_of(ghosts: Array) -> NDArray[np.int8]:
     """Return :attr:`.orientation.SurfaceShape.side` of a part with ``ghosts`` of :func:`look`."""
     return np.where(ghosts < 1, 0, -1).astype(np.int8)
 
 
-def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> PartFacts | None:
+def look(
+    mesh: Dataset,
+    ghosts: Array,
+    value: object,
+    view: View | None,
+    keep: Callable[[Undecided], None] | None = None,
+) -> PartFacts | None:
     """Return the facts of a part of a surface, None where it has no surface.
 
     Parameters
@@ -85,12 +118,19 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Part
         Name of normals; with such, or with normals that the mesh has, the surface is one piece.
     view : View or None
         Eye that sees it.
+    keep : callable, optional
+        Function that takes the normals of a surface, which come before the points of other parts.
     """
     vectors_in = given_normals(mesh, value, 3)
     wound = wound_normals(mesh, side=side_of(ghosts))
     if wound is None:
         return None
-    shape, vectors, _, origin = wound
+    shape, vectors, first, origin = wound
+    if keep is not None:
+        own = slice(int(np.flatnonzero(ghosts < 1)[-1]) + 1)
+        lean = shape.survey(vectors)[1]
+        lean = lean if first is None else lean[first]
+        keep(Undecided(vectors[own], lean[own], shape.piece[own], float(crease_share(shape.edges))))
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
     if vectors_in is not None:
