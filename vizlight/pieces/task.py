@@ -233,12 +233,13 @@ def _kept(piece: Piece, target: Path, whole_sides: Told | None) -> tuple[pv.Data
     path = _kept_beside(target)
     if whole_sides is None or not path.exists():
         return None
-    with np.load(path) as arrays:
-        found = sides.Undecided(**arrays)
     mesh = _read(piece, 0)
+    with np.load(path) as arrays:
+        found = sides.Undecided(**arrays).decided(whole_sides)
+    # Those of other pieces come last.
+    found = found.at(np.arange(mesh.n_points))
     # Points that no cell has would be cut off with the cells of other pieces.
-    whole = len(found.vectors) == mesh.n_points and found.vectors.any(axis=1).all()
-    return (mesh, found.decided(whole_sides)) if whole else None
+    return (mesh, found) if found.vectors.any(axis=1).all() else None
 
 
 def _others(mesh: pv.DataSet) -> Array:

@@ -68,7 +68,7 @@ class PartFacts(NamedTuple):
 
 
 class Undecided(NamedTuple):
-    """Normals of the points that a part owns, whose sides the whole has yet to decide.
+    """Normals of a part, whose sides the whole has yet to decide.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ def look(
     view : View or None
         Eye that sees it.
     keep : callable, optional
-        Function that takes the normals of a surface, which come before the points of other parts.
+        Function that takes the normals of a surface.
     """
     vectors_in = given_normals(mesh, value, 3)
     wound = wound_normals(mesh, side=side_of(ghosts))
@@ -127,10 +127,9 @@ def look(
         return None
     shape, vectors, first, origin = wound
     if keep is not None:
-        own = slice(int(np.flatnonzero(ghosts < 1)[-1]) + 1)
         lean = shape.survey(vectors)[1]
         lean = lean if first is None else lean[first]
-        keep(Undecided(vectors[own], lean[own], shape.piece[own], float(crease_share(shape.edges))))
+        keep(Undecided(vectors, lean, shape.piece, float(crease_share(shape.edges))))
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
     if vectors_in is not None:
