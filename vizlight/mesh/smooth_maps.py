@@ -92,7 +92,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
 def _finer(rows: Array, factor: int) -> Array:
     """Return rows of a table with others between them, on the cubic polynomials of each column.
 
-    As ``scipy.interpolate.PchipInterpolator`` of equal steps, whose import takes longer than a map.
+    As ``scipy.interpolate.PchipInterpolator`` of equal steps; to import it takes longer than a map.
     """
     step = np.diff(rows, axis=0)
     slope = np.empty_like(rows)

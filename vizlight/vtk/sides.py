@@ -68,7 +68,7 @@ class PartFacts(NamedTuple):
 
 
 class Undecided(NamedTuple):
-    """Normals of a part, whose sides the whole has yet to decide.
+    """Normals of a part on sides that the whole has yet to decide.
 
     Attributes
     ----------
