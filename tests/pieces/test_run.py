@@ -9,6 +9,9 @@ from refusals import refusals
 
 import vizlight
 from vizlight import DepthCue, Light, Scene, View, pieces, render
+from vizlight.pieces.sources import FilePiece
+from vizlight.vtk import normals as of_normals
+from vizlight.vtk import sides
 
 SCENE = Scene(
     lights=[Light(direction=(1, 0.5, 2)), Light(position=(9, 9, 9))],
@@ -220,6 +223,34 @@ def test_nearly_half_a_ball_in_pieces_is_a_height_field_as_the_whole(tmp_path, a
         if axis == "oblique":
             labels = whole.cell_centers().points[:, 0] > 2
         assert_alike(tmp_path / str(i), whole, labels, View(direction=(0.9, 0.3, -0.2)))
+
+
+def test_normals_of_a_piece_are_computed_once_and_its_neighbours_read_once(
+    tmp_path, light, monkeypatch
+):
+    ball = pv.Sphere(theta_resolution=12, phi_resolution=12)
+    ball.clear_data()
+    folder = tmp_path / "ball"
+    cut(ball, folder, np.digitize(ball.cell_centers().points[:, 0], [-0.2, 0.2]), "vtp")
+    computed, ghosts = [], []
+    wound, read = sides.wound_normals, FilePiece.read
+
+    def counted(*args, **kwargs):
+        computed.append(args)
+        return wound(*args, **kwargs)
+
+    def noted(piece, ghost):
+        ghosts.append(ghost)
+        return read(piece, ghost)
+
+    for module in (sides, of_normals):
+        monkeypatch.setattr(module, "wound_normals", counted)
+    monkeypatch.setattr(FilePiece, "read", noted)
+    lit = light(str(folder / "*.vtp"), PLAIN, feature_angle=None)
+    assert len(computed) == len(lit.files) == 3
+    # For its box, for the vote and for its light, of which the vote alone asks for other pieces.
+    assert ghosts == [0] * 3 + [1] * 3 + [0] * 3
+    assert_as_whole(lit, vizlight.illuminate(ball, PLAIN))
 
 
 def test_a_piece_of_lines_beside_one_of_faces_is_named(tmp_path, light):

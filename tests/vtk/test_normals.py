@@ -29,6 +29,34 @@ def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
             np.testing.assert_allclose(up, side)
 
 
+@pytest.mark.parametrize("axis", [(0, 0, 1), (-1, 0, 0), (0, 1, 0)])
+@pytest.mark.parametrize("case", ["map", "triangles", "folded", "wound"])
+def test_maps_have_the_normals_that_a_search_finds(axis, case, monkeypatch):
+    sheet = pv.Plane(direction=axis, i_resolution=4, j_resolution=3)
+    sheet.clear_data()
+    sheet = sheet if case == "map" else sheet.triangulate()
+    if case == "folded":
+        points = np.array(sheet.points)
+        points[0] += 1.5 * (points[6] - points[0])
+        sheet.points = points
+    if case == "wound":
+        faces = sheet.regular_faces
+        faces[3] = faces[3, ::-1]
+        sheet = pv.PolyData.from_regular_faces(sheet.points, faces)
+    sheet.points = np.vstack([sheet.points, sheet.points[:1]])
+    quick = normals.computed_normals(sheet)
+    is_map = normals.normal_of_map(sheet) is not None
+    assert is_map == (case in ("map", "triangles"))
+    # Other points, as results are kept.
+    monkeypatch.setattr(normals, "normal_of_map", lambda _: None)
+    searched = normals.computed_normals(pv.PolyData(np.asarray(sheet.points) * 2, sheet.faces))
+    np.testing.assert_array_equal(quick.vectors, searched.vectors)
+    np.testing.assert_array_equal(quick.lean, searched.lean)
+    used = quick.vectors.any(axis=1)
+    np.testing.assert_array_equal(np.asarray(quick.open)[used], np.asarray(searched.open)[used])
+    assert quick.sharp == searched.sharp
+
+
 def test_a_bowl_faces_the_eye_that_looks_into_it():
     bowl = pv.Sphere(end_phi=90, theta_resolution=40, phi_resolution=40)
     bowl.clear_data()

@@ -15,7 +15,7 @@ from vizlight.mesh import blocks, bundles, normals, refining
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
 from vizlight.shading.options import Bundle, LightOptions
-from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.arrays import is_of_cells, points_of
 from vizlight.vtk.parts import Part, uses_normals
 
 if TYPE_CHECKING:
@@ -190,14 +190,16 @@ def light_mesh(
     inplace: bool = False,
     progress_bar: bool = False,
     told: Told | None = None,
+    known: Sided | None = None,
 ) -> MeshT:
     """Light a mesh by options that are checked; see :func:`illuminate`.
 
-    ``told`` is what the whole decides of its sides, where the mesh is a part of one.
+    ``told`` is what the whole decides of its sides, where the mesh is a part of one, and ``known``
+    are the normals of a dataset that were computed already.
     """
     scene = as_scene(scene)
     inplace = _check.boolean("inplace", inplace)
-    taken, parts = parts_of(mesh, scene, options, told, joined=True)
+    taken, parts = parts_of(mesh, scene, options, told, known, joined=True)
     return light_parts(
         mesh, taken, parts, scene, options, inplace=inplace, progress_bar=progress_bar
     )
@@ -208,6 +210,7 @@ def parts_of(
     scene: Scene,
     options: LightOptions,
     told: Told | None = None,
+    known: Sided | None = None,
     *,
     joined: bool = False,
 ) -> tuple[list[pv.DataSet], list[Part]]:
@@ -228,12 +231,12 @@ def parts_of(
     # another.
     taken = with_sky(own, options.occlusion, finer=options.feature_angle is not None)
     # Where the sky asked for smaller triangles, their points have normals of their own.
-    known = [
-        sided if one.n_points == other.n_points else None
+    known_of = [
+        sided or known if one.n_points == other.n_points else None
         for (one, sided), other in zip(split, taken, strict=True)
     ]
     paths = [path for _, path in named]
-    parts = lighting.parts_of(taken, paths, scene, options, known, told, joined=joined)
+    parts = lighting.parts_of(taken, paths, scene, options, known_of, told, joined=joined)
     _tell_of_averages(named, options)
     return taken, parts
 
@@ -271,6 +274,7 @@ def light_parts(
     # need.
     of_number = dict(pair for part in parts for pair in normals.to_keep(taken, part))
     sides = [of_number[i] for i in range(len(taken))]
+    rounded = max((_rounding(taken, part, options) for part in parts), default=0.0)
     inside = sum(int(np.sum(part.sided.inside)) for part in parts if part.sided is not None)
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     inputs.clear()
@@ -284,6 +288,7 @@ def light_parts(
     lighting.finish(
         lit, shadings, "illuminate", fitted, options, options.name, inside=inside, dimmings=dimmings
     )
+    normals.warn_of_rounding(rounded)
     _warn_of_normals(lit, sides, options)
     return out
 
@@ -328,17 +333,25 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataS
     return normals.split_or_normals(mesh, angle)
 
 
+def _rounding(meshes: Sequence[pv.DataSet], part: Part, options: LightOptions) -> float:
+    """Return the rounding of the points from which the normals of a part are computed."""
+    if part.sided is None or not part.sided.computed:
+        return 0.0
+    if options.positions is None:
+        return normals.rounding(part.inputs.points, part.ends)
+    return max(normals.rounding(points_of(meshes[i], None)) for i in part.numbers)
+
+
 def _warn_of_normals(
     meshes: Sequence[pv.DataSet], sides: Sequence[Sided | None], options: LightOptions
 ) -> None:
-    """Warn if normals were averaged across many sharp edges, or come from rounded places."""
+    """Warn if normals were averaged across many sharp edges, or do not fit the faces."""
     known = [(mesh, own) for mesh, own in zip(meshes, sides, strict=True) if own is not None]
     # With an angle the sharp edges are split already, and nothing is averaged across them.
     if options.feature_angle is None:
         splits = all(isinstance(mesh, pv.PolyData) for mesh in meshes)
         sharp = max((float(own.sharp) for _, own in known), default=0.0)
         normals.warn_of_edges(sharp, splits)
-    normals.warn_of_rounding([mesh for mesh, own in known if own.computed])
     # Normals may belong to positions in n-space, and faces in 3-space say nothing of those.
     if options.positions is None:
         given = [mesh for mesh, own in known if not own.computed]

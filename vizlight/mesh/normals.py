@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import VTK_FLOAT
-from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from vizlight import _check
 from vizlight.geometry.lines.simplices import Simplices
@@ -30,7 +28,6 @@ from vizlight.vtk.cells import (
     point_data,
     renumber_corners,
     triangles,
-    vtk_points,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
 from vizlight.vtk.normals import (
@@ -50,6 +47,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Indices, Raw
     from vizlight.scene import Scene
+    from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import FeatureAngle, LightOptions
     from vizlight.vtk.parts import Part
 
@@ -132,9 +130,8 @@ def warn_of_edges(share: float, splits: bool) -> None:
         )
 
 
-def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
+def warn_of_rounding(worst: float) -> None:
     """Warn if float32 points so far from the origin are rounded that computed normals suffer."""
-    worst = _rounding(meshes)
     if worst > ROUNDED:
         _check.warn(
             f"the float32 points lie so far from the origin that they are rounded to {worst:.0%} "
@@ -143,25 +140,25 @@ def warn_of_rounding(meshes: Sequence[pv.DataSet]) -> None:
         )
 
 
-def _rounding(meshes: Sequence[pv.DataSet]) -> float:
-    """Return the largest rounding of float32 points, as a share of the spacing between them."""
-    float32 = [
-        mesh
-        for mesh in meshes
-        if isinstance(mesh, pv.PointSet | pv.PolyData)
-        and n_points(mesh)
-        and vtk_points(mesh).GetDataType() == VTK_FLOAT
-    ]
-    bounds = np.array([vtkDataSet.GetBounds(mesh) for mesh in float32]).reshape(-1, 3, 2)
-    with np.errstate(all="ignore"):
-        side, far = np.max(bounds[..., 1] - bounds[..., 0], axis=1), np.abs(bounds).max(axis=(1, 2))
-    # Points that are not finite are left out one mesh at a time.
-    for i in np.flatnonzero(~(np.isfinite(far) & (side > 0))):
-        middle, side[i] = blocks.box(float32[i])
-        far[i] = np.abs(middle).max() + side[i] / 2
+def rounding(points: ArraySource, ends: Sequence[int] | Indices = ()) -> float:
+    """Return the largest rounding of float32 points, as a share of the spacing between them.
+
+    ``ends`` are the first point of each of several meshes, and the end of the last.
+    """
+    if not isinstance(points, np.ndarray) or points.dtype != np.float32 or not points.size:
+        return 0.0
+    ends = np.asarray(ends if len(ends) else (0, len(points)))
+    # VTK takes as long for the bounds of a small mesh as the light of its points does.
+    low = np.fmin.reduceat(points, ends[:-1]).astype(np.float64)
+    high = np.fmax.reduceat(points, ends[:-1]).astype(np.float64)
+    for i in np.flatnonzero(~np.isfinite(low).all(axis=1) | ~np.isfinite(high).all(axis=1)):
+        finite = points[slice(*ends[i : i + 2])]
+        finite = finite[np.isfinite(finite).all(axis=1)]
+        low[i], high[i] = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else (0, 0)
+    side, far = np.max(high - low, axis=1), np.maximum(-low, high).max(axis=1)
     # Distance of neighbouring float32 numbers there, against the mean spacing of points on a
-    # surface.
-    spacing = side / np.sqrt([n_points(mesh) for mesh in float32])
+    # surface; one of no size has none.
+    spacing = np.where(side > 0, side, 1.0) / np.sqrt(np.diff(ends))
     return float(np.max(np.spacing(far.astype(np.float32)) / spacing, initial=0.0))
 
 
@@ -189,7 +186,7 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: Fe
         # On a coarse mesh of a smooth shape they lean too, but no edge of it is a crease; the faces
         # of points that are rounded are none of theirs.
         split = isinstance(angle, float | int)
-        if leaning > MANY_SHARP and not split and _rounding([mesh]) <= ROUNDED:
+        if leaning > MANY_SHARP and not split and rounding(places(mesh)) <= ROUNDED:
             sharp = max(sharp, creases(mesh, has_normals=True))
     # A coarse mesh of a smooth shape has sharp edges too, but fewer.
     if sharp > SMEARED:

@@ -212,10 +212,11 @@ def refuse_overwriting(
 ) -> None:
     """Raise ValueError if a point array that vizlight did not make would be replaced."""
     for mesh, _ in named:
-        ours = made(mesh, name)
         data = point_data(mesh)
-        for array in arrays:
-            if data.HasArray(array) and array not in ours:
+        there = [array for array in arrays if data.HasArray(array)]
+        ours = made(mesh, name) if there else ()
+        for array in there:
+            if array not in ours:
                 expected = "one under which the mesh has no array of its own"
                 # An array by vizlight that was edited later is the user's own, as the message says.
                 edited = array in (read(mesh, name) or {}).get("arrays", {})

@@ -214,7 +214,7 @@ def light(
         targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
         outputs = [folder / f"{target.name}{job.suffix}" for target in targets]
         _spare_sources(parts, path, outputs)
-        job, whole_sides = _with_sides(parts, job, work)
+        job, whole_sides = _with_sides(parts, job, targets, work)
         calls = [*zip(parts, [job] * len(parts), targets, whole_sides, strict=True)]
         done: list[PieceSummary] = []
         with report.workers(lambda: sum(facts.points for facts in done)):
@@ -324,7 +324,9 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
         raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
 
 
-def _with_sides(parts: list[Piece], job: Job, work: RetryingMap) -> tuple[Job, list[Told | None]]:
+def _with_sides(
+    parts: list[Piece], job: Job, targets: Sequence[Path], work: RetryingMap
+) -> tuple[Job, list[Told | None]]:
     """Return the job, and the sides of each piece where all pieces together decide them."""
     light_options = LightOptions.of(job.options)
     decisions: list[Told | None] = [None] * len(parts)
@@ -334,7 +336,8 @@ def _with_sides(parts: list[Piece], job: Job, work: RetryingMap) -> tuple[Job, l
     # Pieces lit by tangents alone have no sides.
     if light_options.tangents is not None and light_options.conditioned is not True:
         return job, decisions
-    answers = work.each(task.look, [(piece, job) for piece in parts], "sides")
+    calls = [(piece, job, target) for piece, target in zip(parts, targets, strict=True)]
+    answers = work.each(task.look, calls, "sides")
     looks = {i: look for i, look in enumerate(answers) if look is not None}
     if sharp:
         # The angle is one for all pieces: their common borders would not fit if some were split

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Given
     from vizlight.pieces.sources import Piece
-    from vizlight.vtk.normals import Told
+    from vizlight.vtk.normals import Sided, Told
 
 T = TypeVar("T")
 
@@ -187,15 +187,59 @@ def _tried(piece: Piece, reader: Callable[[], T]) -> T | None:
         raise PieceError(f"piece {piece.name}: {error}") from error
 
 
-def look(piece: Piece, job: Job) -> sides.PartFacts | None:
-    """Return the facts of a piece about the sides of the whole, None where its light has none."""
+def look(piece: Piece, job: Job, target: Path) -> sides.PartFacts | None:
+    """Return the facts of a piece about the sides of the whole, None where its light has none.
+
+    Normals of a surface are kept beside the target, and the piece is lit by these.
+    """
     mesh = _target(piece, job, job.ghost)
     options = LightOptions.of(job.options)
     if not mesh.n_points or not uses_normals(mesh, options):
         return None
     if hasattr(mesh, "GetExtent") and 1 not in mesh.dimensions:
         return None  # a grid that fills space is closed, and so is each slab of it
-    return _tried(piece, lambda: sides.look(mesh, _others(mesh), options.normals, job.scene.view))
+    keep = None
+    if _are_whole_sides(mesh, job, options):
+
+        def keep(normals: sides.Undecided) -> None:
+            np.savez(_kept_beside(target), **normals._asdict())
+
+    return _tried(
+        piece,
+        lambda: sides.look(mesh, _others(mesh), options.normals, job.scene.view, keep),
+    )
+
+
+def _are_whole_sides(mesh: pv.DataSet, job: Job, options: LightOptions) -> bool:
+    """Return whether the light of a piece needs nothing of others but the sides of its normals."""
+    asked = options.normals, options.feature_angle, options.positions, options.tangents
+    return (
+        isinstance(mesh, pv.PolyData)
+        and mesh.n_cells == mesh.GetNumberOfPolys()
+        and mesh.point_data.active_normals is None
+        and job.contour is None
+        and options.facing == "auto"
+        and all(option is None for option in asked)
+    )
+
+
+def _kept_beside(target: Path) -> Path:
+    """Return the path of the normals that are kept of a piece."""
+    return target.with_name(target.name + ".npz")
+
+
+def _kept(piece: Piece, target: Path, whole_sides: Told | None) -> tuple[pv.DataSet, Sided] | None:
+    """Return a piece without cells of others, and the normals that were kept of it, if any were."""
+    path = _kept_beside(target)
+    if whole_sides is None or not path.exists():
+        return None
+    mesh = _read(piece, 0)
+    with np.load(path) as arrays:
+        found = sides.Undecided(**arrays).decided(whole_sides)
+    # Those of other pieces come last.
+    found = found.at(np.arange(mesh.n_points))
+    # Points that no cell has would be cut off with the cells of other pieces.
+    return (mesh, found) if found.vectors.any(axis=1).all() else None
 
 
 def _others(mesh: pv.DataSet) -> Array:
@@ -213,7 +257,8 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
     PieceError
         If the piece cannot be read, lit or written.
     """
-    mesh = _target(piece, job, job.ghost)
+    kept = _kept(piece, target, whole_sides)
+    mesh, known = kept or (_target(piece, job, job.ghost), None)
     try:
         ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
         with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
@@ -223,7 +268,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
                 raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
-            lit, sharp = _lit(mesh, piece, job, whole_sides)
+            lit, sharp = _lit(mesh, piece, job, whole_sides, known)
         del mesh
         inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
         done = _described(lit)
@@ -247,7 +292,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
 
 
 def _lit(
-    mesh: pv.DataSet, piece: Piece, job: Job, turn: Told | None
+    mesh: pv.DataSet, piece: Piece, job: Job, turn: Told | None, known: Sided | None
 ) -> tuple[Foreign, float | None]:
     """Return the lit part that a piece owns, and its share of sharp edges where that is known."""
     if not mesh.n_points:
@@ -256,12 +301,15 @@ def _lit(
     if job.filter == "illuminate":
         if turn is not None and isinstance(mesh, pv.UnstructuredGrid) and hull.dimension(mesh) == 3:
             turn = turn._replace(side=sides.side_of(_others(mesh)))
-        lit = light_mesh(mesh, job.scene, LightOptions.of(job.options), told=turn)
+        options = LightOptions.of(job.options)
+        turn = turn if known is None else None
+        lit = light_mesh(mesh, job.scene, options, inplace=True, told=turn, known=known)
     else:
         lit = streamlines(mesh, job.scene, **job.options)
     record, names = records.read(lit, job.name), records.made(lit, job.name)
     kept = records.read(lit, normals.KEPT)
     sharp = None if kept is None else records.share(kept, "sharp")
+    sharp = sharp if known is None else float(known.sharp)
     for stale in records.made(lit, normals.KEPT):
         # They belong to the piece with its ghost cells, and would be checked in vain.
         del lit.point_data[stale]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike
 
-    from vizlight._types import Array, Bools, Keywords, Raw, Slice, Value, Vector
+    from vizlight._types import Array, Bools, Raw, Slice, Value, Vector
     from vizlight.shading.algebra import Lamp
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.plan import Plan
@@ -61,7 +60,7 @@ class Shading:
         """Ambient term of points that nothing occludes, one number for all."""
         return self.plan.ambient
 
-    @property
+    @cached_property
     def invalid(self) -> int:
         """Number of points that could not be lit."""
         return self.valid.size - int(np.count_nonzero(self.valid))
@@ -87,8 +86,16 @@ class Shading:
     def part(self, _: int, rows: Slice, /) -> Shading:
         """Return the light of some points, with a share of the time."""
         share = (rows.stop - rows.start) / max(self.luminance.size, 1)
-        parts: Keywords = {name: array[rows] for name, array in self.arrays().items()}
-        return dataclasses.replace(self, **parts, seconds=self.seconds * share)
+        # One by one: of many small meshes each has a part of its own.
+        return Shading(
+            luminance=self.luminance[rows],
+            valid=self.valid[rows],
+            diffuse=None if self.diffuse is None else self.diffuse[rows],
+            specular=None if self.specular is None else self.specular[rows],
+            rgb=None if self.rgb is None else self.rgb[rows],
+            plan=self.plan,
+            seconds=self.seconds * share,
+        )
 
 
 def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading) -> None:

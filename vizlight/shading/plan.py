@@ -118,7 +118,7 @@ class Plan:
         """Whether the result has a colour."""
         return self.scene.colored
 
-    @property
+    @functools.cached_property
     def terms(self) -> tuple[str, ...]:
         """Names of the terms that are added up."""
         names = {"ambient": True, "diffuse": self.diffuse, "specular": self.specular}

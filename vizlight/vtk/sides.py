@@ -9,12 +9,12 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.corners import crease_share
-from vizlight.vtk.normals import Told, facing_of, given_normals, wound_normals
+from vizlight.vtk.normals import Sided, Told, facing_of, given_normals, wound_normals
 from vizlight.vtk.orientation import middles, sides_of
 from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 #: Number of directions in which the outermost normals of a piece are searched for, and number of
 #: normals up to which all are taken.
 AROUND = 64
+#: Number of normals of which the least far tells what is too near, and rounding of that.
+SOME, ROUNDED = 1024, 1e-9
 #: Share of what normals at common points say that is enough to tell that two pieces agree.
 CLEAR = 0.8
 
@@ -65,12 +67,45 @@ class PartFacts(NamedTuple):
     edges: Indices
 
 
+class Undecided(NamedTuple):
+    """Normals of a part on sides that the whole has yet to decide.
+
+    Attributes
+    ----------
+    vectors, lean : ndarray, shape (n_points, 3) and (n_points,)
+        See :class:`.normals.Sided`.
+    piece : ndarray of int, shape (n_points,)
+        Piece of each point.
+    sharp : float
+        Share of edges that are creases.
+    """
+
+    vectors: Array
+    lean: Array
+    piece: Indices
+    sharp: float
+
+    def decided(self, told: Told) -> Sided:
+        """Return the normals on the sides that the whole has decided."""
+        sign = told.sign[self.piece].astype(np.float32)
+        return Sided(
+            self.vectors * sign[:, np.newaxis], self.lean * sign, told.number[self.piece],
+            float(self.sharp), kept=True, computed=True, averted=told.averted,
+        )  # fmt: skip
+
+
 def side_of(ghosts: Array) -> NDArray[np.int8]:
     """Return :attr:`.orientation.SurfaceShape.side` of a part with ``ghosts`` of :func:`look`."""
     return np.where(ghosts < 1, 0, -1).astype(np.int8)
 
 
-def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> PartFacts | None:
+def look(
+    mesh: Dataset,
+    ghosts: Array,
+    value: object,
+    view: View | None,
+    keep: Callable[[Undecided], None] | None = None,
+) -> PartFacts | None:
     """Return the facts of a part of a surface, None where it has no surface.
 
     Parameters
@@ -83,12 +118,18 @@ def look(mesh: Dataset, ghosts: Array, value: object, view: View | None) -> Part
         Name of normals; with such, or with normals that the mesh has, the surface is one piece.
     view : View or None
         Eye that sees it.
+    keep : callable, optional
+        Function that takes the normals of a surface.
     """
     vectors_in = given_normals(mesh, value, 3)
     wound = wound_normals(mesh, side=side_of(ghosts))
     if wound is None:
         return None
-    shape, vectors, _, origin = wound
+    shape, vectors, first, origin = wound
+    if keep is not None:
+        lean = shape.survey(vectors)[1]
+        lean = lean if first is None else lean[first]
+        keep(Undecided(vectors, lean, shape.piece, float(crease_share(shape.edges))))
     piece, border = shape.piece, shape.open | shape.inside_out
     of_mesh = np.arange(len(piece)) if origin is None else origin
     if vectors_in is not None:
@@ -135,12 +176,14 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
     few = order[(size <= AROUND)[piece[order]]]
     extremes, of = [normals[few]], [piece[few]]
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
+    directions = np.cos(angles), np.sin(angles)
     for i in np.flatnonzero(size > AROUND):
         rows = order[first[i] : first[i + 1]]
         # A piece is a height field if its normals fit in a half space; those that lean most decide
         # that.
-        cosine = normals[rows] @ middle[i]
-        along = np.column_stack([normals[rows], cosine])
+        along = np.empty((4, len(rows)))
+        along[:3] = normals[rows].T
+        cosine = np.matmul(middle[i], along[:3], out=along[3])
         if cosine.min() <= 0:
             normal = normals[rows[:1]]
             extremes += [normal, -normal]
@@ -149,17 +192,22 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
         # With the middle, two directions across it: the rows of a singular value decomposition are
         # orthonormal.
         _, u, v = np.linalg.svd(middle[i][np.newaxis])[2]
-        directions = np.outer(u, np.cos(angles)) + np.outer(v, np.sin(angles))
+        # A central projection on the plane across the middle, where the normals furthest out in
+        # each direction stand for all within their hull.
+        x, y = np.stack([u, v]) @ along[:3] / cosine
         most, which = np.full(AROUND, -np.inf), np.zeros(AROUND, dtype=np.intp)
-        for block in _pool.blocks(len(rows), BLOCK):
-            # A central projection on the plane across the middle, where the normals furthest out in
-            # each direction stand for all within their hull.
-            leaning = (normals[rows[block]] @ directions) / cosine[block, np.newaxis]
-            best = leaning.argmax(axis=0)
-            top = leaning[best, np.arange(AROUND)]
-            which = np.where(top > most, best + block.start, which)
+        # What is nearer than the least far of some is the furthest in no direction.
+        some = slice(None, None, max(len(rows) // SOME, 1))
+        bound = np.max(np.outer(directions[0], x[some]) + np.outer(directions[1], y[some]), axis=1)
+        far = np.flatnonzero(x * x + y * y >= (1 - ROUNDED) * max(bound.min(), 0.0) ** 2)
+        for block in _pool.blocks(len(far), BLOCK):
+            at = far[block]
+            leaning = np.outer(directions[0], x[at]) + np.outer(directions[1], y[at])
+            best = leaning.argmax(axis=1)
+            top = leaning[np.arange(AROUND), best]
+            which = np.where(top > most, at[best], which)
             most = np.maximum(top, most)
-        kept = np.unique([*which, *along.argmin(axis=0), *along.argmax(axis=0)])
+        kept = np.unique([*which, *along.argmin(axis=1), *along.argmax(axis=1)])
         extremes.append(normals[rows[kept]])
         of.append(np.full(len(kept), i))
     return np.concatenate(extremes), np.concatenate(of)
