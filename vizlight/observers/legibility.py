@@ -130,7 +130,8 @@ def legibility(
         Seed of the drawing of pixels and of the noise.
     **options
         Further options of ``plotter.vizlight.add_mesh``, such as ``occlusion="sky"``, ``bundle``,
-        ``feature_angle`` and ``line_width``. Of a ``picture`` they say how it shows the mesh;
+        ``feature_angle``, ``line_width`` and ``line_diameter``. Of a ``picture`` they say how it
+        shows the mesh;
         ``feature_angle=None`` is for edges that are smooth.
 
     Returns
@@ -301,7 +302,7 @@ def _parts(
     return [
         part_on(
             block, scene.replace(view=view), options, path, lit=lit, values=array, table=table,
-            width=width,
+            width=width, diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
         )
         for (block, path), array in zip(shown, values, strict=True)
     ]  # fmt: skip
