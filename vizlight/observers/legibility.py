@@ -166,7 +166,8 @@ def legibility(
     lightness ranks steepness. *heading*: a key of all directions of lines, in one share of its
     light for all of the picture, since smoothed edges and halos darken lines. *shape*: a ball in
     the same light; with tangents, which are unknown, 72 of them for each normal. *value*: colours
-    of the bar, as they are or in some light, whichever the whole picture fits. *speed*: lightness,
+    of the bar or their lightness, as they are or in some light, whichever tells most of the whole
+    picture. *speed*: lightness,
     chroma, or the lengths of glyphs rank the lengths of vectors. *scale*: the finest structure at
     which half of the answers are right beyond chance. *order*: at crossings the borders of the
     nearer line, darker ones inside it too, or gaps beside it, differ by 3 deviations of the noise
