@@ -5,8 +5,8 @@ The fur of a dog
 A dog with 250,000 hairs. Each hair is lit as a thin line, inherits the shadow of the skin it
 stands on, and is dimmed by the fur above it, on the way in and out: so it is darker at its base,
 and single hairs stand out. Its length and the direction in which it lies are point arrays of the
-skin. A machine that follows strokes reads the way of the hair with a median error of 4.6 degrees,
-on PyVista's tubes of 7.5.
+skin. In a column of print the way of the hair is read with a median error of 11 degrees, that of
+PyVista's tubes on the skin of 8.
 """
 
 import numpy as np

@@ -97,6 +97,20 @@ def test_the_ten_pictures_are_measured_and_their_scripts_are_short():
         assert better(row) == (f"<examples/{name}>`" not in text), name
 
 
+def test_the_table_of_marks_has_each_field_four_times():
+    with (kept.HERE / "marks.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    marks = module("marks")
+    assert tuple(rows[0]) == marks.COLUMNS
+    assert [row["field"] for row in rows] == [name for name in marks.FIELDS for _ in range(4)]
+    mesh, name, view = marks.street()
+    # Between the rows of vortices the wind is fastest, and runs along them.
+    fast = np.linalg.norm(mesh[name], axis=1).argmax()
+    assert abs(mesh.points[fast, 1]) < 0.45
+    assert abs(mesh[name][fast, 0]) > 5 * abs(mesh[name][fast, 1])
+    assert view == (0, 0, 1)
+
+
 def test_each_picture_is_kept_and_no_other():
     scripted = {kept.picture(scene, script) for scene, script in kept.todo()}
     assert scripted == set(kept.HERE.glob("*/*.webp"))

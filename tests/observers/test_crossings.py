@@ -203,16 +203,22 @@ def test_lines_that_bend_at_their_crossing_are_left_out():
         assert (0 if found is None else found.samples) == count
 
 
-@pytest.mark.parametrize(("bend", "straight"), [(-35, False), (-25, True), (25, True), (35, False)])
-def test_lines_turn_by_thirty_degrees_at_most_beside_a_crossing(bend, straight):
-    """A line bends 3 pixels beyond the other one; 6.5 are looked at."""
+@pytest.mark.parametrize(
+    ("bend", "far", "straight"),
+    [(-35, 3, False), (-25, 3, True), (25, 3, True), (35, 3, False), (35, 6, False), (35, 7, True)],
+)
+def test_lines_turn_by_thirty_degrees_at_most_beside_a_crossing(bend, far, straight):
+    """A line bends some pixels beyond the other one; 6.5 are looked at."""
     after = 60 * np.array([np.cos(np.radians(bend)), np.sin(np.radians(bend))])
-    starts, ways = np.array([[0.0, 40], [60, 40], [57, 0]]), np.array([[60.0, 0], after, [0, 80]])
+    starts, ways = (
+        np.array([[0.0, 40], [60, 40], [60 - far, 0]]),
+        np.array([[60.0, 0], after, [0, 80]]),
+    )
     along, line = np.array([0, 60, JUMP]), np.array([0, 0, 1])
     shown = np.full((80, 120), -1)
     lines = Segments(shown, starts, ways, along, line, np.full(3, 3.0), np.zeros(3))
     pair = np.array([0]), np.array([2])
-    assert crossings._straight(lines, np.array([[57.0, 40]]), *pair).tolist() == [straight]
+    assert crossings._straight(lines, np.array([[60.0 - far, 40]]), *pair).tolist() == [straight]
 
 
 def test_a_line_that_crosses_itself_is_asked():

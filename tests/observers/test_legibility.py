@@ -71,6 +71,17 @@ def test_a_plane_in_constant_light_has_no_shape(tilt):
     assert shape.readable == 0
 
 
+def test_tangents_whose_length_in_the_picture_is_a_third_are_not_asked():
+    plane = pv.Plane(i_size=3, j_size=2).triangulate()
+    samples = []
+    for length in (0.34, 0.36):
+        plane["t"] = np.tile([length, 0, np.sqrt(1 - length**2)], (plane.n_points, 1))
+        from_above = View(direction=(0, 0, 1), parallel=True)
+        found = read(plane, presets.direction(), tangents="t", view=from_above, samples=64)
+        samples.append(0 if found.direction is None else found.direction.samples)
+    assert samples == [0, 64]
+
+
 def test_thin_lines_are_read_worse_than_wide_ones():
     lines = straws(40, 8)
     thin, wide = (read(lines, presets.heading(), line_width=w).heading for w in (1, 6))
@@ -135,6 +146,15 @@ def test_a_picture_of_sharp_edges_is_read_like_its_plotter(angle):
     assert whole.median < 20
     if angle is not None:
         assert vizlight.legibility(box, **read, feature_angle=None).shape.bits < whole.bits / 2
+
+
+def test_lines_of_a_diameter_are_as_wide_in_any_picture():
+    lines = straws(60)
+    picture, camera = shot(lines.tube(radius=0.02), color="red", lighting=False)
+    how = {"picture": picture, "camera": camera, "key": HEAD, "samples": 64}
+    thin, wide = (vizlight.legibility(lines, **how, line_diameter=d) for d in (None, 0.04))
+    assert wide.pixels == pytest.approx(int((picture[..., 2] < 128).sum()), rel=0.1)
+    assert thin.pixels < wide.pixels / 2
 
 
 def test_pictures_with_bundles_are_read():

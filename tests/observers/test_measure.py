@@ -137,6 +137,12 @@ def test_a_picture_without_hue_tells_no_direction(drawn):
         assert found.median == 45
 
 
+def without_hue(picture):
+    """Return a picture in grays of the same luminance."""
+    light = picture**2.2 @ np.array([0.2126, 0.7152, 0.0722])
+    return np.repeat(light[..., np.newaxis] ** (1 / 2.2), 3, axis=2)
+
+
 @pytest.mark.parametrize("name", ["hue", "lightness"])
 def test_maps_of_equal_lightness_are_read_in_colors_only(name):
     """Of two maps one has hue and the other lightness alone; without hue one is chance."""
@@ -145,13 +151,22 @@ def test_maps_of_equal_lightness_are_read_in_colors_only(name):
     cmap = LinearSegmentedColormap.from_list(name, ends[name])
     how = {"cmap": cmap, "clim": (-0.2, 0.2), "scalars": "height"}
     picture, camera = shot(mesh, scene=FLAT, **how)
-    light = np.array([0.2126, 0.7152, 0.0722])
-    gray = np.repeat(((picture**2.2) @ light)[..., np.newaxis] ** (1 / 2.2), 3, axis=2)
+    gray = without_hue(picture)
     key = {"key": (cmap, (-0.2, 0.2))}
     whole, bare = (figure("value", mesh, p, camera, **key) for p in (picture, gray))
     assert whole.bits > 1
     assert bare.unreadable == (name == "hue")
     assert bare.readable < 0.05 or name == "lightness"
+
+
+@pytest.mark.parametrize(("cmap", "read"), [("viridis", True), ("twilight", False)])
+def test_a_map_that_rises_in_lightness_is_read_in_gray(cmap, read):
+    mesh = sheet()
+    picture, camera = shot(mesh, scene=FLAT, scalars="height", cmap=cmap, clim=(-0.2, 0.2))
+    how = {"key": (cmap, (-0.2, 0.2))}
+    found = figure("value", mesh, without_hue(picture), camera, **how)
+    assert (found.median < 0.03) == read
+    assert (found.readable > 0.9) == read
 
 
 def test_a_map_read_by_the_key_of_another_is_chance():

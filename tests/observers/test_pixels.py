@@ -73,6 +73,14 @@ def test_more_cells_than_colors_take_several_pictures(monkeypatch):
     assert len(np.unique(whole.cell)) > 300
 
 
+def test_each_byte_of_the_number_of_a_cell_is_drawn():
+    plane = pv.Plane(i_size=2, j_size=2, i_resolution=300, j_resolution=300).triangulate()
+    assert plane.n_cells > 2 << 16
+    found = seen([plane], above(parallel=True), (100, 100))
+    middles = np.asarray(plane.cell_centers().points)[found.cell, :2]
+    np.testing.assert_allclose(middles, found.at, atol=0.01)
+
+
 def above(height=2.0, parallel=False):
     """Return a camera on the z axis that sees a square of a side of 2 at z = 0."""
     camera = pv.Camera()

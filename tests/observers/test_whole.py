@@ -171,6 +171,15 @@ def test_what_hides_a_mesh_and_what_is_nearly_clear():
     assert pixels[1] == pytest.approx(pixels[0] / 2, rel=0.03)
 
 
+def test_a_point_hides_as_much_as_it_covers():
+    plotter, _ = plotter_of(sheet(20), **SHAPE)
+    bare = plotter.vizlight.legibility(samples=16).pixels
+    plotter.add_mesh(pv.PolyData([0.0, 0, 1]), color="black", point_size=20)
+    hidden = bare - plotter.vizlight.legibility(samples=16).pixels
+    plotter.close()
+    assert hidden == pytest.approx(400, rel=0.1)
+
+
 def read_plain(mesh, way=(0, 0, 1), **drawing):
     """Return what is read of a mesh in PyVista's plain colours, seen along a direction."""
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
@@ -223,6 +232,10 @@ def test_colours_of_the_axes_tell_the_direction_of_lines():
     found = read_plain(lines, (1, 0.6, 0.4), scalars="axes", rgb=True, line_width=6)
     assert found.heading.median < 15
     assert found.heading.bits > 0.8
+    # PyVista draws shares as it draws bytes.
+    lines["shares"] = lines["axes"] / 255
+    shares = read_plain(lines, (1, 0.6, 0.4), scalars="shares", rgb=True, line_width=6)
+    assert (shares.heading, shares.value) == (found.heading, None)
     # Other colours mean nothing.
     lines["axes"] = lines["axes"][::-1].copy()
     assert read_plain(lines, (1, 0.6, 0.4), scalars="axes", rgb=True, line_width=6).heading is None

@@ -130,7 +130,8 @@ def legibility(
         Seed of the drawing of pixels and of the noise.
     **options
         Further options of ``plotter.vizlight.add_mesh``, such as ``occlusion="sky"``, ``bundle``,
-        ``feature_angle`` and ``line_width``. Of a ``picture`` they say how it shows the mesh;
+        ``feature_angle``, ``line_width`` and ``line_diameter``. Of a ``picture`` they say how it
+        shows the mesh;
         ``feature_angle=None`` is for edges that are smooth.
 
     Returns
@@ -165,7 +166,8 @@ def legibility(
     lightness ranks steepness. *heading*: a key of all directions of lines, in one share of its
     light for all of the picture, since smoothed edges and halos darken lines. *shape*: a ball in
     the same light; with tangents, which are unknown, 72 of them for each normal. *value*: colours
-    of the bar, as they are or in some light, whichever the whole picture fits. *speed*: lightness,
+    of the bar or their lightness, as they are or in some light, whichever tells most of the whole
+    picture. *speed*: lightness,
     chroma, or the lengths of glyphs rank the lengths of vectors. *scale*: the finest structure at
     which half of the answers are right beyond chance. *order*: at crossings the borders of the
     nearer line, darker ones inside it too, or gaps beside it, differ by 3 deviations of the noise
@@ -301,7 +303,7 @@ def _parts(
     return [
         part_on(
             block, scene.replace(view=view), options, path, lit=lit, values=array, table=table,
-            width=width,
+            width=width, diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
         )
         for (block, path), array in zip(shown, values, strict=True)
     ]  # fmt: skip

@@ -595,15 +595,17 @@ class _PictureReader:
                 places.append(_shares(p.part.table, values[has_value]))
         if not groups:
             return None
-        ways = []
-        for lit in (False, True):
-            ways.append(
-                [
-                    readers.read_value(p.colors, at, _table(p), lit=lit)
-                    for p, at in zip(groups, places, strict=True)
-                ]
-            )
-        # Whether there is light on the colours is seen by the whole picture.
+        colors = [p.colors for p in groups]
+        ways = [
+            [
+                readers.read_value(each, at, _table(p), lit=lit)
+                for each, p, at in zip(some, groups, places, strict=True)
+            ]
+            for lit in (False, True)
+            # Hues are mixed in fine structure, and gone in gray print; lightness may be left.
+            for some in (colors, [each.lightness() for each in colors])
+        ]
+        # Whether there is light on the colours is seen by the whole picture, and so are hues.
         readings = max(ways, key=readers.bits_told)
         lengths = np.concatenate([p.structure(_position(_table(p))) for p in groups])
         common = self._common("value", groups, readings, lengths)

@@ -82,6 +82,10 @@ class Colors(NamedTuple):
         """Return the colours of some places."""
         return Colors(self.lab[rows], self.deviation[rows])
 
+    def lightness(self) -> Colors:
+        """Return the colours for a reader who goes by lightness alone."""
+        return Colors(self.lab, self.deviation * np.array([1.0, np.inf, np.inf]))
+
 
 def colors_at(
     seen: SeenPicture, row: Indices, column: Indices, random: np.random.Generator, noise: float,

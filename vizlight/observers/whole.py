@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 PRINT = 85.0, 300.0, 400.0
 #: Distance in mm of a screen.
 SCREEN_DISTANCE = 600.0
+#: VTK's number of the mode in which scalars are colours, in bytes or not.
+DIRECT = 2
 #: Opacity below which an actor does not hide what is behind it.
 HIDES = 0.5
 
@@ -236,7 +238,7 @@ def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
     mesh = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
     if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
         return None
-    direct = mapper.GetColorMode() == 2 and bool(mapper.GetScalarVisibility())
+    direct = mapper.GetColorMode() == DIRECT and bool(mapper.GetScalarVisibility())
     marks = has_lines_only(mesh) or GLYPH in mesh.point_data
     return mesh if not direct or marks else None
 
@@ -287,7 +289,10 @@ def _colored(
     mapper = actor.GetMapper()
     if mesh is None:
         return None
-    colors = _values(mesh, name if mapper.GetScalarVisibility() else None, mapper.GetLookupTable())
+    # Colours that are drawn as they are have no table; those of n-space were made of values.
+    direct = mapper.GetColorMode() == DIRECT and mapper.GetArrayName() == name
+    table = None if direct else mapper.GetLookupTable()
+    colors = _values(mesh, name if mapper.GetScalarVisibility() else None, table)
     marks = _marks(actor, mesh)
     # Crossings of lines are read whatever their colours mean, and so are marks.
     if not colors and marks is None and not has_lines_only(mesh):
@@ -304,6 +309,8 @@ def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
     flat = isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data
     if flat and mesh.cell_data[name].ndim == 1:
         values: Raw = np.asarray(mesh.cell_data[name])
+    elif table is None and name in mesh.point_data:
+        values, flat = np.asarray(mesh.point_data[name]), False
     else:
         values, flat = values_of(mesh, name), False
     if values.ndim == 1:

