@@ -25,7 +25,6 @@ META = (
 GRIB1 = b"GRIB\0\0\x28\1" + bytes(28) + b"7777"
 GRIB2 = b"GRIB\0\0\0\2" + (40).to_bytes(8, "big") + bytes(20) + b"7777"
 ATOM = b"ATOM      1  CA  ALA A   1       0.000   0.000   0.500  1.00  0.00           C\n"
-HELIX = b"HELIX    1  HA GLY A   86  GLY A   94  1                                   9\n"
 TECPLOT = (
     b'VARIABLES = "X" "Y" "Z"\nZONE N=3, E=1, F=FEPOINT, ET=TRIANGLE\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n'
 )
@@ -167,9 +166,8 @@ WRONG = {
     "no size": ("a.pnm", b"P5\n# a comment", "width and height"),
     "wide": ("a.bmp", BMP.replace(b"\2\0\0\0\2", b"\2\0\0\7\2"), r"70 of \d{9} bytes"),
     "no width": ("a.bmp", BMP.replace(b"\2\0\0\0\2", b"\0\0\0\0\2"), "0 pixels wide"),
-    "column": ("a.pdb", ATOM.replace(b"   0.000   0.500", b"   0.00    0.500"), "no numbers in"),
+    "column": ("a.pdb", ATOM.replace(b"   0.000   0.500", b"   0.0 0   0.500"), "no numbers in"),
     "short atom": ("a.pdb", ATOM[:53], "no numbers in the columns"),
-    "helix": ("a.pdb", ATOM + HELIX.replace(b"86", b"xx"), "no numbers in"),
     "nodes": ("a.dat", TECPLOT.replace(b"N=3", b"N=300"), "of 903 numbers"),
     "negative": ("a.tec", TECPLOT.replace(b"E=1", b"E=-5"), "negative"),
     "no zone": ("a.dat", TECPLOT[:9], "no VARIABLES and ZONE"),

@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkMolecule
 
 from vizlight import _check
-from vizlight.mesh import meaning
+from vizlight.mesh import meaning, short_files
 from vizlight.model import formulas
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Largest luma of the colour of an element.
 PALE = 0.7
+#: A coordinate in its columns.
+_PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 #: Symbol of an atom at the start of a line of an XYZ file.
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
@@ -46,25 +48,28 @@ def of_pdb(path: Path) -> pv.PolyData:
     Raises
     ------
     ValueError
-        If there are no atoms, or one has no place.
+        If there are no atoms, or columns of one are no numbers.
     """
-    lines = path.read_text(encoding="latin-1").splitlines()
+    data = path.read_bytes()
+    short_files.warn_of_last_line(path, data)
+    lines = data.decode("latin-1").splitlines()
     ends = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
     if len(ends) > 1:
         _warn_of_states(path, len(ends))
-    atoms = [
-        line
-        for line in lines[: ends[0] if ends else None]
-        if line.startswith(("ATOM", "HETATM")) and line[16:17] in ("", " ", "A", "1")
-    ]
+    atoms, places = [], []
+    for line in lines[: ends[0] if ends else None]:
+        if not line.startswith(("ATOM", "HETATM")):
+            continue
+        columns = [line[i : i + 8] for i in (30, 38, 46)]
+        # Columns are fixed, and 80 at most: a word that is too long moves those after it.
+        fits = 54 <= len(line.rstrip()) <= 80 and re.match(r"\s*[+-]?\d", line[22:26])
+        if not fits or not all(map(_PLACE.fullmatch, columns)):
+            raise ValueError(f"no numbers in the columns of the line {line[:60]!r}")
+        if line[16:17] in (" ", "A", "1"):
+            atoms.append(line)
+            places.append([float(column) for column in columns])
     if not atoms:
         raise ValueError("it has no atoms")
-    places = []
-    for line in atoms:
-        try:
-            places.append([float(line[i : i + 8]) for i in (30, 38, 46)])
-        except ValueError:
-            raise ValueError(f"{line[:27]!r} has no place of three numbers") from None
     mesh = _joined([_element(line) for line in atoms], places)
     for name, (first, last, none) in _NUMBERS.items():
         words = [line[first:last].strip() for line in atoms]

@@ -503,28 +503,6 @@ def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: b
         return _size(data, least)
 
 
-def _pdb(file: BinaryIO) -> str:
-    """Check the columns of numbers of molecules, whose places are fixed."""
-    whole, place = re.compile(rb"\s*[+-]?\d"), re.compile(rb"\s*[+-]?\d+\.?\d*")
-    line = b""
-    for line in file:
-        if line.startswith((b"ATOM", b"HETATM")):
-            places = [line[at : at + 8] for at in (30, 38, 46)]
-            good = line[:54].isascii() and all(map(place.fullmatch, places))
-            # Lines have 80 columns by the format, the last three of places end in the 54th.
-            good = good and whole.match(line[22:26]) is not None
-            good = good and 54 <= len(line.rstrip()) <= 80
-        elif line.startswith((b"HELIX", b"SHEET")):
-            start = 21 if line.startswith(b"HELIX") else 22
-            good = all(map(whole.match, (line[start : start + 4], line[33:37])))
-        else:
-            continue
-        if not good:
-            return f"no numbers in the columns of the line {line[:60]!r}"
-    warn_of_last_line(Path(file.name), line)
-    return ""
-
-
 #: Corners of a cell of Tecplot by its name.
 _CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
 
@@ -921,7 +899,7 @@ def _grib(file: BinaryIO) -> str:
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".pdb": _pdb, ".png": _png,
+    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".png": _png,
     ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".3ds": _3ds, ".trx": _zip,
     ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
