@@ -128,6 +128,7 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     if not sea.all():
         colors[~sea] = _GROUND((values[~sea] - coast) / (high - coast))
     table.values = np.round(255 * colors).astype(np.uint8)
+    table.nan_color = MISSING
     table.scalar_range = (low, high)
     return table
 

@@ -123,7 +123,8 @@ def tint(
     ``colour * min(1, max(ambient, 0.3) * ambient light + diffuse)``, and never less than 0.3 of the
     colour: light keeps the chromaticity of the data, so that values can be read by the scalar bar,
     and the highlight, which would hide them, is left out. Lights of a colour count by their luma;
-    the colours of the data stand for the material's. Points without light are mid grey.
+    the colours of the data stand for the material's. Points without light are mid grey, and those
+    without light and value have the colour of NaN.
 
     The light is taken from the mesh where it was stored in terms, with ``components=True``, or has
     no highlight and ``ambient`` of 0.3 or more; else it is computed again from its record, which
@@ -161,15 +162,17 @@ def tint(
     # The points were lit before: a report counts the light on their colours apart.
     with report.tinted():
         lights = _light_of(lit, lit_blocks, light)
-    colors = [
-        display.on_colors(
-            map_colors(table, value, components=3),
-            share[origin],
-            # A point that was split off has the light of the point that it was.
-            None if valid is None else valid[origin],
-        )
-        for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True)
-    ]
+    colors = []
+    for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True):
+        mapped = map_colors(table, value, components=3)
+        # A point that was split off has the light of the point that it was.
+        there = None if valid is None else valid[origin]
+        tinted = display.on_colors(mapped, share[origin], there)
+        if there is not None and value.ndim == 1 and value.dtype.kind == "f":
+            # Where no value is, none is dimmed.
+            empty = ~there & np.isnan(value)
+            tinted[empty] = mapped[empty]
+        colors.append(tinted)
     out, meshes = blocks.placed(lit, meshes, inplace=inplace)
     for mesh, array in zip(meshes, colors, strict=True):
         kept = records.read(mesh, light) or {}

@@ -55,16 +55,20 @@ def relief(case: Case) -> Drawing:
     if "cmap" not in colors:
         ends = colors.get("clim") or range_of(data.run(), array.name)
         colors = {"cmap": Step("", "vizlight.maps.heights", *ends)}
+    has_holes = not np.isfinite(data.run()[array.name]).all()
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     drawn: Keywords = {"show_scalar_bar": False}
+    # Light in fragments has another grey for what is missing, which is far from that of paper.
+    live = straight is data and not has_holes
     if straight is not data:
         shown = Step("chart", data.path, shown)
+    if not live:
         drawn |= {"scalars": "rgb", "rgb": True, "lighting": False}
     bar = case.bar(array, colors)
     factor: Foreign = keywords.get("exaggeration", 1.0)
     keys = [bar | {"title": bar["title"] + times_as_high(factor)}]
     # The filter has said how many points have no height.
-    layer = Layer(shown, drawn, quiet=True, live=straight is data)
+    layer = Layer(shown, drawn, quiet=True, live=live)
     return Drawing(
         [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=straight,
         name="t", colors=colors_of(array, colors),

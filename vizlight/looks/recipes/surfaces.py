@@ -64,7 +64,7 @@ def values(case: Case) -> Drawing:
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
     # Seen along an axis, much of a surface faces the eye, and a lamp there would show no relief.
-    lamp = "" if sides is None else "lamp"
+    lamp = "" if sides is None and array.role != "kinds" else "lamp"
     scene = case.exposed(mesh, camera, lamp, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
     note = ""
