@@ -55,7 +55,7 @@ QUESTIONS = {
     ),
     "shape": Question(
         "Shape", "Hue and lightness are the normal, as on the ball of the key.",
-        ("a ball in this light",), by_hue=True,
+        ("the way it faces",), by_hue=True,
     ),
     "value": Question(
         "Value", "Soft light without highlight: colours are read by the bar.",

@@ -176,7 +176,7 @@ def test_the_default_light_has_the_key_of_what_it_shows(valued):
     given = {"scalars": "speed", "cmap": "viridis"} if valued else {"color": "white"}
     plotter.vizlight.add_mesh(ball, show_scalar_bar=False, **given)
     made = plotter.vizlight.add_key()
-    words = ["2", "5"] if valued else ["a ball in this light"]
+    words = ["2", "5"] if valued else ["the way it faces"]
     assert list(made.field_data["words"]) == words
     if valued:
         assert made.field_data["title"][0] == "speed (grey: no data)"

@@ -35,6 +35,8 @@ MARGIN, LETTERS = 0.025, 0.032
 #: Width of a bar as a share of a disc, least height of a single one as a share of its strip, and
 #: most numbers for which a bar is made longer.
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
+#: Height of the colour of a kind in a bar that stands, in letters.
+KIND = 2.2
 #: Height of a bar that lies, in letters, and length of one without classes, in that of the data.
 BAR_HIGH, SHORT_BAR = 0.8, 0.65
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
@@ -192,7 +194,9 @@ class Margin:
         # What stands above the bar has to have room too.
         over = max(low - letters / 2 + box[1] - room[1], 0.0)
         high = box[1] - over
-        key.draw((box[0] / 2, low - letters / 2 + high / 2), (box[0], high), letters)
+        # Kinds stand in the middle, and bars begin where the data do.
+        row = (low + top) / 2 if key.has_kinds else low - letters / 2 + high / 2
+        key.draw((box[0] / 2, row), (box[0], high), letters)
 
     def _stack(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
         """Stack the keys in the middle of a strip, smaller where they would not fit."""
@@ -304,7 +308,12 @@ class MarginKey:
     @property
     def has_classes(self) -> bool:
         """Whether its colours are classes."""
-        return LEVELS in self._mesh.field_data or NAMES in self._mesh.field_data
+        return LEVELS in self._mesh.field_data or self.has_kinds
+
+    @property
+    def has_kinds(self) -> bool:
+        """Whether its colours are those of kinds, which have no order."""
+        return NAMES in self._mesh.field_data
 
     @property
     def is_bar(self) -> bool:
@@ -348,7 +357,10 @@ class MarginKey:
         least = 1.3 * LINE * letters * min(len(self._marks), MOST_NUMBERS)
         bar = 2 * BAR_WIDE * self._half
         box = bar + (0.6 + LETTER * widest) * letters
-        return box, (tall or max(4.0 * self._half, least)) + letters + words
+        high = tall or max(4.0 * self._half, least)
+        if self.has_kinds:
+            high = min(high, KIND * letters * len(self._marks))
+        return box, high + letters + words
 
     def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""

@@ -289,7 +289,7 @@ function legend(app) {
     const { look, color, cmap, clim } = app.state;
     key.hidden = !app.leader || app.leader.data || !(page.looks[look] || (page.key && look === '') || look === '*');
     const said = look === '' ? page.key : page.looks[look]?.key;
-    words.replaceChildren(...(said || [app.leader?.given.surface ? 'a ball in this light' : 'lines along each radius']).map(span));
+    words.replaceChildren(...(said || [app.leader?.given.surface ? 'the way it faces' : 'lines along each radius']).map(span));
     key.firstChild.setAttribute('aria-label', `Key: ${words.textContent}`);
     if (page.arrays[color]) {
       const [low, high] = clim || page.arrays[color];
